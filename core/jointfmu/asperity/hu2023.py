@@ -1,0 +1,135 @@
+"""Hu et al. 2023 (doi:10.3389/fmats.2023.1211019): asperities of one base radius, four regimes.
+
+Equation numbers are the paper's; where the print is wrong the corrected form is implemented
+(docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..powerlaw import Power, Slip, Spots, Term
+from ..quantity import Number, check, group, quantity
+from ..surface import (
+    ArealSurface,
+    Elastic,
+    contact_modulus,
+    contact_shear_modulus,
+    domain_extension_fit,
+    hardness_coefficient,
+)
+from . import mindlin
+from .kogut_etsion import FIRST, PLASTIC_AREA, SECOND, SECOND_AREA, by_area
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hu2023:
+    """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
+
+    surface: ArealSurface = group("equivalent rough surface")
+    side1: Elastic = group("softer body")
+    side2: Elastic = group("harder body")
+    sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def spots(self) -> Spots:
+        """Regimes of one spot over the size distribution of Eq. 17, reference area s_min."""
+        return spots(self)
+
+    def state(self, u: Number) -> dict[str, Number]:
+        """F [N] Eq. 27; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22."""
+        s = self.spots()
+        names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
+        return {symbol: s.total(name, u) for symbol, name in names.items()}
+
+
+def hardness(law: Hu2023) -> Number:
+    """H = 2.8 sigma_s [Pa], below Eq. 7."""
+    return 2.8 * law.sigma_y
+
+
+def curvature_radius(law: Hu2023) -> Number:
+    """R [m] at the peak of an asperity, Eq. 5."""
+    s = law.surface
+    root = np.sqrt(np.log(s.gamma))
+    return s.r_m ** (s.D - 1.0) / (2.0 ** (3.0 - s.D) * np.pi**2 * s.G ** (s.D - 2.0) * root)
+
+
+def critical_deformation(law: Hu2023) -> Number:
+    """epsilon_ec [m], end of the elastic regime, Eq. 7."""
+    modulus = contact_modulus(law.side1, law.side2)
+    onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) * hardness(law) / modulus
+    return onset**2 * curvature_radius(law)
+
+
+def critical_area(law: Hu2023) -> Number:
+    """s_ec [m2], Eq. 10; the stages end at 7.1197 s_ec and 205.38 s_ec (Eqs. 13-14)."""
+    return np.pi * curvature_radius(law) * critical_deformation(law)
+
+
+def critical_load(law: Hu2023) -> Number:
+    """f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
+    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * hardness(law) * critical_area(law)
+
+
+def spots(law: Hu2023, shear_strength: float | None = None) -> Spots:
+    """Size distribution (Eq. 17) and regimes between s_min and the largest spot.
+
+    shear_strength : [Pa] None: every spot has the traction ratio x of the node (default).
+        A value: the real area carries this traction, t = tau s, so x = tau s/(mu f(s)) differs from
+        spot to spot and is clipped to full slip (Eqs. 39-43 as meant).
+
+    Quantities: load [N]; normal, tangential [N/m]; area, elastic_area [m2].
+    """
+    s_min, s_ec = law.surface.s_min, critical_area(law)
+    f_ec, H = critical_load(law), hardness(law)
+    k_ec = f_ec / critical_deformation(law)
+    edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
+    ends = [edge, edge + np.log(SECOND_AREA), edge + np.log(PLASTIC_AREA)]
+    bounds = [0.0, *(np.maximum(end, 0.0) for end in ends)]
+    stages = [by_area(FIRST), by_area(SECOND)]
+
+    def regime(c: Number, p: float, i: int) -> Power:
+        """`c (s/s_ec)^p` in regime i, referred to s_min."""
+        upper = bounds[i + 1] if i < 3 else None
+        return Power(c * np.exp(-p * edge), p, bounds[i], upper)
+
+    load = [regime(f_ec, 1.5, 0), *(regime(f_ec * st.A, st.p, i + 1) for i, st in enumerate(stages))]
+    normal = [regime(1.5 * k_ec, 0.5, 0)]
+    normal += [regime(k_ec * st.B, st.q, i + 1) for i, st in enumerate(stages)]
+    terms: dict[str, tuple[Term, ...]] = {
+        "load": (*load, regime(H * s_ec, 1.0, 3)),
+        "normal": tuple(normal),
+        "tangential": _tangential(law, load, bounds, shear_strength),
+        "area": (Power(s_min, 1.0, 0.0),),
+        "elastic_area": (Power(s_min, 1.0, 0.0, bounds[1]),),
+    }
+    D = law.surface.D
+    weight = domain_extension_fit(D) ** (1.5 - 0.5 * D)
+    return Spots(reference=s_min, cutoff=True, m=0.5 * D - 0.5, weight=weight, terms=terms)
+
+
+def _tangential(
+    law: Hu2023, load: list[Power], bounds: list[Number], shear_strength: float | None
+) -> tuple[Term, ...]:
+    """k_t = 8 G' r (1 - t/(mu f))^(1/3) in the three regimes that are not plastic, Eqs. 39, 41-43."""
+    full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)
+    if shear_strength is None:
+        stick, _ = mindlin.stick_root(law.traction_ratio)
+        return (Power(full_stick * stick, 0.5, 0.0, bounds[3]),)
+    return tuple(
+        Slip(
+            c=full_stick,
+            p=0.5,
+            h=shear_strength * law.surface.s_min / (law.mu * term.c),
+            q=term.p - 1.0,
+            lower=term.lower,
+            upper=term.upper,
+        )
+        for term in load
+    )

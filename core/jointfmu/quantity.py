@@ -1,0 +1,135 @@
+"""The one place where a physical field declares its SI unit, open or closed interval and meaning."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, Field, field, fields, is_dataclass
+from math import inf
+from typing import Any, TypeAlias, TypeVar, get_type_hints
+
+import numpy as np
+
+Number: TypeAlias = Any
+"""A float, an array of floats, or a symbol of a computer-algebra tool: what a law accepts."""
+
+T = TypeVar("T")
+
+
+def quantity(
+    unit: str,
+    doc: str,
+    *,
+    gt: float = -inf,
+    ge: float = -inf,
+    lt: float = inf,
+    le: float = inf,
+    calibration: bool = False,
+) -> Any:
+    """Declare a number [unit] inside an interval; `calibration` marks a value that was fitted."""
+    meta = {"unit": unit, "doc": doc, "gt": gt, "ge": ge, "lt": lt, "le": le}
+    return field(metadata={**meta, "calibration": calibration})
+
+
+def choice(*allowed: str | bool, doc: str) -> Any:
+    """Declare a named choice; the first is the default."""
+    return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
+
+
+def group(doc: str) -> Any:
+    """Declare a nested group of quantities (`surface`, `side1`, ...)."""
+    return field(metadata={"group": True, "doc": doc})
+
+
+def label(item: Field[Any]) -> str:
+    """Public name of a field (`lambda_` is `lambda`, a Python keyword)."""
+    return item.name.rstrip("_")
+
+
+def interval(item: Field[Any]) -> str:
+    """The allowed interval as text, e.g. `[0, 1)`."""
+    meta = item.metadata
+    low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
+    left = "[" if low == meta["ge"] and low > -inf else "("
+    right = "]" if high == meta["le"] and high < inf else ")"
+    return f"{left}{low:g}, {high:g}{right}"
+
+
+def problem(name: str, value: Any, item: Field[Any]) -> str | None:
+    """One line that names the thing, the value with its unit, and what is allowed; None if fine."""
+    meta = item.metadata
+    if "allowed" in meta:
+        if any(value is option or (type(value) is str and value == option) for option in meta["allowed"]):
+            return None
+        return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
+    unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
+    if isinstance(value, bool) or not isinstance(value, int | float | np.ndarray | np.number):
+        return f"{name} = {value!r} is not a number{unit and f' in{unit}'}: {meta['doc']}"
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        return f"{name} = {value!r} is not a real number{unit and f' in{unit}'}: {meta['doc']}"
+    inside = (array > meta["gt"]) & (array >= meta["ge"]) & (array < meta["lt"]) & (array <= meta["le"])
+    inside &= np.isfinite(array)
+    if np.all(inside):
+        return None
+    first = array[~inside].flat[0]
+    return f"{name} = {first:.10g}{unit} is outside {interval(item)}: {meta['doc']}"
+
+
+def check(obj: Any) -> None:
+    """Raise ValueError naming every field of `obj` outside its interval (NaN and infinity included)."""
+    found = (problem(label(f), getattr(obj, f.name), f) for f in fields(obj) if "group" not in f.metadata)
+    if problems := [text for text in found if text]:
+        raise ValueError("; ".join(problems))
+
+
+def flat_fields(cls: type[Any], prefix: str = "") -> Iterator[tuple[str, Field[Any]]]:
+    """Structured names and fields of every number and choice of `cls`, groups opened."""
+    hints = get_type_hints(cls)
+    for item in fields(cls):
+        if "group" in item.metadata:
+            yield from flat_fields(hints[item.name], f"{prefix}{label(item)}.")
+        elif item.metadata:
+            yield prefix + label(item), item
+
+
+def flatten(obj: Any) -> dict[str, Any]:
+    """{structured name: value} of a parameter set."""
+    values: dict[str, Any] = {}
+    for item in fields(obj):
+        value = getattr(obj, item.name)
+        if is_dataclass(value) and "group" in item.metadata:
+            values |= {f"{label(item)}.{name}": v for name, v in flatten(value).items()}
+        elif item.metadata:
+            values[label(item)] = value
+    return values
+
+
+def build(cls: type[T], values: Mapping[str, Any]) -> T:
+    """Make the parameter set `cls` from {structured name: value}.
+
+    Raises ValueError, one line, naming every unknown or missing name and every value that is no
+    number or lies outside its interval.
+    """
+    known = dict(flat_fields(cls))
+    required = {name for name, item in known.items() if item.default is MISSING}
+    problems = [f"unknown name {name!r}" for name in values if name not in known]
+    if problems:
+        problems.append(f"allowed are {', '.join(known)}")
+    if missing := sorted(required - values.keys()):
+        problems.append(f"missing {', '.join(missing)}")
+    found = (problem(name, value, known[name]) for name, value in values.items() if name in known)
+    problems += [text for text in found if text]
+    if problems:
+        raise ValueError("; ".join(problems))
+    return _assemble(cls, dict(values), "")
+
+
+def _assemble(cls: type[T], values: dict[str, Any], prefix: str) -> T:
+    hints = get_type_hints(cls)
+    arguments: dict[str, Any] = {}
+    for item in fields(cls):  # type: ignore[arg-type]
+        name = prefix + label(item)
+        if "group" in item.metadata:
+            arguments[item.name] = _assemble(hints[item.name], values, f"{name}.")
+        elif name in values:
+            value = values[name]
+            arguments[item.name] = float(value) if type(value) is int else value
+    return cls(**arguments)
