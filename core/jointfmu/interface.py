@@ -22,6 +22,10 @@ class Law(Protocol):
     def A_0(self) -> float:
         """Nominal area [m2]."""
 
+    @property
+    def hardness(self) -> Number:
+        """Hardness of the softer body [Pa]."""
+
     def spots(self) -> Spots:
         """Regimes of one spot and size distribution."""
 
@@ -75,7 +79,7 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
     bad = ~(np.isfinite(p) & (p >= 0.0))
     if np.any(bad):
         raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
-    spots = law.spots()
+    spots = representable(law.spots())
     load = p * law.A_0
     shape = np.broadcast_shapes(load.shape, *(np.shape(x) for x in (spots.m, spots.weight, spots.reference)))
     if load.shape == shape and load.size > _BLOCK and np.size(spots.reference) == 1:
@@ -83,6 +87,21 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
         parts = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
         return np.concatenate(parts).reshape(shape)
     return _solve(spots, np.broadcast_to(load, shape))
+
+
+def representable(spots: Spots) -> Spots:
+    """The spots, unless their reference area or load over- or underflows (D close to 1).
+
+    Raises ValueError.
+    """
+    with np.errstate(all="ignore"):
+        value, slope = spots.log_total("load", np.asarray(1.0))
+    if not np.all(np.isfinite(value) & np.isfinite(slope) & (spots.reference > 0.0)):
+        raise ValueError(
+            f"D, G and the material give a critical spot area of {np.max(spots.reference):g} m2: "
+            "not representable, D is too close to the end of its interval"
+        )
+    return spots
 
 
 def _solve(spots: Spots, load: Array) -> Array:
@@ -122,7 +141,7 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     The area is the paper's: truncated for Zhao 2018, real for Hu 2023 and Yu 2022.
     """
     a = np.asarray(area, dtype=np.float64)
-    spots = law.spots()
+    spots = representable(law.spots())
     smallest = spots.reference if spots.cutoff else 0.0
     bad = ~(np.isfinite(a) & (a > smallest))
     if np.any(bad):

@@ -9,7 +9,7 @@ All logarithms are relative to the reference area, so nothing over- or underflow
 at `p = m` (D = 1.5, D = 5/3, zeta (D1 + D2) = 1, ...) is removed by `exprel`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -48,7 +48,12 @@ def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) ->
 
 
 class Term(Protocol):
-    """One regime of a spot law."""
+    """One regime of a spot law, between two log-areas; None is an open end."""
+
+    @property
+    def lower(self) -> Number: ...
+    @property
+    def upper(self) -> Number: ...
 
     def spot(self, t: Number) -> Number:
         """Value on one spot of log-area `t`; zero outside the regime."""
@@ -149,7 +154,7 @@ class Spots:
     cutoff: bool
     m: Number
     weight: Number
-    terms: dict[str, tuple[Term, ...]]
+    terms: Mapping[str, tuple[Term, ...]]
 
     def total(self, name: str, u: Number) -> Number:
         """Sum over all spots, the largest of which has log-area `u`."""
@@ -159,6 +164,19 @@ class Spots:
         """Derivative of `total` in `u`: m Q + m w q(a_L)."""
         largest = sum(term.spot(u) for term in self.terms[name])
         return self.m * self.total(name, u) + self.m * self.weight * largest
+
+    @property
+    def stiff_onset(self) -> Number:
+        """Log-area [1] up to which every spot is plastic, so that the stiffness is zero."""
+        return min(term.lower for term in self.terms["normal"])
+
+    @property
+    def breaks(self) -> list[float]:
+        """Log-areas [1], ascending, where a regime of the stiffness ends: its slope jumps there."""
+        ends = {
+            float(end) for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None
+        }
+        return sorted(ends)
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
         """`ln Q` and its derivative in `u` (one pass, for the inversion)."""

@@ -113,7 +113,7 @@ def domain_extension(D: Number) -> Number:
 
 
 def domain_extension_fit(D: Number) -> Number:
-    """psi [1] for a surface dimension 2 < D < 3, Hu 2023 below Eq. 17 (within 0.33 % of the root)."""
+    """psi [1] for a surface dimension 2 < D < 3, Hu 2023 below Eq. 17 (within 0.38 % of the root)."""
     return 5.454 * np.exp((1.0 - D) / 0.628) + 1.499
 
 

@@ -37,6 +37,11 @@ class Hu2023:
     def __post_init__(self) -> None:
         check(self)
 
+    @property
+    def hardness(self) -> Number:
+        """H = 2.8 sigma_s [Pa], below Eq. 7."""
+        return 2.8 * self.sigma_y
+
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eq. 17, reference area s_min."""
         return spots(self)
@@ -46,11 +51,6 @@ class Hu2023:
         s = self.spots()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
         return {symbol: s.total(name, u) for symbol, name in names.items()}
-
-
-def hardness(law: Hu2023) -> Number:
-    """H = 2.8 sigma_s [Pa], below Eq. 7."""
-    return 2.8 * law.sigma_y
 
 
 def curvature_radius(law: Hu2023) -> Number:
@@ -63,7 +63,7 @@ def curvature_radius(law: Hu2023) -> Number:
 def critical_deformation(law: Hu2023) -> Number:
     """epsilon_ec [m], end of the elastic regime, Eq. 7."""
     modulus = contact_modulus(law.side1, law.side2)
-    onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) * hardness(law) / modulus
+    onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) * law.hardness / modulus
     return onset**2 * curvature_radius(law)
 
 
@@ -74,7 +74,7 @@ def critical_area(law: Hu2023) -> Number:
 
 def critical_load(law: Hu2023) -> Number:
     """f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
-    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * hardness(law) * critical_area(law)
+    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * critical_area(law)
 
 
 def spots(law: Hu2023, shear_strength: float | None = None) -> Spots:
@@ -87,7 +87,7 @@ def spots(law: Hu2023, shear_strength: float | None = None) -> Spots:
     Quantities: load [N]; normal, tangential [N/m]; area, elastic_area [m2].
     """
     s_min, s_ec = law.surface.s_min, critical_area(law)
-    f_ec, H = critical_load(law), hardness(law)
+    f_ec, H = critical_load(law), law.hardness
     k_ec = f_ec / critical_deformation(law)
     edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
     ends = [edge, edge + np.log(SECOND_AREA), edge + np.log(PLASTIC_AREA)]

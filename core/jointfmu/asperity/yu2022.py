@@ -32,7 +32,7 @@ from .kogut_etsion import (
 
 @dataclass(frozen=True, kw_only=True)
 class Yu2022:
-    """Parameters of the interface law of Yu 2022; `mu` and `traction_ratio` do not enter it."""
+    """Parameters of the interface law of Yu 2022."""
 
     surface1: FlankSurface = group("fractal parameters along the major axis")
     surface2: FlankSurface = group("fractal parameters along the minor axis")
@@ -42,6 +42,10 @@ class Yu2022:
     side1: Elastic = group("first body")
     side2: Elastic = group("second body")
     sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction; does not enter this law", gt=0.0)
+    traction_ratio: float = quantity(
+        "1", "shear over friction limit; does not enter this law", ge=0.0, lt=1.0
+    )
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
     rigid_flat: bool = choice(
         True, False, doc="true: the first body meets a rigid flat; false: both bodies deform (Eq. 21)"
@@ -54,6 +58,11 @@ class Yu2022:
 
     def __post_init__(self) -> None:
         check(self)
+
+    @property
+    def hardness(self) -> Number:
+        """H = 2.8 sigma_y [Pa], Eq. 25."""
+        return 2.8 * self.sigma_y
 
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eqs. 44 and 46, reference area a_nec."""
@@ -108,7 +117,7 @@ def yield_scale(law: Yu2022) -> Number:
     """4 pi f1 K(e) E(e) (K H/E')^2 [1]: a (1/R_x + 1/R_y)^2 at the onset of yield, Eq. 28."""
     K, E = complete_elliptic(law.e)
     f1, _ = shape_factors(law.e)
-    strain = hardness_coefficient(law.side1.nu) * 2.8 * law.sigma_y / modulus(law)
+    strain = hardness_coefficient(law.side1.nu) * law.hardness / modulus(law)
     return 4.0 * np.pi * f1 * K * E * strain**2
 
 
@@ -149,27 +158,25 @@ def spots(law: Yu2022) -> Spots:
         """(1/R_x + 1/R_y) over its value at a_nec [1]."""
         return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
 
-    def stage_load(stage: Stage) -> Smooth:
+    def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
         def load(t: Number) -> Number:
             sharp = sharpness(t)
             ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
             return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
 
-        return Smooth(load, plastic if stage is stages[1] else middle, middle if stage is stages[1] else 0.0)
+        return Smooth(load, lower, upper)
 
-    def stage_stiffness(stage: Stage) -> Smooth:
+    def stage_stiffness(stage: Stage, lower: Number, upper: Number) -> Smooth:
         def stiffness(t: Number) -> Number:
             sharp = sharpness(t)
             ratio = np.exp(t) * sharp**2
             power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
             return hertz / 1.5 * stage.c * stage.d * power / sharp
 
-        return Smooth(
-            stiffness, plastic if stage is stages[1] else middle, middle if stage is stages[1] else 0.0
-        )
+        return Smooth(stiffness, lower, upper)
 
     first, second = stages
-    H = 2.8 * law.sigma_y
+    H = law.hardness
     return Spots(
         reference=a,
         cutoff=False,
@@ -178,12 +185,16 @@ def spots(law: Yu2022) -> Spots:
         terms={
             "load": (
                 Power(H * a, 1.0, upper=plastic),
-                stage_load(second),
-                stage_load(first),
+                stage_load(second, plastic, middle),
+                stage_load(first, middle, 0.0),
                 Power(elastic * c1, 1.5 - p1, 0.0),
                 Power(elastic * c2, 1.5 - p2, 0.0),
             ),
-            "normal": (stage_stiffness(second), stage_stiffness(first), Power(hertz, 0.5, 0.0)),
+            "normal": (
+                stage_stiffness(second, plastic, middle),
+                stage_stiffness(first, middle, 0.0),
+                Power(hertz, 0.5, 0.0),
+            ),
             "area": (Power(a, 1.0),),
             "elastic_area": (Power(a, 1.0, 0.0),),
         },

@@ -43,6 +43,11 @@ class Zhao2018:
     def __post_init__(self) -> None:
         check(self)
 
+    @property
+    def hardness(self) -> Number:
+        """H [Pa] of the softer body."""
+        return self.H
+
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eq. 2, reference area a'_c."""
         return spots(self)

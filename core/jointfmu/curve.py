@@ -1,0 +1,191 @@
+"""Monotone force laws as tables: load over displacement with its exact stiffness.
+
+A table is a quintic Hermite spline through load, stiffness and the stiffness' derivative at the
+nodes. The load is twice continuously differentiable, the stiffness is its exact derivative, and
+the energy its exact integral.
+"""
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .interface import Law, largest_spot
+
+Array = NDArray[np.float64]
+
+MAX_ERROR = 1e-8
+"""Largest relative interpolation error of load and stiffness [1] that a table may have."""
+_GAUSS = np.polynomial.legendre.leggauss(5)
+_TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
+    [
+        [1, 0, 0, 0, 0, 0],
+        [0, 1, 0, 0, 0, 0],
+        [0, 0, 0.5, 0, 0, 0],
+        [-10, -6, -1.5, 10, -4, 0.5],
+        [15, 8, 1.5, -15, 7, -1],
+        [-6, -3, -0.5, 6, -3, 0.5],
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Load over displacement, monotone; beyond its ends it continues with the last tangent.
+
+    displacement, load, stiffness : (n)
+    bend_start, bend_end : (n - 1) derivative of the stiffness at the two ends of each segment
+    error : [1] largest relative interpolation error of load and stiffness, measured when built
+    """
+
+    displacement: Array
+    load: Array
+    stiffness: Array
+    bend_start: Array
+    bend_end: Array
+    error: float = 0.0
+    _coefficients: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        h = np.diff(self.displacement)
+        y, s = self.load, self.stiffness
+        data = np.stack([y[:-1], s[:-1] * h, self.bend_start * h**2, y[1:], s[1:] * h, self.bend_end * h**2])
+        object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """Displacement and load at the end of the table."""
+        return float(self.displacement[-1]), float(self.load[-1])
+
+    def derivatives(self, x: ArrayLike, order: int = 1) -> list[Array]:
+        """Load and its first `order` derivatives at displacements x (...)."""
+        x = np.asarray(x, dtype=np.float64)
+        nodes = self.displacement
+        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
+        inside = np.clip(x, nodes[0], nodes[-1])
+        h = nodes[i + 1] - nodes[i]
+        t = (inside - nodes[i]) / h
+        out, a = [], self._coefficients[:, i]
+        for n in range(order + 1):
+            value = a[-1]
+            for coefficient in a[-2::-1]:
+                value = value * t + coefficient
+            out.append(value / h**n)
+            a = a[1:] * np.arange(1.0, a.shape[0]).reshape(-1, *([1] * x.ndim))
+        if order == 0:
+            out[0] = out[0] + (x - inside) * self.derivatives(inside, 1)[1]
+            return out
+        out[0] = out[0] + (x - inside) * out[1]
+        beyond = x != inside
+        return out[:2] + [np.where(beyond, 0.0, value) for value in out[2:]]
+
+    def inverse(self, load: ArrayLike) -> Array:
+        """Displacement (...) at which the table carries a load (...), to round-off.
+
+        Safeguarded Newton inside the segment; on a flat beginning (zero stiffness) the first node.
+        """
+        y = np.asarray(load, dtype=np.float64)
+        nodes = self.load
+        i = np.clip(np.searchsorted(nodes, y, side="right") - 1, 0, nodes.size - 2)
+        inside = np.clip(y, nodes[0], nodes[-1])
+        low = self.displacement[i].copy()
+        high = self.displacement[i + 1].copy()
+        x = low + (high - low) * (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
+        for _ in range(60):
+            value, slope = self.derivatives(x, 1)
+            residual = inside - value
+            low, high = np.where(residual > 0.0, x, low), np.where(residual < 0.0, x, high)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                step = x + residual / slope
+            new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
+            done = np.all(np.abs(new - x) <= 4e-16 * np.abs(x) + 1e-300)
+            x = new
+            if done:
+                break
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tangent = np.where(y > nodes[-1], (y - inside) / self.stiffness[-1], 0.0)
+        return np.where(y <= nodes[0], self.displacement[0], x + tangent)
+
+
+def assemble(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+    """Join pieces (displacement, load, stiffness, bend), each sharing its last node with the next.
+
+    The stiffness is continuous over the joints, its derivative need not be. The error is measured
+    by leaving out every second node and dividing by 16, less than the 2^5 of the method's order.
+    """
+    fine, coarse = _join(pieces), _join([tuple(column[::2] for column in piece) for piece in pieces])  # type: ignore[misc]
+    load, stiffness = coarse.derivatives(fine.displacement, 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        errors = [np.abs(load - fine.load) / fine.load, np.abs(stiffness - fine.stiffness) / fine.stiffness]
+    worst = max(float(np.nanmax(np.where(np.isfinite(e), e, 0.0))) for e in errors) / 16.0
+    return Curve(fine.displacement, fine.load, fine.stiffness, fine.bend_start, fine.bend_end, worst)
+
+
+def _join(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+    x, y, s = (np.concatenate([piece[k][bool(i) :] for i, piece in enumerate(pieces)]) for k in range(3))
+    start = np.concatenate([piece[3][:-1] for piece in pieces])
+    end = np.concatenate([piece[3][1:] for piece in pieces])
+    return Curve(x, y, s, start, end)
+
+
+CLOSING_RATIO = 20.0
+"""Where the closing of the contact ends [1]: largest spot over the largest plastic spot."""
+
+
+def closing(p: float, k: float, bend: float, offset: float, nodes: int) -> tuple[Array, Array, Array, Array]:
+    """How the contact closes: from separation (p = 0, k = 0) to the point (p, k, dk/d delta).
+
+    While nearly all spots are plastic the laws give a stiffness that vanishes at a finite pressure,
+    so that the approach, the integral of dp/k, would start at minus infinity. Below the point where
+    the largest spot is CLOSING_RATIO times the largest plastic one the pressure is therefore
+    continued to zero by `p z^3 (a + b z + c z^2)` over a length 4 p/k, twice continuously
+    differentiable at both ends.
+    """
+    length = 4.0 * p / k
+    curvature = bend * length**2 / p  # 16 times d ln k/d ln p
+    c = 0.5 * curvature - 6.0
+    a, b = c, 1.0 - 2.0 * c
+    z = np.linspace(0.0, 1.0, nodes)
+    load = p * z**3 * (a + b * z + c * z**2)
+    stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
+    slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
+    return offset + (z - 1.0) * length, load, stiffness, slope
+
+
+def approach_curve(law: Law, nodes_per_unit: int = 12) -> Curve:
+    """Pressure [Pa] over approach [m] of an interface: the integral of dp/k from separation.
+
+    The table runs over the log-area u of the largest spot, in which load and stiffness are explicit,
+    from the end of the closing to a nominal pressure equal to the hardness; the approach is
+    integrated by five Gauss-Legendre nodes per step. Zero approach is the end of the closing.
+
+    Raises
+    ------
+    ValueError : at every pressure up to the hardness all spots are plastic (no stiffness)
+    """
+    spots, area = law.spots(), law.A_0
+    first = float(spots.stiff_onset + np.log(CLOSING_RATIO))
+    last = float(largest_spot(law, law.hardness))
+    if not last > first + 1.0:
+        p = float(spots.total("load", first)) / area
+        raise ValueError(
+            f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
+            "the surface (D, G) leaves only plastic spots"
+        )
+    ends = [first, *(b for b in spots.breaks if first < b < last), last]
+    pieces, offset = [], 0.0
+    for left, right in pairwise(ends):
+        n = max(2 * int(np.ceil(0.5 * nodes_per_unit * (right - left))), 2)
+        u = np.linspace(left, right, n + 1)
+        half = 0.5 * (u[1] - u[0])
+        inner = u[:-1, None] + half * (1.0 + _GAUSS[0])
+        steps = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ _GAUSS[1]
+        x = offset + np.concatenate([[0.0], np.cumsum(steps)])
+        offset = x[-1]
+        side = np.clip(u, left + 1e-9, right - 1e-9)  # one-sided derivative where a regime ends
+        k = spots.total("normal", u) / area
+        bend = k * spots.slope("normal", side) / spots.slope("load", side)
+        pieces.append((x, spots.total("load", u) / area, k, bend))
+    _, p, k, bend = (float(column[0]) for column in pieces[0])
+    return assemble([closing(p, k, bend, 0.0, 49), *pieces])

@@ -1,0 +1,1 @@
+"""Pressure over the contact, and its integration into the stiffness of a joint."""

@@ -1,0 +1,61 @@
+"""Two-lobe pressure on the elliptical cone between flexspline and bearing ring."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .nodes import Footprint
+
+Array = NDArray[np.float64]
+
+_AROUND = np.polynomial.legendre.leggauss(32)
+_ALONG = np.polynomial.legendre.leggauss(6)
+
+
+def two_lobes(
+    peak: Array, *, mismatch: float, radius: float, deformation: float, length: float, cup: float
+) -> Footprint:
+    """One quarter of the contact at load cases (...), shares counted for the whole.
+
+    Elastic-foundation contact of the oval wave generator: at the angle theta from the major axis and
+    the distance z from the cup's opening
+
+        p = peak (1 - z/cup) - mismatch sin^2(theta), where positive,
+
+    so each lobe widens as it grows. Nodes follow the lobe (sin theta = sin(edge) sin t), hence the
+    integral over the nodes is smooth in the peak; 32 x 6 Gauss-Legendre nodes.
+
+    peak        : (...) [Pa] pressure on the major axis at the opening, >= 0
+    mismatch    : [Pa] pressure lost from the major to the minor axis
+    radius      : [m]  mean radius; deformation: [m] radial deformation w
+    length, cup : [m]  axial length of the contact and of the cup that tapers the deformation
+    """
+    z = 0.5 * length * (1.0 + _ALONG[0])
+    axial = 0.5 * _ALONG[1]
+    t = 0.25 * np.pi * (1.0 + _AROUND[0])
+    local = np.asarray(peak, dtype=np.float64)[..., None, None] * (1.0 - z / cup)[:, None]
+    edge = np.sqrt(np.minimum(local / mismatch, 1.0))
+    sine = edge * np.sin(t)
+    theta = np.arcsin(sine)
+    stretch = edge * np.cos(t) / np.sqrt(1.0 - sine**2)  # d theta/d t
+    share = 4.0 * axial[:, None] * (0.25 * np.pi * _AROUND[1]) * stretch / (2.0 * np.pi)
+    pressure = local - mismatch * sine**2
+    height = np.broadcast_to(z[:, None], theta.shape)
+    taper = deformation * (1.0 - height / cup)
+    slope = np.arctan(deformation * np.cos(2.0 * theta) / cup)
+    position, normal = _ellipse(theta, radius, taper, slope, height)
+    shape = (*np.shape(peak), -1)
+    return Footprint(
+        share=share.reshape(shape),
+        position=position.reshape(*shape, 3),
+        normal=normal.reshape(*shape, 3),
+        pressure=pressure.reshape(shape),
+    )
+
+
+def _ellipse(theta: Array, radius: float, w: Array, slope: Array, z: Array) -> tuple[Array, Array]:
+    """Points and unit normals of the elliptical cone with half axes radius +- w."""
+    a, b = radius + w, radius - w
+    position = np.stack([a * np.cos(theta), b * np.sin(theta), z], axis=-1)
+    tilt = np.arctan2(a * np.sin(theta), b * np.cos(theta))
+    flat = np.stack([np.cos(slope) * np.cos(tilt), np.cos(slope) * np.sin(tilt), np.sin(slope)], axis=-1)
+    return position, flat

@@ -1,0 +1,1 @@
+"""The joints: a law, a footprint and a curve each."""

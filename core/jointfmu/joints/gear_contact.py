@@ -1,0 +1,52 @@
+"""Tooth contact of a gear: uniform pressure on the rough flanks (Yu 2022)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..asperity.yu2022 import Yu2022
+from ..curve import Curve, approach_curve
+from ..interface import at_pressure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearContact(Yu2022):
+    """Parameters of the gear contact: those of the interface law."""
+
+
+@dataclass(frozen=True, slots=True)
+class GearContactSpring:
+    """The exported contact: force in, approach out."""
+
+    joint: GearContact
+    curve: Curve
+
+    @classmethod
+    def of(cls, joint: GearContact) -> "GearContactSpring":
+        """Tabulate a contact."""
+        return cls(joint, approach_curve(joint))
+
+    @property
+    def max_force(self) -> float:
+        """Force at the end of the table [N]: the hardness on the whole nominal area."""
+        return self.joint.A_0 * self.curve.end[1]
+
+    def approach(self, f: ArrayLike) -> dict[str, Array]:
+        """Approach [m] from first touch, stiffness [N/m], real area [m2] and its elastic part at f (...) [N].
+
+        A pulling force finds the flanks apart: everything is zero.
+        """
+        force = np.maximum(np.asarray(f, dtype=np.float64), 0.0)
+        delta = self.curve.inverse(force / self.joint.A_0)
+        stiffness = self.joint.A_0 * self.curve.derivatives(delta, 1)[1]
+        touching = np.where(force > 0.0, force, self.max_force)
+        state = at_pressure(self.joint, touching / self.joint.A_0)
+        return {
+            "s_rel": delta - self.curve.displacement[0],
+            "K_N": stiffness,
+            "A_r": np.where(force > 0.0, state["A_r"], 0.0),
+            "elastic_fraction": np.where(force > 0.0, state["elastic_fraction"], 0.0),
+        }

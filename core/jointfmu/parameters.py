@@ -1,0 +1,200 @@
+"""TOML files <-> parameter sets: the only reader and writer of models/*.toml.
+
+A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter,
+
+    [surface]
+    D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
+
+`kind` is one of KINDS; the unit must be the SI unit that the code declares, nothing is converted.
+"""
+
+import os
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from .joints.bolted_joint import BoltedJoint
+from .joints.gear_contact import GearContact
+from .joints.harmonic_drive import HarmonicDrive
+from .quantity import build, flat_fields, flatten
+
+SCHEMA = 1
+KINDS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
+"""Where a value comes from: printed in the paper, computed from printed values, a catalogue,
+an engineering estimate, fitted to calibration points, or set by the user."""
+JOINTS: dict[str, type[Any]] = {
+    "harmonic_drive": HarmonicDrive,
+    "bolted_joint": BoltedJoint,
+    "gear_contact": GearContact,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterFile:
+    """A parameter set with where it comes from.
+
+    joint   : kind, a key of JOINTS
+    name    : of this parameter set
+    values  : the parameter set, an instance of JOINTS[joint]
+    kinds, sources : {structured name: text}
+    """
+
+    joint: str
+    name: str
+    values: Any
+    kinds: Mapping[str, str]
+    sources: Mapping[str, str]
+
+    def with_values(self, changes: Mapping[str, Any], kind: str, source: str) -> "ParameterFile":
+        """The same file with some values changed; names and intervals are checked."""
+        values = build(JOINTS[self.joint], flatten(self.values) | dict(changes))
+        return replace(
+            self,
+            values=values,
+            kinds={**self.kinds, **dict.fromkeys(changes, kind)},
+            sources={**self.sources, **dict.fromkeys(changes, source)},
+        )
+
+
+def load(path: str | Path, joint: str | None = None) -> ParameterFile:
+    """Read and check a parameter file.
+
+    Raises ValueError with one line that names the file, the entry, its value and what is allowed:
+    a missing or broken file, another joint's file, an unknown or missing name, a foreign unit, a
+    value of the wrong type or outside its interval.
+    """
+    path = Path(path)
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a parameter file") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is no text file; expected a parameter file (TOML, UTF-8)") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path}: is no valid TOML ({error})") from None
+    if document.get("schema") != SCHEMA:
+        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
+    kind = document.get("joint")
+    if kind not in JOINTS:
+        raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(JOINTS)}")
+    if joint is not None and kind != joint:
+        raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
+    body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
+    values, kinds, sources = _entries(path, kind, body)
+    try:
+        parameters = build(JOINTS[kind], values)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, kinds, sources)
+
+
+def _entries(
+    path: Path, joint: str, body: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
+    """Values, kinds and sources by structured name; every unit checked against the code."""
+    declared = dict(flat_fields(JOINTS[joint]))
+    values: dict[str, Any] = {}
+    kinds: dict[str, str] = {}
+    sources: dict[str, str] = {}
+    for name, entry in _leaves(body, ""):
+        if not isinstance(entry, Mapping):
+            raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
+        if unknown := set(entry) - {"value", "unit", "kind", "source"}:
+            raise ValueError(f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}")
+        if name in declared:
+            unit = declared[name].metadata.get("unit")
+            if entry.get("unit") != unit:
+                raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
+        if entry.get("kind") not in KINDS:
+            raise ValueError(f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(KINDS)}")
+        values[name], kinds[name] = entry.get("value"), str(entry["kind"])
+        sources[name] = str(entry.get("source", ""))
+    return values, kinds, sources
+
+
+def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
+    found: list[tuple[str, Any]] = []
+    for key, value in table.items():
+        if isinstance(value, Mapping) and "value" not in value:
+            found += _leaves(value, f"{prefix}{key}.")
+        else:
+            found.append((prefix + key, value))
+    return found
+
+
+def dump(parameters: ParameterFile) -> str:
+    """The parameter set as the text of a parameter file."""
+    declared = dict(flat_fields(type(parameters.values)))
+    lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"', f"name = {_quoted(parameters.name)}"]
+    section = ""
+    for name, value in sorted(flatten(parameters.values).items(), key=lambda item: "." in item[0]):
+        head, _, leaf = name.rpartition(".")
+        if head != section:
+            lines += ["", f"[{head}]"]
+            section = head
+        unit = declared[name].metadata.get("unit")
+        fields = [f"value = {_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
+        fields += [f'kind = "{parameters.kinds.get(name, "user")}"']
+        fields += [f"source = {_quoted(parameters.sources.get(name, 'default choice'))}"]
+        lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
+    return "\n".join(lines) + "\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return _quoted(value) if isinstance(value, str) else repr(float(value))
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ") + '"'
+
+
+def default(joint: str) -> ParameterFile:
+    """The default parameter set of a joint, shipped with the package."""
+    from importlib.resources import files
+
+    folder = files("jointfmu_models") / joint
+    name = next(item.name for item in folder.iterdir() if item.name.endswith(".toml"))
+    return load(Path(str(folder / name)), joint)
+
+
+def parse_setting(text: str) -> tuple[str, Any]:
+    """`NAME=VALUE` of the command line: a number, true, false or a word.
+
+    Raises ValueError if there is no `=` or no name.
+    """
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise ValueError(f"{text!r} is no setting; expected NAME=VALUE")
+    value = value.strip()
+    if value.lower() in ("true", "false"):
+        return name.strip(), value.lower() == "true"
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value
+
+
+def write_text(path: str | Path, text: str) -> None:
+    """Write a file in one go: beside its place, then renamed; a failure leaves nothing behind.
+
+    Raises ValueError naming the path if it cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place") from None
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+        os.chmod(beside, 0o644)
+        os.replace(beside, path)
+    except OSError as error:
+        Path(beside).unlink(missing_ok=True)
+        raise ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place") from None

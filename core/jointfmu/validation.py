@@ -1,0 +1,60 @@
+"""Every published number beside the computed one."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from .observables import OBSERVABLES
+from .parameters import ParameterFile, default
+from .reference import PAPERS, Point, points
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A published point, the computed value, and the verdict.
+
+    error : relative to the published value, or in its unit where the tolerance is absolute; 0 or 1
+        for a claim
+    """
+
+    point: Point
+    computed: float | bool
+    error: float
+    passed: bool
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-ready, with the verdict as a word."""
+        row = asdict(self.point) | {"where": dict(self.point.where)}
+        return row | {
+            "computed": self.computed,
+            "error": self.error,
+            "verdict": "pass" if self.passed else "miss",
+        }
+
+
+def compare(point: Point, computed: float | bool) -> Row:
+    """Judge one computed value."""
+    if isinstance(point.value, bool):
+        error = float(computed is not point.value)
+        return Row(point, computed, error, error == 0.0)
+    error = computed - point.value
+    if not point.absolute:
+        error /= abs(point.value)
+    return Row(point, computed, error, abs(error) <= point.tolerance)
+
+
+def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[Row]:
+    """Compute every published point with the default parameter sets, or those given by joint."""
+    rows, known = [], dict(sets or {})
+    for paper in PAPERS:
+        for point in points(paper):
+            if point.joint not in known:
+                known[point.joint] = default(point.joint)
+            computed = OBSERVABLES[point.quantity](known[point.joint].values, **point.where)
+            rows.append(compare(point, computed))
+    return rows
+
+
+def missed(rows: list[Row]) -> list[Row]:
+    """Rows with the role validation that miss."""
+    return [row for row in rows if row.point.role == "validation" and not row.passed]

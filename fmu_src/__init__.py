@@ -1,0 +1,1 @@
+"""FMUs of jointfmu: the list of variables, the builders and what runs inside."""

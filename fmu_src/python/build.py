@@ -1,0 +1,131 @@
+"""Build the python flavour: pythonfmu's wrapper around a private copy of the package."""
+
+import re
+import sys
+import tempfile
+import zipfile
+from hashlib import sha256
+from pathlib import Path
+
+from jointfmu_fmus.variables import MODELS
+
+import jointfmu
+from jointfmu.parameters import ParameterFile, dump
+
+_RUNTIME = (
+    "__init__", "quantity", "surface", "powerlaw", "interface", "curve", "parameters",
+    "asperity", "footprint", "joints",
+)  # fmt: skip
+_PRIVATE = "PRIVATE_PACKAGE"
+"""Stands for the name that the digest of all sources gives."""
+_ENTRY = '''"""Entry point of {name} for pythonfmu; the code is in the package beside it."""
+
+import sys
+
+try:
+    import numpy  # noqa: F401
+except ImportError as error:
+    raise ImportError(
+        f"{name} needs the Python package numpy, which {{sys.executable}} lacks ({{error}}); "
+        f"install it with: {{sys.executable}} -m pip install numpy"
+    ) from None
+
+import {package}.fmus.python.slave as slave
+
+
+class {name}(slave.JointSlave):
+    fmu = "{name}"
+    content = "{digest}"
+'''
+
+
+def runtime_sources() -> dict[str, str]:
+    """{path inside the private package: text} of all that runs inside the FMU; numpy is its only need.
+
+    Imports of the public package names are rewritten to a private one, so FMUs of different builds
+    live side by side in one process.
+    """
+    core, fmus = Path(jointfmu.__file__).parent, Path(__file__).parent.parent
+    files = {p: p.relative_to(core) for p in sorted(core.rglob("*.py"))}
+    chosen = {p: str(r) for p, r in files.items() if r.parts[0].removesuffix(".py") in _RUNTIME}
+    chosen |= {fmus / p: f"fmus/{p}" for p in ("__init__.py", "units.py", "variables.py")}
+    chosen |= {fmus / "python" / p: f"fmus/python/{p}" for p in ("__init__.py", "slave.py")}
+    return {inside: _private(p.read_text(encoding="utf-8")) for p, inside in sorted(chosen.items())}
+
+
+def _private(text: str) -> str:
+    text = re.sub(r"^from jointfmu_fmus\b", f"from {_PRIVATE}.fmus", text, flags=re.MULTILINE)
+    return re.sub(r"^from jointfmu\b", f"from {_PRIVATE}", text, flags=re.MULTILINE)
+
+
+def build(name: str, parameters: ParameterFile, out: Path) -> Path:
+    """Write `out/name.fmu`; an existing file is replaced in one go.
+
+    Raises ValueError if the parameters are of another joint or the folder cannot be written,
+    ImportError if pythonfmu is missing.
+    """
+    from pythonfmu import FmuBuilder
+
+    if parameters.joint != MODELS[name].joint:
+        raise ValueError(
+            f"{name}: the parameter file is of a {parameters.joint!r}, expected a {MODELS[name].joint!r}"
+        )
+    sources = runtime_sources() | {"parameters.toml": dump(parameters)}
+    digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
+    package = f"jointfmu_{digest}"
+    target = out / f"{name}.fmu"
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as folder:
+            work = Path(folder)
+            script = work / "src" / f"{name}_{digest}.py"
+            _write(script, _ENTRY.format(name=name, package=package, digest=digest))
+            for inside, text in sources.items():
+                root = work / "src" if inside == "parameters.toml" else work / "src" / package
+                _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
+            built = _pythonfmu(FmuBuilder, script, package, work / "out")
+            beside = work / f"{name}.fmu"
+            _repack(built, beside)
+            beside.replace(target)
+    except OSError as error:
+        raise ValueError(
+            f"{target}: cannot be written ({error.strerror}); expected a writable folder"
+        ) from None
+    return target
+
+
+def _pythonfmu(builder: type, script: Path, package: str, out: Path) -> Path:
+    """Run pythonfmu and leave the process as it was: its sys.path and modules are taken back."""
+    path, modules = list(sys.path), set(sys.modules)
+    try:
+        built: Path = builder.build_FMU(  # type: ignore[attr-defined]
+            script,
+            dest=out,
+            project_files=[script.parent / package, script.parent / "parameters.toml"],
+            needsExecutionTool=False,
+            canGetAndSetFMUstate=True,
+            canSerializeFMUstate=True,
+        )
+    finally:
+        sys.path[:] = path
+        for name in set(sys.modules) - modules:
+            if name.split(".")[0] in (package, script.stem):
+                del sys.modules[name]
+    return built
+
+
+def _repack(source: Path, target: Path) -> None:
+    """Same members, sorted and with one fixed date, so equal content gives an equal file."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in sorted(old.namelist()):
+            if "__pycache__" in name:
+                continue
+            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+            info.external_attr = 0o644 << 16
+            info.compress_type = zipfile.ZIP_DEFLATED
+            new.writestr(info, old.read(name))
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,218 @@
+"""The pythonfmu slave that serves every FMU. No physics lives here."""
+
+import math
+from datetime import UTC, datetime
+from os import environ
+from pathlib import Path
+from typing import Any, ClassVar
+from uuid import NAMESPACE_URL, uuid5
+from xml.etree.ElementTree import Element, SubElement
+
+from jointfmu_fmus.units import UNITS, display_unit
+from jointfmu_fmus.variables import MODELS, Model, Variable
+from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
+from pythonfmu.enums import Fmi2Initial, Fmi2Status
+
+from jointfmu import __version__
+from jointfmu.parameters import load
+from jointfmu.quantity import build, flatten
+
+
+class JointSlave(Fmi2Slave):
+    """Variables, checks, messages and state of one FMU around one call into the package.
+
+    Complete state is `values` (parameters and inputs), `initialized` and `warned`; all else is
+    computed from it when asked for.
+    """
+
+    fmu: ClassVar[str]
+    content: ClassVar[str]
+    """Digest of everything that runs inside; the GUID comes from it."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.model: Model = MODELS[self.fmu]
+        self.modelName = self.fmu
+        self.description = self.model.doc
+        self.version, self.license, self.author = __version__, "MIT", "jointfmu"
+        self.guid = uuid5(NAMESPACE_URL, f"jointfmu/{self.fmu}/{self.content}")
+        steps = self.model.ramp.end / self.model.ramp.step
+        self.default_experiment = DefaultExperiment(
+            start_time=0.0, stop_time=float(round(steps)), step_size=1.0
+        )
+        self.start = flatten(load(Path(self.resources) / "parameters.toml", self.model.joint).values)
+        self.fields = self.model.parameter_fields()
+        self.values: dict[str, Any] = {**self.start, **{v.name: 0.0 for v in self.model.inputs}}
+        self.initialized = False
+        self.warned: set[str] = set()
+        self._spring: Any = None
+        self._outputs: dict[str, float] | None = None
+        self._register()
+
+    def _register(self) -> None:
+        for v in self.model.inputs:
+            self._variable(v.name, Real, Fmi2Causality.input, Fmi2Variability.continuous, v.doc)
+        for v in self.model.outputs:
+            self._variable(v.name, Real, Fmi2Causality.output, Fmi2Variability.continuous, v.doc)
+        for name, item in self.fields.items():
+            kind = Boolean if "allowed" in item.metadata else Real
+            doc = item.metadata["doc"]
+            if item.metadata.get("calibration"):
+                doc += " (calibration parameter: fitted to published points)"
+            self._variable(name, kind, Fmi2Causality.parameter, Fmi2Variability.fixed, doc)
+
+    def _variable(self, name: str, kind: Any, causality: Any, variability: Any, doc: str) -> None:
+        output = causality == Fmi2Causality.output
+        options = {"initial": Fmi2Initial.calculated} if output else {}
+        if causality == Fmi2Causality.parameter:
+            options = {"initial": Fmi2Initial.exact}
+        variable = kind(
+            name,
+            causality=causality,
+            variability=variability,
+            description=doc,
+            getter=(lambda: self.output(name)) if output else (lambda: self.values[name]),
+            setter=None if output else (lambda value: self.set(name, value)),
+            **options,
+        )
+        self.register_variable(variable, nested=False)
+
+    def set(self, name: str, value: Any) -> None:
+        """Take a parameter or an input; it is checked when it is used."""
+        if name in self.fields:
+            if self.initialized:
+                self.refuse(f"{name} is a fixed parameter: it can be set until initialization ends")
+            self._spring = None
+        self.values[name] = value
+        self._outputs = None
+
+    def output(self, name: str) -> float:
+        """An output at the present inputs."""
+        if self._outputs is None:
+            self._outputs = self.evaluate()
+        return self._outputs[name]
+
+    def evaluate(self) -> dict[str, float]:
+        """All outputs; refuses inputs that are not finite or out of range."""
+        inputs = {v.name: self.values[v.name] for v in self.model.inputs}
+        for v in self.model.inputs:
+            if not math.isfinite(inputs[v.name]) or inputs[v.name] < v.low:
+                low = f"[{v.low:g}" if v.low > -math.inf else "(-inf"
+                unit = "" if v.unit == "1" else f" {v.unit}"
+                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {low}, inf): {v.doc}")
+        outputs = {k: float(x) for k, x in self.model.evaluate(self.spring(), inputs).items()}
+        for key, message in self.model.limits(self.spring(), inputs).items():
+            if key not in self.warned:
+                self.warned.add(key)
+                self.log(message, Fmi2Status.warning, "logStatusWarning")
+        return outputs
+
+    def spring(self) -> Any:
+        """The tabulated joint of the present parameters."""
+        if self._spring is None:
+            parameters = {name: self.values[name] for name in self.start}
+            try:
+                self._spring = self.model.spring(build(self.model.parameters, parameters))
+            except ValueError as error:
+                self.refuse(str(error))
+        return self._spring
+
+    def refuse(self, message: str) -> None:
+        """Log an error and fail the call."""
+        self.log(message, Fmi2Status.error, "logStatusError")
+        raise ValueError(message)
+
+    def exit_initialization_mode(self) -> None:
+        """Check the parameters, tabulate the law, evaluate once."""
+        self.output(self.model.outputs[0].name)
+        self.initialized = True
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """Nothing evolves: the outputs follow the inputs. Refuses bad inputs."""
+        self.output(self.model.outputs[0].name)
+        return True
+
+    def _get_fmu_state(self) -> dict[str, Any]:
+        return {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
+
+    def _set_fmu_state(self, state: dict[str, Any]) -> None:
+        changed = any(self.values[name] != state["values"][name] for name in self.start)
+        self.values, self.initialized = dict(state["values"]), state["initialized"]
+        self.warned = set(state["warned"])
+        self._outputs = None
+        if changed:
+            self._spring = None
+
+    def to_xml(self, model_options: Any = None) -> Element:
+        """The model description with what pythonfmu leaves out: units, bounds, initial unknowns."""
+        root = super().to_xml(dict(model_options or {}))
+        epoch = environ.get("SOURCE_DATE_EPOCH")
+        stamp = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+        root.set("generationDateAndTime", stamp.strftime("%Y-%m-%dT%H:%M:%SZ"))
+        root.set("generationTool", f"jointfmu {__version__}")
+        root.insert(1, self._unit_definitions())
+        nodes = {node.get("name"): node for node in root.iter("ScalarVariable")}
+        listed: dict[str, Variable] = {v.name: v for v in (*self.model.inputs, *self.model.outputs)}
+        for name, node in nodes.items():
+            real = node.find("Real")
+            if real is None:
+                continue
+            if name in listed:
+                v = listed[name]
+                real.attrib.update(unit=v.unit, displayUnit=display_unit(v.unit), nominal=f"{v.nominal:g}")
+                if v.low > -math.inf:
+                    real.set("min", f"{v.low:g}")
+            else:
+                meta = self.fields[name].metadata
+                real.attrib.update(
+                    unit=meta["unit"], displayUnit=display_unit(meta["unit"], self.start[name])
+                )
+                _bounds(real, meta)
+        self._structure(root, {name: i for i, name in enumerate(nodes, start=1)})
+        return root
+
+    def _unit_definitions(self) -> Element:
+        definitions = Element("UnitDefinitions")
+        used = {v.unit for v in (*self.model.inputs, *self.model.outputs)}
+        used |= {f.metadata["unit"] for f in self.fields.values() if "unit" in f.metadata}
+        for name in sorted(used):
+            unit = SubElement(definitions, "Unit", name=name)
+            SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
+            for shown, factor in UNITS[name].display.items():
+                SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
+        return definitions
+
+    def _structure(self, root: Element, index: dict[str | None, int]) -> None:
+        structure = root.find("ModelStructure")
+        assert structure is not None
+        for child in list(structure):
+            structure.remove(child)
+        outputs, initial = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
+        parameters = [index[name] for name in self.fields]
+        for v in self.model.outputs:
+            inputs = sorted(index[name] for name in self.model.depends(v.name))
+            kinds = " ".join(["dependent"] * len(inputs))
+            SubElement(
+                outputs,
+                "Unknown",
+                index=str(index[v.name]),
+                dependencies=" ".join(map(str, inputs)),
+                dependenciesKind=kinds,
+            )
+            known = sorted(inputs + parameters)
+            SubElement(
+                initial,
+                "Unknown",
+                index=str(index[v.name]),
+                dependencies=" ".join(map(str, known)),
+                dependenciesKind=" ".join(["dependent"] * len(known)),
+            )
+
+
+def _bounds(real: Element, meta: Any) -> None:
+    """FMI bounds are closed; an open bound is narrowed to the next representable number."""
+    low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
+    if low > -math.inf:
+        real.set("min", repr(low if low == meta["ge"] else math.nextafter(low, math.inf)))
+    if high < math.inf:
+        real.set("max", repr(high if high == meta["le"] else math.nextafter(high, -math.inf)))

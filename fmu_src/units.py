@@ -1,0 +1,42 @@
+"""Units of all variables: SI base units, and the display unit that people read."""
+
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """Exponents of the SI base units, and display units as {name: factor}: display = value * factor."""
+
+    base: dict[str, int]
+    display: dict[str, float]
+
+
+_DEG = 57.29577951308232
+
+UNITS: dict[str, Unit] = {
+    "1": Unit({}, {"1": 1.0}),
+    "rad": Unit({"rad": 1}, {"deg": _DEG, "arcmin": 60.0 * _DEG}),
+    "rad/s": Unit({"rad": 1, "s": -1}, {"rev/min": 60.0 / 6.283185307179586}),
+    "m": Unit({"m": 1}, {"mm": 1e3, "um": 1e6}),
+    "m/s": Unit({"m": 1, "s": -1}, {"mm/s": 1e3}),
+    "m2": Unit({"m": 2}, {"mm2": 1e6, "um2": 1e12}),
+    "N": Unit({"kg": 1, "m": 1, "s": -2}, {"kN": 1e-3}),
+    "N.m": Unit({"kg": 1, "m": 2, "s": -2}, {"N.m": 1.0}),
+    "N.m/rad": Unit({"kg": 1, "m": 2, "s": -2, "rad": -1}, {"N.m/arcmin": 1.0 / (60.0 * _DEG)}),
+    "N.m.s/rad": Unit({"kg": 1, "m": 2, "s": -1, "rad": -1}, {"N.m.s/rad": 1.0}),
+    "N/m": Unit({"kg": 1, "s": -2}, {"N/um": 1e-6}),
+    "N.s/m": Unit({"kg": 1, "s": -1}, {"kN.s/m": 1e-3}),
+    "Pa": Unit({"kg": 1, "m": -1, "s": -2}, {"MPa": 1e-6, "GPa": 1e-9}),
+    "Pa/m": Unit({"kg": 1, "m": -2, "s": -2}, {"MPa/um": 1e-12}),
+    "Pa/m2": Unit({"kg": 1, "m": -3, "s": -2}, {"MPa/um2": 1e-18}),
+    "kg": Unit({"kg": 1}, {"kg": 1.0}),
+}
+
+
+def display_unit(unit: str, largest: float | None = None) -> str:
+    """The display unit of a variable: the first, or a finer or coarser one for its start value."""
+    names = list(UNITS[unit].display)
+    if largest and len(names) > 1:
+        first, second = (abs(largest) * UNITS[unit].display[n] for n in names[:2])
+        if first >= 1e4 > second or first < 0.1 < second:
+            return names[1]
+    return names[0]

@@ -1,0 +1,1 @@
+"""Default parameter sets and published numbers, as data."""
