@@ -193,12 +193,10 @@ def test_lower_bound_of_the_mean_pressure():
 def test_kogut_etsion_products():
     # errata: six and seven digits
     first, second = kogut_etsion.by_area(kogut_etsion.FIRST), kogut_etsion.by_area(kogut_etsion.SECOND)
-    assert pytest.approx(1.12816, abs=5e-6) == first.A
-    assert pytest.approx(1.49880, abs=5e-6) == second.A
-    assert pytest.approx(1.50815, abs=5e-6) == first.B
-    assert pytest.approx(1.79349, abs=5e-6) == second.B
-    assert pytest.approx(7.1197, abs=5e-5) == kogut_etsion.SECOND_AREA
-    assert pytest.approx(205.3827, abs=5e-5) == kogut_etsion.PLASTIC_AREA
+    coefficients = (first.A, second.A, first.B, second.B)
+    assert coefficients == pytest.approx((1.12816, 1.49880, 1.50815, 1.79349), abs=5e-6)
+    ends = (kogut_etsion.SECOND_AREA, kogut_etsion.PLASTIC_AREA)
+    assert ends == pytest.approx((7.1197, 205.3827), abs=5e-5)
     # the exponents of Eqs. 13, 14, 31, 32
     assert (first.p, second.p) == pytest.approx((1.2544, 1.1021), abs=5e-5)
     assert (first.q, second.q) == pytest.approx((0.3741, 0.2295), abs=5e-5)

@@ -5,7 +5,7 @@ from dataclasses import fields, is_dataclass, replace
 import casadi
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from laws import HU, LAWS, RANDOM, YU, ZHAO, changed, decades
 
@@ -14,6 +14,7 @@ from jointfmu.interface import (
     at_pressure,
     largest_spot,
     log_area,
+    newton_step,
     stiffness_curve,
 )
 from jointfmu.quantity import flat_fields, flatten
@@ -37,6 +38,30 @@ def test_inversion_residual(kind, data):
     law = data.draw(RANDOM[kind])
     pressure = np.exp(data.draw(st.lists(log_pressures, min_size=1, max_size=20)))
     assert load(law, pressure) == pytest.approx(pressure * law.A_0, rel=RESIDUAL)
+
+
+@each_kind
+@given(data=st.data(), v=st.floats(-30.0, 30.0))
+def test_newton_step(kind, data, v):
+    """The step is the residual over d ln F/dv, which lies within the bracket the safeguard assumes."""
+    spots = data.draw(RANDOM[kind]).spots()
+
+    def log_load(v):
+        return spots.log_total("load", log_area(spots, v)[0])[0]
+
+    h = 1e-4
+    ends = {end for term in spots.terms["load"] for end in (term.lower, term.upper)} - {None}
+    assume(all(abs(log_area(spots, v)[0] - end) > 2 * h or (end == 0.0 and spots.cutoff) for end in ends))
+    slope = (log_load(v + h) - log_load(v - h)) / (2 * h)
+    assert 0.5 * spots.m < slope < 2.5
+    aim = log_load(v) + 1e-3
+    step, lower, upper, residual = newton_step(spots, v, aim)
+    assert residual == pytest.approx(1e-3, rel=1e-9)  # a difference of logarithms of order 100
+    assert lower < step < upper
+    # truncation h^2/6 of the third derivative and round-off 100 eps/h
+    assert step == pytest.approx(1e-3 / slope, rel=1e-6)
+    # whatever the law, the root lies between the two ends of the bracket
+    assert log_load(v + lower) <= aim <= log_load(v + upper)
 
 
 @each_law
@@ -168,6 +193,17 @@ def test_impossible_pressures_are_refused(law, pressure, text):
 def test_impossible_spots_are_refused(law, area):
     with pytest.raises(ValueError, match=rf"largest spot = {area:g} m2 is outside \("):
         at_largest_spot(law, area)
+
+
+@pytest.mark.parametrize(
+    ("law", "values"),
+    [(ZHAO, {"surface.D": 1.001}), (YU, {"surface1.D": 1.001, "surface2.D": 1.001})],
+    ids=["zhao", "yu"],
+)
+def test_dimensions_without_a_representable_area_are_refused(law, values):
+    # the critical area ~ G^2 (E/H)^(2/(D - 1)) is some 1e1000 m2
+    with pytest.raises(ValueError, match=r"^D, G and the material give a critical spot area of [^\n]*$"):
+        largest_spot(changed(law, values), 1e6)
 
 
 def test_spots_below_the_smallest_are_refused():

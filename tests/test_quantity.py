@@ -93,7 +93,7 @@ def test_integers_become_floats():
         (
             "lambda",
             np.complex128(1j),
-            f"lambda = {np.complex128(1j)!r} is not a real number in m: some length",
+            "lambda = np.complex128(1j) is not a real number in m: some length",
         ),
         ("inner.share", "half", "inner.share = 'half' is not a number: some share"),
         ("inner.share", False, "inner.share = False is not a number: some share"),
@@ -102,17 +102,16 @@ def test_integers_become_floats():
         ("mode", 1.0, "mode = 1.0 is not one of slow, fast"),
         ("rigid", "true", "rigid = 'true' is not one of true, false"),
         ("rigid", 1, "rigid = 1 is not one of true, false"),
-        ("wrong", 1.0, "unknown name 'wrong'; allowed are inner.stress, inner.share, lambda, mode, rigid"),
-        (
-            "lambda_",
-            1.0,
-            "unknown name 'lambda_'; allowed are inner.stress, inner.share, lambda, mode, rigid",
-        ),
-        ("inner", 1.0, "unknown name 'inner'; allowed are inner.stress, inner.share, lambda, mode, rigid"),
     ],
 )
 def test_refusals(name, value, text):
     assert refusal(VALUES | {name: value}) == text
+
+
+@pytest.mark.parametrize("name", ["wrong", "lambda_", "inner"])
+def test_unknown_names(name):
+    allowed = "allowed are inner.stress, inner.share, lambda, mode, rigid"
+    assert refusal(VALUES | {name: 1.0}) == f"unknown name {name!r}; {allowed}"
 
 
 def test_missing_names():
@@ -134,14 +133,9 @@ def test_closed_ends_are_allowed(edge):
 def test_arrays_are_checked_everywhere():
     good = np.array([0.0, 0.5])
     assert build(Outer, VALUES | {"inner.share": good}).inner.share is good
-    assert (
-        refusal(VALUES | {"inner.share": np.array([0.0, 0.5, 1.25])})
-        == "inner.share = 1.25 is outside [0, 1): some share"
-    )
-    assert (
-        refusal(VALUES | {"inner.share": np.array([0.5, np.nan])})
-        == "inner.share = nan is outside [0, 1): some share"
-    )
+    for bad in (1.25, np.nan):
+        values = VALUES | {"inner.share": np.array([0.0, bad, 0.5])}
+        assert refusal(values) == f"inner.share = {bad:g} is outside [0, 1): some share"
     assert build(Outer, VALUES | {"lambda": np.float32(0.5)}).lambda_ == 0.5
 
 
@@ -176,8 +170,8 @@ def test_construction_checks_as_well():
         (
             ZHAO,
             "critical_area",
-            "plastic",
-            "critical_area = 'plastic' is not one of continuity, printed, yield",
+            "x",
+            "critical_area = 'x' is not one of continuity, printed, yield",
         ),
         (ZHAO, "spot_stiffness", "x", "spot_stiffness = 'x' is not one of family, hertz"),
         (ZHAO, "A_0", -1.0, "A_0 = -1 m2 is outside (0, inf)"),

@@ -78,11 +78,11 @@ def test_hu_fit_is_wrong_with_a_profile_dimension():
 
 @given(e=st.floats(0.0, 1.0 - 1e-7))
 def test_complete_elliptic(e):
-    K, E = complete_elliptic(e)
+    first, second = complete_elliptic(e)
     complement = (1 - e) * (1 + e)
     # scipy's ellipkm1 keeps 1 - e^2; the mean and the sum of squares are right to some ulp
-    assert pytest.approx(ellipkm1(complement), rel=32 * EPS) == K
-    assert pytest.approx(ellipe(1 - complement), rel=32 * EPS) == E
+    assert first == pytest.approx(ellipkm1(complement), rel=32 * EPS)
+    assert second == pytest.approx(ellipe(1 - complement), rel=32 * EPS)
 
 
 def test_complete_elliptic_is_a_circle_at_zero():
@@ -93,18 +93,19 @@ def test_complete_elliptic_is_a_circle_at_zero():
 def test_legendre_relation(e):
     K, E = complete_elliptic(e)
     K1, E1 = complete_elliptic(math.sqrt(1 - e**2))
-    # E K1 + E1 K - K K1 = pi/2; terms up to 10 times pi/2, and 1 - e^2 is formed twice
-    assert pytest.approx(math.pi / 2, rel=1e-12) == E * K1 + E1 * K - K * K1
+    area = E * K1 + E1 * K - K * K1
+    # terms up to 10 times pi/2, and 1 - e^2 is formed twice
+    assert area == pytest.approx(math.pi / 2, rel=1e-12)
 
 
 @pytest.mark.parametrize("distance", [1e-8, 1e-10, 1e-12])
 def test_complete_elliptic_near_a_line(distance):
     e = 1 - distance
-    K, E = complete_elliptic(e)
+    first, second = complete_elliptic(e)
     complement = (1 - e) * (1 + e)
     # the documented range: round-off for e <= 1 - 1e-12
-    assert pytest.approx(ellipkm1(complement), rel=32 * EPS) == K
-    assert pytest.approx(ellipe(1 - complement), rel=32 * EPS) == E
+    assert first == pytest.approx(ellipkm1(complement), rel=32 * EPS)
+    assert second == pytest.approx(ellipe(1 - complement), rel=32 * EPS)
 
 
 nus, Es = st.floats(0.0, 0.5), st.floats(1e9, 1e12)

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .interface import Law, largest_spot
+from .interface import Law, checked_spots, largest_spot
 
 Array = NDArray[np.float64]
 
@@ -164,7 +164,7 @@ def approach_curve(law: Law, nodes_per_unit: int = 12) -> Curve:
     ------
     ValueError : at every pressure up to the hardness all spots are plastic (no stiffness)
     """
-    spots, area = law.spots(), law.A_0
+    spots, area = checked_spots(law), law.A_0
     first = float(spots.stiff_onset + np.log(CLOSING_RATIO))
     last = float(largest_spot(law, law.hardness))
     if not last > first + 1.0:

@@ -12,7 +12,9 @@ Array = NDArray[np.float64]
 
 TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
-_STEEPEST, _BLOCK, _MAX_STEPS = 2.5, 16384, 200
+RATIOS = ("eta_n", "eta_t", "elastic_fraction")
+"""Quantities that are no sums over the area."""
+_STEEPEST, _BLOCK, _MAX_STEPS, _SMALLEST = 2.5, 16384, 200, -300.0
 
 
 class Law(Protocol):
@@ -79,22 +81,24 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
     bad = ~(np.isfinite(p) & (p >= 0.0))
     if np.any(bad):
         raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
-    spots = representable(law.spots())
+    spots = checked_spots(law)
     load = p * law.A_0
-    shape = np.broadcast_shapes(load.shape, *(np.shape(x) for x in (spots.m, spots.weight, spots.reference)))
-    if load.shape == shape and load.size > _BLOCK and np.size(spots.reference) == 1:
+    parameters = np.shape(spots.log_total("load", 1.0)[0])
+    shape = np.broadcast_shapes(load.shape, parameters)
+    if load.size > _BLOCK and parameters == ():
         flat = load.ravel()
         parts = [_solve(spots, flat[i : i + _BLOCK]) for i in range(0, flat.size, _BLOCK)]
         return np.concatenate(parts).reshape(shape)
     return _solve(spots, np.broadcast_to(load, shape))
 
 
-def representable(spots: Spots) -> Spots:
-    """The spots, unless their reference area or load over- or underflows (D close to 1).
+def checked_spots(law: Law) -> Spots:
+    """The law's spots, unless their reference area or load over- or underflows (D close to 1).
 
     Raises ValueError.
     """
     with np.errstate(all="ignore"):
+        spots = law.spots()
         value, slope = spots.log_total("load", np.asarray(1.0))
     if not np.all(np.isfinite(value) & np.isfinite(slope) & (spots.reference > 0.0)):
         raise ValueError(
@@ -125,9 +129,16 @@ def _solve(spots: Spots, load: Array) -> Array:
 
 
 def evaluate(law: Law, u: Number) -> dict[str, Number]:
-    """All quantities of the whole area A_0 at the log-area u, with the spot and the pressure."""
-    state = law.state(u)
-    return {"largest_spot": law.spots().reference * np.exp(u), "pressure": state["F"] / law.A_0, **state}
+    """All quantities of the whole area A_0 at the log-area u, with the spot and the pressure.
+
+    Without load (u minus infinity) sums are zero and ratios have their limit.
+    """
+    empty = np.isneginf(u)
+    state = law.state(np.where(empty, _SMALLEST, u))
+    zero = np.where(empty, 0.0, 1.0)
+    state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
+    spot = law.spots().reference * np.exp(u)
+    return {"largest_spot": spot, "pressure": state["F"] / law.A_0, **state}
 
 
 def at_pressure(law: Law, pressure: ArrayLike) -> dict[str, Number]:
@@ -141,7 +152,7 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     The area is the paper's: truncated for Zhao 2018, real for Hu 2023 and Yu 2022.
     """
     a = np.asarray(area, dtype=np.float64)
-    spots = representable(law.spots())
+    spots = checked_spots(law)
     smallest = spots.reference if spots.cutoff else 0.0
     bad = ~(np.isfinite(a) & (a > smallest))
     if np.any(bad):

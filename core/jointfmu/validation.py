@@ -58,3 +58,41 @@ def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[Row]:
 def missed(rows: list[Row]) -> list[Row]:
     """Rows with the role validation that miss."""
     return [row for row in rows if row.point.role == "validation" and not row.passed]
+
+
+def table(rows: list[Row]) -> str:
+    """The comparison as text."""
+    head = ("paper", "point", "unit", "published", "computed", "error", "tolerance", "role", "verdict")
+    lines = [head, *(_cells(row) for row in rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    p = row.point
+    if isinstance(p.value, bool):
+        shown = (str(p.value).lower(), str(row.computed).lower(), "-", "-")
+    else:
+        unit = f" {p.unit}" if p.absolute else ""
+        scale, mark = (1.0, unit) if p.absolute else (100.0, " %")
+        shown = (
+            f"{p.value:.6g}",
+            f"{row.computed:.6g}",
+            f"{scale * row.error:+.3g}{mark}",
+            f"{scale * p.tolerance:.3g}{mark}",
+        )
+    return (p.paper, p.id, p.unit, *shown, p.role, "pass" if row.passed else "MISS")
+
+
+def summary(rows: list[Row]) -> str:
+    """One line: how many points were fitted, predicted, missed."""
+    fitted = [row for row in rows if row.point.role == "calibration"]
+    predicted = [row for row in rows if row.point.role == "validation"]
+    names = ", ".join(row.point.id for row in missed(rows)) or "none"
+    return (
+        f"{len(rows)} published points: {len(fitted)} calibrate ({sum(r.passed for r in fitted)} met), "
+        f"{len(predicted)} validate ({sum(r.passed for r in predicted)} met); missed: {names}"
+    )

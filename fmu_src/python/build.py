@@ -20,7 +20,12 @@ _PRIVATE = "PRIVATE_PACKAGE"
 """Stands for the name that the digest of all sources gives."""
 _ENTRY = '''"""Entry point of {name} for pythonfmu; the code is in the package beside it."""
 
+import ctypes
 import sys
+
+# pythonfmu 0.7 runs this file once per instance and gives back one reference to its globals too many
+# each time: without this one the second instance would find them freed.
+ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
 
 try:
     import numpy  # noqa: F401

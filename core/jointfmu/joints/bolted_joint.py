@@ -107,8 +107,8 @@ class BoltedJointSpring:
         C_n, C_t = eta_n * np.sqrt(self.joint.mass * K_n), eta_t * np.sqrt(self.joint.mass * K_t)
         K_rx, K_ry, K_rz = self.rotational(p, k, rho)
         return {
-            "f_x": -K_t * x - C_t * v_rel[0],
-            "f_y": -K_t * y - C_t * v_rel[1],
+            "f_x": 0.0 - K_t * x - C_t * v_rel[0],
+            "f_y": 0.0 - K_t * y - C_t * v_rel[1],
             "f_z": elastic_z - C_n * v_rel[2],
             "K_xx": K_t,
             "K_yy": K_t,

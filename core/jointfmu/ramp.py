@@ -1,0 +1,186 @@
+"""Load ramps: any of the FMUs driven through fmpy from zero, every output read at every point."""
+
+import csv
+import io
+import shutil
+import sys
+import zipfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .progress import track
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """Result of a ramp: `columns` (n) by name, the driven input first; messages the FMU logged."""
+
+    columns: dict[str, Array]
+    units: dict[str, str]
+    messages: tuple[str, ...]
+
+    def csv(self) -> str:
+        """The ramp as CSV text, header `name [unit]`, numbers exact."""
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(f"{name} [{self.units[name]}]" for name in self.columns)
+        for row in zip(*self.columns.values(), strict=True):
+            writer.writerow(repr(float(value)) for value in row)
+        return text.getvalue()
+
+
+def steps(to: float, step: float) -> Array:
+    """Points 0, step, 2 step ... to; the last step may be shorter.
+
+    Raises ValueError if a value is not finite, the step is zero, or it leads away from `to`.
+    """
+    for name, value in (("to", to), ("step", step)):
+        if not np.isfinite(value):
+            raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
+    if step == 0.0 or to / step < 0.0:
+        allowed = "(-inf, 0)" if to < 0.0 else "(0, inf)"
+        raise ValueError(f"step = {step:g} is outside {allowed}: it must lead from 0 to {to:g}")
+    count = to / step
+    if count > 1e7:
+        raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
+    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * step
+    reached = bool(np.isclose(whole[-1], to, rtol=1e-12, atol=0.0))
+    return np.asarray(whole if reached else np.append(whole, to), dtype=np.float64)
+
+
+def run(
+    fmu: str | Path,
+    input_name: str,
+    to: float,
+    step: float,
+    settings: Mapping[str, Any] | None = None,
+) -> Ramp:
+    """Drive one input from zero along a ramp, one step of one second each; all else stays.
+
+    Parameters
+    ----------
+    fmu        : path of an FMI 2.0 co-simulation FMU
+    input_name : the input that is driven
+    to, step   : [unit of the input] end and step of the ramp
+    settings   : start values of parameters and other inputs
+
+    Raises
+    ------
+    ValueError   : the path is no FMU, a name is unknown, a value is impossible, or the FMU refuses a
+        value (the message is the FMU's own)
+    RuntimeError : the FMU does not instantiate
+    """
+    points = steps(to, step)
+    with unpacked(fmu) as (folder, description):
+        return _drive(folder, description, input_name, points, dict(settings or {}), str(fmu))
+
+
+@contextmanager
+def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
+    """Folder and fmpy model description of an FMU, removed afterwards.
+
+    Raises ValueError if there is no such file or it is no FMU.
+    """
+    from fmpy import extract, read_model_description
+
+    path = Path(fmu)
+    if not path.is_file():
+        raise ValueError(f"{path}: there is no such file; expected an FMU")
+    try:
+        description = read_model_description(str(path), validate=False)
+        folder = extract(str(path))
+    except (zipfile.BadZipFile, KeyError, OSError) as error:
+        raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
+    except Exception as error:  # fmpy raises bare Exception for a broken description
+        raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
+    before = list(sys.path)
+    try:
+        yield folder, description
+    finally:
+        sys.path[:] = before
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _drive(
+    folder: str, md: Any, input_name: str, points: Array, settings: dict[str, Any], source: str
+) -> Ramp:
+    variables = {v.name: v for v in md.modelVariables}
+    inputs = [v.name for v in md.modelVariables if v.causality == "input"]
+    outputs = [v for v in md.modelVariables if v.causality == "output"]
+    if input_name not in inputs:
+        raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
+    settable = [v.name for v in md.modelVariables if v.causality in ("input", "parameter")]
+    for name, value in settings.items():
+        if name not in settable:
+            raise ValueError(f"{source}: unknown name {name!r}, allowed are {', '.join(settable)}")
+        kind = bool if variables[name].type == "Boolean" else float
+        if not isinstance(value, kind):
+            expected = "true or false" if kind is bool else "a number"
+            raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
+    messages: list[str] = []
+    rows: list[list[float]] = []
+    with slave(folder, md, messages) as fmu:
+        try:
+            fmu.setupExperiment(startTime=0.0)
+            fmu.enterInitializationMode()
+            for name, value in settings.items():
+                set_value(fmu, variables[name], value)
+            fmu.setReal([variables[input_name].valueReference], [points[0]])
+            fmu.exitInitializationMode()
+            references = [v.valueReference for v in outputs]
+            for i, value in enumerate(track(points, Path(source).stem, len(points))):
+                fmu.setReal([variables[input_name].valueReference], [float(value)])
+                if i:
+                    fmu.doStep(currentCommunicationPoint=float(i - 1), communicationStepSize=1.0)
+                rows.append(fmu.getReal(references))
+        except Exception as error:
+            raise ValueError(f"{source}: {messages[0] if messages else error}") from None
+    table = np.asarray(rows).reshape(len(points), len(outputs))
+    columns = {input_name: points} | {v.name: table[:, i] for i, v in enumerate(outputs)}
+    units = {name: variables[name].unit or "1" for name in columns}
+    return Ramp(columns, units, tuple(messages))
+
+
+def set_value(fmu: Any, variable: Any, value: Any) -> None:
+    """Set a Real or Boolean start value."""
+    setter = fmu.setBoolean if variable.type == "Boolean" else fmu.setReal
+    setter([variable.valueReference], [value])
+
+
+@contextmanager
+def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
+    """An instantiated FMI 2.0 co-simulation slave; what it logs is appended to `messages`.
+
+    Raises RuntimeError with the logged reason if it does not instantiate.
+    """
+    from fmpy import calloc, fmi2, free
+
+    callbacks = fmi2.fmi2CallbackFunctions()
+    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+        lambda env, instance, status, category, message: messages.append(message.decode("utf-8", "replace"))
+    )
+    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
+    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
+    fmu = fmi2.FMU2Slave(
+        guid=md.guid,
+        unzipDirectory=folder,
+        modelIdentifier=md.coSimulation.modelIdentifier,
+        instanceName="ramp",
+    )
+    try:
+        with redirect_stdout(io.StringIO()):
+            fmu.instantiate(callbacks=callbacks, loggingOn=True)
+    except Exception as error:
+        raise RuntimeError(f"{md.modelName}: {messages[-1] if messages else error}") from None
+    try:
+        yield fmu
+    finally:
+        fmu.freeInstance()

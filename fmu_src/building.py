@@ -1,0 +1,38 @@
+"""`jointfmu build`: names and flavours to FMU files."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.progress import track
+
+from .python.build import build as build_python
+from .variables import MODELS
+
+FLAVOURS: dict[str, Callable[[str, ParameterFile, Path], Path]] = {"python": build_python}
+
+
+def build(
+    names: Sequence[str], flavours: Sequence[str], parameters: ParameterFile | None, out: Path
+) -> list[Path]:
+    """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
+
+    Raises ValueError for an unknown name or flavour, a parameter file of another joint, or a folder
+    that cannot be written, before anything is built where that can be known.
+    """
+    for kind, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
+        if unknown := [name for name in given if name not in allowed]:
+            raise ValueError(f"unknown {kind} {unknown[0]!r}, allowed are {', '.join(allowed)}")
+    if not names:
+        joint = parameters.joint if parameters else None
+        names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
+    for name in names:
+        if parameters and parameters.joint != MODELS[name].joint:
+            raise ValueError(
+                f"{name}: the parameter file is of a {parameters.joint!r}, expected a {MODELS[name].joint!r}"
+            )
+    jobs = [(flavour, name) for flavour in flavours for name in names]
+    built = []
+    for flavour, name in track(jobs, "build", len(jobs)):
+        built.append(FLAVOURS[flavour](name, parameters or default(MODELS[name].joint), out / flavour))
+    return built

@@ -1,0 +1,90 @@
+"""The main job: build every FMU, validate it, run the ramps, compare, write the report."""
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fmpy.validation import validate_fmu
+
+from jointfmu import ramp, validation
+from jointfmu.parameters import write_text
+from jointfmu.progress import track
+
+from .building import build
+from .checks import Check, check, default_ramp, published_through_fmus
+from .report import write_report
+from .variables import MODELS
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What was built and found."""
+
+    built: list[Path] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+    ramps: dict[str, ramp.Ramp] = field(default_factory=dict)
+    checks: list[Check] = field(default_factory=list)
+    rows: list[validation.Row] = field(default_factory=list)
+    fmu_rows: list[validation.Row] = field(default_factory=list)
+
+    @property
+    def misses(self) -> list[str]:
+        """One line for everything that failed."""
+        lines = list(self.problems)
+        lines += [
+            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.allowed:.0e}"
+            for c in self.checks
+            if not c.passed
+        ]
+        for source, rows in (("package", self.rows), ("FMU", self.fmu_rows)):
+            lines += [
+                f"{r.point.paper}: {r.point.id} by the {source}: published {r.point.value}, "
+                f"computed {r.computed:.6g}"
+                for r in rows
+                if not r.passed
+            ]
+        return lines
+
+
+def run(out: Path) -> Outcome:
+    """Build into `out/python`, check, and write `out/report/index.html` with the ramps as CSV."""
+    outcome = Outcome()
+    outcome.built = build([], ["python"], None, out)
+    folder = out / "python"
+    for name in track(MODELS, "validate and ramp", len(MODELS)):
+        path = folder / f"{name}.fmu"
+        outcome.problems += [f"{name}: {problem}" for problem in validate_fmu(str(path))]
+        result = default_ramp(name, folder)
+        outcome.ramps[name] = result
+        outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
+        write_text(out / "report" / f"{name}.csv", result.csv())
+        outcome.checks += check(name, folder, result)
+    for step in track(("package", "FMUs", "report"), "compare and report", 3):
+        if step == "package":
+            outcome.rows = validation.validate()
+        elif step == "FMUs":
+            outcome.fmu_rows = published_through_fmus(folder)
+        else:
+            write_report(out / "report" / "index.html", outcome)
+    return outcome
+
+
+def main(out: Path) -> int:
+    """Run the main job; the last lines say what was built, compared and missed."""
+    try:
+        outcome = run(out)
+    except ValueError as error:
+        print(f"build_fmus.py: {error}", file=sys.stderr)
+        return 2
+    misses = outcome.misses
+    print(f"built: {len(outcome.built)} FMUs in {out / 'python'}: {', '.join(p.stem for p in outcome.built)}")
+    print(f"validated with fmpy: {len(outcome.built)}; ramps run: {len(outcome.ramps)}")
+    print(
+        f"compared: {validation.summary(outcome.rows)}; "
+        f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
+    )
+    print(f"report: {out / 'report' / 'index.html'}")
+    print(f"missed: {len(misses)}")
+    for line in misses:
+        print(f"  {line}")
+    return int(bool(misses))

@@ -1,0 +1,70 @@
+"""The page: figures, the table of published against computed, the checks."""
+
+import platform
+from datetime import UTC, datetime
+from os import environ
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from jointfmu import __version__
+from jointfmu.parameters import write_text
+
+from . import figures
+
+
+def write_report(path: Path, outcome: Any) -> None:
+    """Write the self-contained page of an outcome of the main job."""
+    epoch = environ.get("SOURCE_DATE_EPOCH")
+    when = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    ramps = outcome.ramps
+    page = environment.get_template("page.html").render(
+        version=__version__,
+        python=platform.python_version(),
+        when=when.strftime("%Y-%m-%d %H:%M UTC"),
+        outcome=outcome,
+        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
+        figures=[
+            (
+                "Harmonic drive: stiffness over torque",
+                "Left: K_WTS and its parts on the drive's scale, as the FMU gives them. Right: the contact "
+                "pair on the scale of the paper's figures. Open circles were used to calibrate.",
+                figures.harmonic_stiffness(ramps["HarmonicDriveCompliance"], outcome.rows),
+                "HarmonicDriveCompliance.csv",
+            ),
+            (
+                "Harmonic drive: torque over wind-up",
+                "The integral of dT/K_WTS, odd in the torque.",
+                figures.torque_angle(ramps["HarmonicDriveCompliance"]),
+                "HarmonicDriveCompliance.csv",
+            ),
+            (
+                "Bolted joint: stiffness and damping over preload",
+                "Normal (zz) and tangential (xx) direction; the damping is the viscous equivalent.",
+                figures.bolted_stiffness(ramps["BoltedJoint"]),
+                "BoltedJoint.csv",
+            ),
+            (
+                "Bolted joint: contact pressure",
+                "White: bolts. Left the preload of the published pressures, right the moment that shifts "
+                "the bolt forces of the two rows by 5 kN.",
+                figures.pressure_map(9e3),
+                None,
+            ),
+            (
+                "Gear contact: stiffness and approach over load",
+                "Up to about a tenth of the nominal area in real contact.",
+                figures.gear_stiffness(ramps["GearContact"]),
+                "GearContact.csv",
+            ),
+        ],
+    )
+    write_text(path, page)
