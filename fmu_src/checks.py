@@ -129,6 +129,8 @@ def _through_fmu(point: Point, folder: Path) -> float | None:
         return 100.0 * (changed / drive("K_TS_pair") - 1.0)
     if point.quantity == "K_WTS":
         return drive("K_WTS")
+    if point.quantity == "peak_pressure":
+        return drive("p_max")
     if point.quantity == "p_max":
         fmu, load = folder / "BoltedJoint.fmu", where["preload"]
         return float(ramp.run(fmu, "preload", load, load).columns["p_max"][-1])

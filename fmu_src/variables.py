@@ -76,11 +76,12 @@ class Model:
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 
-_STIFFNESS = (
+_CONTACT = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi at the present torque", 5e3),
     Variable("K_TS", "N.m/rad", "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "its part of circular spline and flexspline", 2e4),
     Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale: the scale of Hu 2023, Fig. 11", 1e3),
+    Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
 )
 
 
@@ -169,7 +170,7 @@ MODELS: dict[str, Model] = {
                 Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
                 Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio", 1e-3),
                 Variable("tau", "N.m", "T(phi_rel) + d der(phi_rel)", 5.0),
-                *_STIFFNESS,
+                *_CONTACT,
             ),
             evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
             limits=_spring_limits,
@@ -180,6 +181,7 @@ MODELS: dict[str, Model] = {
                 "K_TS": _MOTION,
                 "K_FTS": (),
                 "K_TS_pair": _MOTION,
+                "p_max": _MOTION,
             },
             hidden=_DRIVE_HIDDEN,
         ),
@@ -190,12 +192,12 @@ MODELS: dict[str, Model] = {
             parameters=HarmonicDrive,
             spring=HarmonicDriveSpring.of,
             inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
-            outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau)", 1e-3), *_STIFFNESS),
+            outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau)", 1e-3), *_CONTACT),
             evaluate=lambda s, v: s.windup(v["tau"]),
             limits=_compliance_limits,
             ramp=Ramp("tau", 5.0, 0.01),
             dependencies={"K_FTS": ()},
-            hidden=(*_DRIVE_HIDDEN, "d", "ratio"),
+            hidden=_DRIVE_HIDDEN,
         ),
         Model(
             name="BoltedJoint",

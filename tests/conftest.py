@@ -1,6 +1,141 @@
-"""Random cases are the same in every run, so a failure can be replayed."""
+"""Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
 from hypothesis import settings
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
 settings.load_profile("jointfmu")
+
+
+class Message(NamedTuple):
+    """One logged message; status 1 is a warning, 3 an error."""
+
+    status: int
+    text: str
+
+
+class Fmu:
+    """An instance of an FMU file in a host that keeps all messages; variables by name."""
+
+    def __init__(self, path: Path, name: str = "test", folder: str | None = None) -> None:
+        from fmpy import calloc, fmi2, free
+
+        unpacked, self.description = unpack(path, path.stat().st_mtime_ns)
+        self.variables = {v.name: v for v in self.description.modelVariables}
+        self.outputs = [v.name for v in self.description.modelVariables if v.causality == "output"]
+        self.messages: list[Message] = []
+        self.time = 0.0
+        self.callbacks = fmi2.fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+            lambda env, instance, status, category, text: self.messages.append(Message(status, text.decode()))
+        )
+        self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
+        self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
+        self.fmu = fmi2.FMU2Slave(
+            guid=self.description.guid,
+            unzipDirectory=folder or unpacked,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName=name,
+        )
+        before = list(sys.path)
+        try:
+            self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
+        finally:
+            sys.path[:] = before  # pythonfmu puts the resources of every FMU in front
+
+    def set(self, values: Mapping[str, Any]) -> None:
+        """Set parameters and inputs, one call each."""
+        for name, value in values.items():
+            setter = self.fmu.setBoolean if self.variables[name].type == "Boolean" else self.fmu.setReal
+            setter([self.variables[name].valueReference], [value])
+
+    def get(self, *names: str) -> dict[str, float]:
+        """Outputs (default: all), inputs or parameters, all in one call."""
+        names = names or tuple(self.outputs)
+        return dict(
+            zip(names, self.fmu.getReal([self.variables[n].valueReference for n in names]), strict=True)
+        )
+
+    def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
+        """Set start values in initialization mode and leave it."""
+        self.fmu.setupExperiment(startTime=0.0)
+        self.fmu.enterInitializationMode()
+        self.set(values or {})
+        self.fmu.exitInitializationMode()
+        self.time = 0.0
+        return self
+
+    def step(self) -> None:
+        """One step of one second."""
+        self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=1.0)
+        self.time += 1.0
+
+    def at(self, values: Mapping[str, float]) -> dict[str, float]:
+        """All outputs at inputs, without a step."""
+        self.set(values)
+        return self.get()
+
+    def reset(self) -> None:
+        """Back to the state after instantiation."""
+        self.fmu.reset()
+
+    def refused(self, call: Callable[..., Any], *args: Any) -> str:
+        """The one error that the call logs; fails if the call succeeds."""
+        from fmpy.fmi1 import FMICallException
+
+        seen = len(self.messages)
+        with pytest.raises(FMICallException) as raised:
+            call(*args)
+        assert raised.value.status in (3, 4)  # pythonfmu turns every exception into fatal
+        errors = [m.text for m in self.messages[seen:] if m.status == 3]
+        assert len(errors) == 1, self.messages[seen:]
+        assert "\n" not in errors[0]
+        return errors[0]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Texts of all warnings so far."""
+        return [m.text for m in self.messages if m.status == 1]
+
+    def free(self) -> None:
+        """Free the instance."""
+        self.fmu.freeInstance()
+
+
+@cache
+def unpack(path: Path, stamp: int) -> tuple[str, Any]:
+    """Folder and model description of an FMU file; `stamp` tells a rebuilt file from the old one."""
+    from fmpy import extract, read_model_description
+
+    folder = path.parent / f".{path.stem}-{stamp}"
+    return str(extract(str(path), str(folder))), read_model_description(str(path))
+
+
+@pytest.fixture(scope="session")
+def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with all FMUs of the default parameters."""
+    from jointfmu_fmus.building import build
+
+    out = tmp_path_factory.mktemp("fmus")
+    build([], ["python"], None, out)
+    return out / "python"
+
+
+@pytest.fixture
+def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
+    """Makes instances by name, from another folder if given, and frees them after the test."""
+    made: list[Fmu] = []
+
+    def instance(name: str, folder: Path | None = None, instance_name: str = "test") -> Fmu:
+        made.append(Fmu((folder or fmus) / f"{name}.fmu", instance_name))
+        return made[-1]
+
+    yield instance
+    for one in made:
+        one.free()

@@ -76,14 +76,16 @@ def _json_number(column: Any, i: int) -> float | None:
 
 
 def _build(args: argparse.Namespace) -> int:
+    file = load(args.params) if args.params else None
     try:
         from jointfmu_fmus import building
+
+        built = building.build(args.names, args.flavour, file, args.out)
     except ImportError as error:
         raise ValueError(
-            f"{error.name or error}: missing, needed to build; install it with: pip install 'jointfmu[build]'"
+            f"the package {error.name or error} is missing, needed to build; "
+            "install it with: pip install 'jointfmu[build]'"
         ) from None
-    file = load(args.params) if args.params else None
-    built = building.build(args.names, args.flavour, file, args.out)
     if args.json:
         print(json.dumps({"built": [str(path) for path in built]}))
     else:

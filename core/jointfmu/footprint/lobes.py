@@ -7,12 +7,19 @@ from .nodes import Footprint
 
 Array = NDArray[np.float64]
 
-_AROUND = np.polynomial.legendre.leggauss(32)
+_AROUND = np.polynomial.legendre.leggauss(12)
 _ALONG = np.polynomial.legendre.leggauss(6)
 
 
 def two_lobes(
-    peak: Array, *, mismatch: float, radius: float, deformation: float, length: float, cup: float
+    peak: Array,
+    breaks: Array,
+    *,
+    mismatch: float,
+    radius: float,
+    deformation: float,
+    length: float,
+    cup: float,
 ) -> Footprint:
     """One quarter of the contact at load cases (...), shares counted for the whole.
 
@@ -21,24 +28,27 @@ def two_lobes(
 
         p = peak (1 - z/cup) - mismatch sin^2(theta), where positive,
 
-    so each lobe widens as it grows. Nodes follow the lobe (sin theta = sin(edge) sin t), hence the
-    integral over the nodes is smooth in the peak; 32 x 6 Gauss-Legendre nodes.
+    so each lobe widens as it grows. Nodes follow the lobe (sin theta = sin(edge) sin t) and sit
+    between the pressures at which the interface law changes its regime, hence a sum over the nodes
+    is smooth in the peak: 12 Gauss-Legendre nodes per regime around, 6 along.
 
-    peak        : (...) [Pa] pressure on the major axis at the opening, >= 0
+    peak        : (...) [Pa] pressure on the major axis at the opening, > 0
+    breaks      : (k) [Pa] pressures at which the law changes its regime
     mismatch    : [Pa] pressure lost from the major to the minor axis
     radius      : [m]  mean radius; deformation: [m] radial deformation w
     length, cup : [m]  axial length of the contact and of the cup that tapers the deformation
     """
     z = 0.5 * length * (1.0 + _ALONG[0])
     axial = 0.5 * _ALONG[1]
-    t = 0.25 * np.pi * (1.0 + _AROUND[0])
     local = np.asarray(peak, dtype=np.float64)[..., None, None] * (1.0 - z / cup)[:, None]
-    edge = np.sqrt(np.minimum(local / mismatch, 1.0))
+    depth = np.minimum(local, mismatch)
+    edge = np.sqrt(depth / mismatch)
+    t, weight = _between(np.arcsin(_sine_at(breaks, local, depth)))
     sine = edge * np.sin(t)
     theta = np.arcsin(sine)
     stretch = edge * np.cos(t) / np.sqrt(1.0 - sine**2)  # d theta/d t
-    share = 4.0 * axial[:, None] * (0.25 * np.pi * _AROUND[1]) * stretch / (2.0 * np.pi)
-    pressure = local - mismatch * sine**2
+    share = 4.0 * axial[:, None] * weight * stretch / (2.0 * np.pi)
+    pressure = (local - depth) + depth * np.cos(t) ** 2
     height = np.broadcast_to(z[:, None], theta.shape)
     taper = deformation * (1.0 - height / cup)
     slope = np.arctan(deformation * np.cos(2.0 * theta) / cup)
@@ -50,6 +60,22 @@ def two_lobes(
         normal=normal.reshape(*shape, 3),
         pressure=pressure.reshape(shape),
     )
+
+
+def _sine_at(breaks: Array, local: Array, depth: Array) -> Array:
+    """sin t (..., k) where the pressure `local - depth sin^2 t` passes the breaks, within [0, 1]."""
+    falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
+    return np.sqrt(np.clip((local - falling) / depth, 0.0, 1.0))
+
+
+def _between(ends: Array) -> tuple[Array, Array]:
+    """Gauss-Legendre nodes and weights (..., n) on [0, pi/2], pieced together at ends (..., k)."""
+    first, last = np.zeros_like(ends[..., :1]), np.full_like(ends[..., :1], 0.5 * np.pi)
+    limits = np.concatenate([first, ends, last], axis=-1)
+    half = 0.5 * np.diff(limits)[..., None]
+    nodes = limits[..., :-1, None] + half * (1.0 + _AROUND[0])
+    shape = (*ends.shape[:-1], -1)
+    return nodes.reshape(shape), (half * _AROUND[1]).reshape(shape)
 
 
 def _ellipse(theta: Array, radius: float, w: Array, slope: Array, z: Array) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..asperity.hu2023 import Hu2023
-from ..curve import Curve, assemble
+from ..curve import Curve, assemble, refined
 from ..footprint.lobes import two_lobes
 from ..footprint.nodes import Footprint
 from ..interface import largest_spot
@@ -16,7 +16,8 @@ from ..surface import ArealSurface, Elastic, ElasticPlastic
 Array = NDArray[np.float64]
 
 _AXIS = (0.0, 0.0, 1.0)
-_STEPS = 320
+_STEPS = 160
+_GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,8 +119,11 @@ def peak_pressure(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array
 
 def footprint(drive: HarmonicDrive, torque: ArrayLike) -> Footprint:
     """Nodes of one quarter of the contact pair at torques (...) [N.m]; shares stand for the whole."""
+    law = drive.law
+    spots = law.spots()
     return two_lobes(
         peak_pressure(drive, torque)[0],
+        spots.total("load", np.array([u for u in spots.breaks if u > 0.0])) / law.A_0,
         mismatch=drive.mismatch_pressure,
         radius=drive.radius,
         deformation=drive.radial_deformation,
@@ -155,20 +159,24 @@ def drive_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Arr
     return total, (total / contact) ** 2 * drive.drive_scale * growth * np.sign(torque)
 
 
-def torque_curve(drive: HarmonicDrive, steps: int = _STEPS) -> Curve:
+def torque_curve(drive: HarmonicDrive) -> Curve:
     """Torque [N.m] over wind-up [rad] for phi >= 0 (the law is odd): the integral of dT/K_WTS.
 
-    Nodes are evenly spaced in asinh(T/T_s), dense where the stiffness bends. The wind-up is summed by
-    the trapezoidal rule with end-slope correction, exact to the fifth order.
+    Nodes are evenly spaced in asinh(T/T_s), dense where the stiffness bends; the wind-up is integrated
+    by four Gauss-Legendre nodes per step.
     """
+    return refined(lambda steps: _windup(drive, steps), _STEPS)
+
+
+def _windup(drive: HarmonicDrive, steps: int) -> Curve:
+    """The table with a number of steps."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
-    T, speed = smoothing * np.sinh(xi), smoothing * np.cosh(xi)
+    T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     K, growth = drive_stiffness(drive, T)
-    rate, bend = speed / K, T / K - speed**2 * growth / K**2
-    h = xi[1]
-    parts = 0.5 * h * (rate[:-1] + rate[1:]) + h**2 / 12.0 * (bend[:-1] - bend[1:])
-    phi = np.concatenate([[0.0], np.cumsum(parts)])
+    inner = xi[:-1, None] + half * (1.0 + _GAUSS[0])
+    rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
+    phi = np.concatenate([[0.0], np.cumsum(half * rate @ _GAUSS[1])])
     return assemble([(phi, T, K, K * growth)])
 
 
@@ -191,16 +199,26 @@ class HarmonicDriveSpring:
         speed = np.asarray(w2) - np.asarray(w1) / ratio
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         tau = np.copysign(load, phi) + self.drive.d * speed
-        return {"tau1": tau / ratio, "tau2": -tau, "phi_rel": phi, "tau": tau, **self.parts(stiffness)}
+        parts = self.parts(load, stiffness)
+        return {"tau1": tau / ratio, "tau2": -tau, "phi_rel": phi, "tau": tau, **parts}
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m] with the wave generator locked."""
         phi = self.curve.inverse(np.abs(tau))
-        stiffness = self.curve.derivatives(phi, 1)[1]
-        return {"phi_rel": np.copysign(phi, tau), **self.parts(stiffness)}
+        load, stiffness = self.curve.derivatives(phi, 1)
+        return {"phi_rel": np.copysign(phi, tau), **self.parts(load, stiffness)}
 
-    def parts(self, stiffness: Array) -> dict[str, Array]:
-        """K_WTS and its parts; K_TS_pair is K_TS on the scale of the paper's Fig. 11."""
+    def parts(self, load: Array, stiffness: Array) -> dict[str, Array]:
+        """K_WTS and its parts at an elastic torque, and the peak contact pressure.
+
+        K_TS_pair is K_TS on the scale of the paper's Fig. 11.
+        """
         K_FTS = np.full_like(stiffness, self.drive.K_FTS0)
         K_TS = 1.0 / (1.0 / stiffness - 1.0 / K_FTS)
-        return {"K_WTS": stiffness, "K_TS": K_TS, "K_FTS": K_FTS, "K_TS_pair": K_TS / self.drive.drive_scale}
+        return {
+            "K_WTS": stiffness,
+            "K_TS": K_TS,
+            "K_FTS": K_FTS,
+            "K_TS_pair": K_TS / self.drive.drive_scale,
+            "p_max": peak_pressure(self.drive, load)[0],
+        }
