@@ -1,9 +1,11 @@
 """From published calibration points to the unpublished parameters, by scipy's least squares.
 
 Each fit has as many points as unknowns, so every point is met exactly; the points' role says that
-they were used. Validation points are never read here.
+they were used. Validation points are never read here. `python -m jointfmu.calibration JOINT` prints
+the default parameter file with its calibrated values fitted anew.
 """
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from .observables import OBSERVABLES
-from .parameters import ParameterFile
+from .parameters import ParameterFile, default, dump
 from .reference import Point, points
 
 
@@ -104,3 +106,7 @@ def _residuals(at: Callable[[Any], ParameterFile], chosen: Sequence[Point]) -> C
         return [OBSERVABLES[p.quantity](values, **p.where) / p.value - 1.0 for p in chosen]
 
     return residuals
+
+
+if __name__ == "__main__":
+    print(dump(calibrate(default(sys.argv[1]))), end="")

@@ -15,7 +15,7 @@ from .interface import at_largest_spot
 from .joints.bolted_joint import BoltedJoint, pressures, row_forces
 from .joints.gear_contact import GearContact
 from .joints.harmonic_drive import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
-from .surface import domain_extension
+from .surface import domain_extension, hardness_coefficient
 
 Array = NDArray[np.float64]
 
@@ -55,6 +55,26 @@ def kogut_etsion_product(drive: HarmonicDrive, product: str, stage: int) -> floa
         return float((kogut_etsion.SECOND_AREA, kogut_etsion.PLASTIC_AREA)[stage - 1])
     powers = kogut_etsion.by_area((kogut_etsion.FIRST, kogut_etsion.SECOND)[stage - 1])
     return powers.A if product == "load" else powers.B
+
+
+def plastic_onset_pressure(drive: HarmonicDrive, nu: float) -> float:
+    """Mean pressure over hardness [1] of a spot of Kogut and Etsion at the onset of full plasticity."""
+    stage, w = kogut_etsion.SECOND, kogut_etsion.PLASTIC_ONSET
+    load_per_area = stage.c * w**stage.d / (stage.m * w**stage.n)
+    return float(2.0 / 3.0 * hardness_coefficient(nu) * load_per_area)
+
+
+def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
+    """t/(mu f) [1] of a spot at the end of a stage if its area carries tau_b = sigma_s/sqrt(3)."""
+    law = drive.law
+    first, second = (kogut_etsion.by_area(s) for s in (kogut_etsion.FIRST, kogut_etsion.SECOND))
+    load, area = {
+        "elastic": (1.0, 1.0),
+        "first": (first.A * kogut_etsion.SECOND_AREA**first.p, kogut_etsion.SECOND_AREA),
+        "second": (second.A * kogut_etsion.PLASTIC_AREA**second.p, kogut_etsion.PLASTIC_AREA),
+    }[stage]
+    pressure = 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * load / area
+    return float(law.sigma_y / np.sqrt(3.0) / (law.mu * pressure))
 
 
 def least_mean_pressure(drive: HarmonicDrive) -> float:
@@ -180,6 +200,8 @@ OBSERVABLES: dict[str, Callable[..., float | bool]] = {
     "K_WTS": K_WTS,
     "peak_pressure": drive_peak_pressure,
     "kogut_etsion": kogut_etsion_product,
+    "plastic_onset_pressure": plastic_onset_pressure,
+    "shear_over_friction": shear_over_friction,
     "least_mean_pressure": least_mean_pressure,
     "p_max": p_max,
     "p_between": p_between,

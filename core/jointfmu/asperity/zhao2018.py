@@ -1,4 +1,4 @@
-"""Zhao et al. 2018 (doi:10.5545/sv-jme.2017.5012): elastic and plastic spots, stiffness and damping.
+"""Zhao et al. 2018: elastic and plastic spots, stiffness and damping.
 
 Areas are truncated areas a' = 2a, as in the paper. Equation numbers are the paper's; where the
 print is wrong the corrected form is implemented (docs/errata.md).
