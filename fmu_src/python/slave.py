@@ -21,7 +21,7 @@ from jointfmu.parameters import load
 from jointfmu.quantity import build, flatten
 
 
-class JointSlave(Fmi2Slave):
+class JointSlave(Fmi2Slave):  # type: ignore[misc]
     """Variables, checks, messages and state of one FMU around one call into the package.
 
     Complete state is `values` (parameters and inputs), `initialized` and `warned`; all else is
@@ -184,7 +184,7 @@ class JointSlave(Fmi2Slave):
 
     def to_xml(self, model_options: Any = None) -> Element:
         """The model description with what pythonfmu leaves out: units, bounds, initial unknowns."""
-        root = super().to_xml(dict(model_options or {}))
+        root: Element = super().to_xml(dict(model_options or {}))
         epoch = environ.get("SOURCE_DATE_EPOCH")
         stamp = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
         root.set("generationDateAndTime", stamp.strftime("%Y-%m-%dT%H:%M:%SZ"))

@@ -2,11 +2,11 @@
 
 import io
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from jointfmu.joints.bolted_joint import BoltedJointSpring
@@ -15,7 +15,7 @@ from jointfmu.ramp import Ramp
 from jointfmu.validation import Row
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
-_STYLE = {
+_STYLE: Any = {
     "svg.hashsalt": "jointfmu",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",
@@ -35,7 +35,7 @@ def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (7.2, 4.2)) 
         figure = Figure(figsize=size, layout="constrained")
         draw(figure)
         text = io.StringIO()
-        FigureCanvasSVG(figure).print_svg(text, metadata={"Date": None})
+        figure.savefig(text, format="svg", metadata={"Date": None})
     return text.getvalue()[text.getvalue().index("<svg") :]
 
 

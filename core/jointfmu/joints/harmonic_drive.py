@@ -68,12 +68,23 @@ class HarmonicDrive:
                 f"rated_pressure = {self.rated_pressure:g} Pa is outside "
                 f"({self.zero_torque_pressure:g}, inf): it must exceed zero_torque_pressure"
             )
-        if self.pressure_loss >= self.zero_torque_pressure:
+        self._check_contact()
+
+    def _check_contact(self) -> None:
+        """Refuse a deformation or eccentricity that leaves no contact without torque."""
+        reserve = self.zero_torque_pressure - self._deformation_loss
+        if reserve <= 0.0:
+            reach = (self.zero_torque_pressure / self.deformation_loss) ** 0.5
+            low, high = self.optimum_deformation - reach, self.optimum_deformation + reach
             raise ValueError(
-                f"eccentricity = {self.eccentricity:g} m with radial_deformation = "
-                f"{self.radial_deformation:g} m is outside the range of the model: without torque the pair "
-                f"loses contact (pressure loss {self.pressure_loss:.3g} Pa, allowed [0, "
-                f"{self.zero_torque_pressure:.3g}))"
+                f"radial_deformation = {self.radial_deformation:g} m is outside ({low:g}, {high:g}): "
+                "beyond it the pair loses contact without torque"
+            )
+        if self.eccentricity_loss * self.eccentricity >= reserve:
+            high = reserve / self.eccentricity_loss
+            raise ValueError(
+                f"eccentricity = {self.eccentricity:g} m is outside [0, {high:g}): "
+                "beyond it the pair loses contact without torque"
             )
 
     @property
@@ -93,10 +104,13 @@ class HarmonicDrive:
         )
 
     @property
+    def _deformation_loss(self) -> float:
+        return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
+
+    @property
     def pressure_loss(self) -> float:
         """Loss of peak pressure [Pa] by deformation off its optimum and by eccentricity."""
-        offset = self.radial_deformation - self.optimum_deformation
-        return self.deformation_loss * offset**2 + self.eccentricity_loss * self.eccentricity
+        return self._deformation_loss + self.eccentricity_loss * self.eccentricity
 
 
 def peak_pressure(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
