@@ -3,6 +3,7 @@
 import csv
 import io
 from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -83,6 +84,12 @@ def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:
     return make(type(values), flatten(values) | (changes or {}))
 
 
+@cache
+def tabulated(joint: str, p: Any) -> Any:
+    classes = {"bolted_joint": BoltedJointSpring, "gear_contact": GearContactSpring}
+    return classes.get(joint, HarmonicDriveSpring).of(p)
+
+
 def law(name: str, p: Any) -> Callable[[Inputs], dict[str, float]]:
     """The joint of the package behind an FMU."""
 
@@ -96,8 +103,7 @@ def law(name: str, p: Any) -> Callable[[Inputs], dict[str, float]]:
             return spring.motion(v["preload"], v["moment"], tuple(s), tuple(w))
         return spring.approach(v["f"])
 
-    classes = {"BoltedJoint": BoltedJointSpring, "GearContact": GearContactSpring}
-    spring: Any = classes.get(name, HarmonicDriveSpring).of(p)
+    spring = tabulated(MODELS[name].joint, p)
     return lambda v: {k: float(x) for k, x in outputs(v).items()}
 
 

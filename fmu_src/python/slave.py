@@ -190,7 +190,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         root.set("generationDateAndTime", stamp.strftime("%Y-%m-%dT%H:%M:%SZ"))
         root.set("generationTool", f"jointfmu {__version__}")
         root.insert(1, self._unit_definitions())
-        nodes = {node.get("name"): node for node in root.iter("ScalarVariable")}
+        nodes = {node.attrib["name"]: node for node in root.iter("ScalarVariable")}
         listed: dict[str, Variable] = {v.name: v for v in (*self.model.inputs, *self.model.outputs)}
         for name, node in nodes.items():
             real = node.find("Real")
@@ -221,7 +221,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                 SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
         return definitions
 
-    def _structure(self, root: Element, index: dict[str | None, int]) -> None:
+    def _structure(self, root: Element, index: dict[str, int]) -> None:
         structure = root.find("ModelStructure")
         assert structure is not None
         for child in list(structure):
