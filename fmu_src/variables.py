@@ -44,7 +44,7 @@ class Model:
     joint    : kind of the parameter file
     spring   : makes the tabulated joint of a parameter set
     evaluate : (spring, inputs) -> outputs
-    limits   : (spring, inputs) -> warnings about a state outside the table, by a short key
+    limits   : (spring, inputs, outputs) -> warnings about a state outside the table, by a short key
     dependencies : inputs that an output depends on, where not on all
     hidden   : prefixes of parameters that are baked in
     """
@@ -57,7 +57,7 @@ class Model:
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
     evaluate: Callable[[Any, Values], Mapping[str, Any]]
-    limits: Callable[[Any, Values], Mapping[str, str]]
+    limits: Callable[[Any, Values, Values], Mapping[str, str]]
     ramp: Ramp
     dependencies: Mapping[str, Sequence[str]]
     hidden: Sequence[str] = ()
@@ -85,8 +85,9 @@ _CONTACT = (
 )
 
 
-def _beyond_windup(spring: HarmonicDriveSpring, phi: float) -> dict[str, str]:
+def _spring_limits(spring: HarmonicDriveSpring, v: Values, out: Values) -> dict[str, str]:
     end, torque = spring.curve.end
+    phi = out["phi_rel"]
     if abs(phi) <= end:
         return {}
     return {
@@ -95,11 +96,7 @@ def _beyond_windup(spring: HarmonicDriveSpring, phi: float) -> dict[str, str]:
     }
 
 
-def _spring_limits(spring: HarmonicDriveSpring, v: Values) -> dict[str, str]:
-    return _beyond_windup(spring, v["phi2"] - v["phi1"] / spring.drive.ratio)
-
-
-def _compliance_limits(spring: HarmonicDriveSpring, v: Values) -> dict[str, str]:
+def _compliance_limits(spring: HarmonicDriveSpring, v: Values, out: Values) -> dict[str, str]:
     torque = spring.curve.end[1]
     if abs(v["tau"]) <= torque:
         return {}
@@ -118,7 +115,7 @@ def _bolted(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
     )
 
 
-def _bolted_limits(spring: BoltedJointSpring, v: Values) -> dict[str, str]:
+def _bolted_limits(spring: BoltedJointSpring, v: Values, out: Values) -> dict[str, str]:
     found = {}
     low = min(row_forces(spring.joint, v["preload"], v["moment"]))
     if low < 0.0:
@@ -126,8 +123,8 @@ def _bolted_limits(spring: BoltedJointSpring, v: Values) -> dict[str, str]:
             f"moment = {v['moment']:.6g} N.m would need a bolt force of {low:.6g} N, allowed [0, inf): "
             "the contact is open where the pressure would be negative"
         )
-    end, pressure = spring.curve.end
-    if float(spring.tightened(v["preload"], v["moment"]).max()) - v["s_rel_z"] > end:
+    pressure = spring.curve.end[1]
+    if out["p_max"] > pressure:
         found["end"] = (
             f"s_rel_z = {v['s_rel_z']:.6g} m and preload = {v['preload']:.6g} N press the contact beyond the "
             f"tabulated law, [0, {pressure:.6g}] Pa: the last tangent is continued"
@@ -135,7 +132,7 @@ def _bolted_limits(spring: BoltedJointSpring, v: Values) -> dict[str, str]:
     return found
 
 
-def _gear_limits(spring: GearContactSpring, v: Values) -> dict[str, str]:
+def _gear_limits(spring: GearContactSpring, v: Values, out: Values) -> dict[str, str]:
     f, end = v["f"], spring.max_force
     if f < 0.0:
         return {"pull": f"f = {f:.6g} N pulls, allowed [0, {end:.6g}] N: the flanks are apart"}

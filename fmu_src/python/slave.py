@@ -7,10 +7,11 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from os import environ
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NoReturn
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element, SubElement
 
+import numpy as np
 from jointfmu_fmus.units import UNITS, display_unit
 from jointfmu_fmus.variables import MODELS, Model, Variable
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
@@ -103,8 +104,16 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                 low = f"[{v.low:g}" if v.low > -math.inf else "(-inf"
                 unit = "" if v.unit == "1" else f" {v.unit}"
                 self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {low}, inf): {v.doc}")
-        outputs = {k: float(x) for k, x in self.model.evaluate(self.spring(), inputs).items()}
-        for key, message in self.model.limits(self.spring(), inputs).items():
+        try:
+            with np.errstate(all="ignore"):
+                found = self.model.evaluate(self.spring(), inputs)
+        except (ValueError, RuntimeError) as error:
+            self.refuse(str(error))
+        outputs = {name: float(value) for name, value in found.items()}
+        if bad := [name for name, value in outputs.items() if not math.isfinite(value)]:
+            given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
+            self.refuse(f"{given}: too large, {bad[0]} is not finite")
+        for key, message in self.model.limits(self.spring(), inputs, outputs).items():
             if key not in self.warned:
                 self.warned.add(key)
                 self.log(message, Fmi2Status.warning, "logStatusWarning")
@@ -114,13 +123,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """The tabulated joint of the present parameters."""
         if self._spring is None:
             parameters = {name: self.values[name] for name in self.start}
-            try:
-                self._spring = self.model.spring(build(self.model.parameters, parameters))
-            except ValueError as error:
-                self.refuse(str(error))
+            self._spring = self.model.spring(build(self.model.parameters, parameters))
         return self._spring
 
-    def refuse(self, message: str) -> None:
+    def refuse(self, message: str) -> NoReturn:
         """Log an error and fail the call."""
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)

@@ -88,13 +88,12 @@ class BoltedJointSpring:
         moment: float,
         s_rel: tuple[float, float, float],
         v_rel: tuple[float, float, float],
-        tightened: Array | None = None,
     ) -> dict[str, float]:
         """Forces [N], stiffnesses, damping and pressures at one state.
 
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
         """
-        start = self.tightened(preload, moment) if tightened is None else tightened
+        start = self.tightened(preload, moment)
         area, rho = self.joint.A_0 * self.shape.share, shear_ratio(self.joint)
         x, y, z = s_rel
         shear = 0.5 * rho * (x * x + y * y)
