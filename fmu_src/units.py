@@ -1,5 +1,6 @@
 """Units of all variables: SI base units, and the display unit that people read."""
 
+from math import log10
 from typing import NamedTuple
 
 
@@ -32,11 +33,9 @@ UNITS: dict[str, Unit] = {
 }
 
 
-def display_unit(unit: str, largest: float | None = None) -> str:
-    """The display unit of a variable: the first, or a finer or coarser one for its start value."""
-    names = list(UNITS[unit].display)
-    if largest and len(names) > 1:
-        first, second = (abs(largest) * UNITS[unit].display[n] for n in names[:2])
-        if first >= 1e4 > second or first < 0.1 < second:
-            return names[1]
-    return names[0]
+def display_unit(unit: str, typical: float) -> str:
+    """The display unit in which a typical value reads best: nearest to 30, the first if it is zero."""
+    names = UNITS[unit].display
+    if typical == 0.0:
+        return next(iter(names))
+    return min(names, key=lambda name: abs(log10(abs(typical) * names[name] / 30.0)))

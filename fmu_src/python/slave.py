@@ -2,6 +2,7 @@
 
 import ctypes
 import math
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
@@ -204,14 +205,14 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                 continue
             if name in listed:
                 v = listed[name]
-                real.attrib.update(unit=v.unit, displayUnit=display_unit(v.unit), nominal=f"{v.nominal:g}")
+                shown = display_unit(v.unit, v.nominal)
+                real.attrib.update(unit=v.unit, displayUnit=shown, nominal=f"{v.nominal:g}")
                 if v.low > -math.inf:
                     real.set("min", f"{v.low:g}")
             else:
-                meta = self.fields[name].metadata
-                real.attrib.update(
-                    unit=meta["unit"], displayUnit=display_unit(meta["unit"], self.start[name])
-                )
+                meta, start = self.fields[name].metadata, self.start[name]
+                shown = display_unit(meta["unit"], start)
+                real.attrib.update(unit=meta["unit"], displayUnit=shown, start=repr(start))
                 _bounds(real, meta)
         self._structure(root, {name: i for i, name in enumerate(nodes, start=1)})
         return root
@@ -255,9 +256,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
 
 def _bounds(real: Element, meta: Any) -> None:
-    """FMI bounds are closed; an open bound is narrowed to the next representable number."""
+    """FMI bounds are closed; an open bound is narrowed to the next normal number."""
     low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
     if low > -math.inf:
-        real.set("min", repr(low if low == meta["ge"] else math.nextafter(low, math.inf)))
+        beyond = sys.float_info.min if low == 0.0 else math.nextafter(low, math.inf)
+        real.set("min", repr(low if low == meta["ge"] else beyond))
     if high < math.inf:
         real.set("max", repr(high if high == meta["le"] else math.nextafter(high, -math.inf)))
