@@ -18,7 +18,7 @@ from .asperity.hu2023 import Hu2023
 from .asperity.yu2022 import Yu2022
 from .asperity.zhao2018 import Zhao2018
 from .interface import at_largest_spot, at_pressure
-from .parameters import ParameterFile, default, load, parse_setting, write_text
+from .parameters import ParameterFile, check_writable, default, load, parse_setting, write_text
 from .quantity import build, flat_fields, flatten
 
 LAWS: dict[str, tuple[type[Any], str]] = {
@@ -94,6 +94,8 @@ def _build(args: argparse.Namespace) -> int:
 
 
 def _ramp(args: argparse.Namespace) -> int:
+    if args.csv:
+        check_writable(args.csv)
     result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)

@@ -105,9 +105,10 @@ class Curve:
             x = new
             if done:
                 break
-        with np.errstate(divide="ignore", invalid="ignore"):
-            tangent = np.where(y > nodes[-1], (y - inside) / self.stiffness[-1], 0.0)
-        return np.where(y <= nodes[0], self.displacement[0], x + tangent)
+        edge = np.where(y > nodes[-1], self.stiffness[-1], self.stiffness[0])
+        flat = edge == 0.0
+        x = np.where(y <= nodes[0], self.displacement[0], x)
+        return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
 def assemble(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:

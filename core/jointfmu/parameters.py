@@ -184,17 +184,33 @@ def write_text(path: str | Path, text: str) -> None:
 
     Raises ValueError naming the path if it cannot be written.
     """
-    path = Path(path)
+    beside = _beside(Path(path))
+    try:
+        beside.write_text(text, encoding="utf-8", newline="")
+        beside.chmod(0o644)
+        beside.replace(path)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        raise _unwritable(path, error) from None
+
+
+def check_writable(path: str | Path) -> None:
+    """Raise ValueError naming the path if `write_text` could not write it."""
+    _beside(Path(path)).unlink()
+    if Path(path).is_dir():
+        raise ValueError(f"{path}: is a folder; expected a file to write")
+
+
+def _beside(path: Path) -> Path:
+    """A new empty file in the folder of `path`, which is made if need be."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
-        raise ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place") from None
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-        os.chmod(beside, 0o644)
-        os.replace(beside, path)
-    except OSError as error:
-        Path(beside).unlink(missing_ok=True)
-        raise ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place") from None
+        raise _unwritable(path, error) from None
+    os.close(handle)
+    return Path(name)
+
+
+def _unwritable(path: str | Path, error: OSError) -> ValueError:
+    return ValueError(f"{path}: cannot be written ({error.strerror}); expected a writable place")

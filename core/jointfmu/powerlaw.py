@@ -89,7 +89,8 @@ class Smooth:
     upper: Number
 
     def spot(self, t: Number) -> Number:
-        return within(t, self.lower, self.upper) * self.function(t)
+        inside = np.minimum(np.maximum(t, self.lower), self.upper)
+        return within(t, self.lower, self.upper) * self.function(inside)
 
     def integral(self, m: Number, u: Number) -> Number:
         return gauss(lambda t: self.function(t) * np.exp(-m * t), clip(self.lower, u), clip(self.upper, u))

@@ -6,7 +6,7 @@ import shutil
 import sys
 import zipfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -51,7 +51,7 @@ def steps(to: float, step: float) -> Array:
     count = to / step
     if count > 1e7:
         raise ValueError(f"step = {step:g} makes {count:.3g} points, allowed are 1e7")
-    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * step
+    whole = np.arange(int(np.floor(count * (1.0 + 1e-12))) + 1) * step + 0.0
     reached = bool(np.isclose(whole[-1], to, rtol=1e-12, atol=0.0))
     return np.asarray(whole if reached else np.append(whole, to), dtype=np.float64)
 
@@ -101,12 +101,25 @@ def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
         raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
     except Exception as error:  # fmpy raises bare Exception for a broken description
         raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
-    before = list(sys.path)
     try:
+        _check_python_flavour(Path(folder) / "resources", path)
         yield folder, description
     finally:
-        sys.path[:] = before
+        while (resources := str(Path(folder) / "resources")) in sys.path:
+            sys.path.remove(resources)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _check_python_flavour(resources: Path, source: Path) -> None:
+    """Refuse a pythonfmu FMU without the files whose absence its library answers with a crash."""
+    if not (resources / "pythonfmu").is_dir():
+        return
+    entry = resources / "slavemodule.txt"
+    if not entry.is_file():
+        raise ValueError(f"{source}: is no complete FMU; resources/slavemodule.txt is missing")
+    script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
+    if not script.is_file():
+        raise ValueError(f"{source}: is no complete FMU; resources/{script.name} is missing")
 
 
 def _drive(
@@ -117,6 +130,8 @@ def _drive(
     outputs = [v for v in md.modelVariables if v.causality == "output"]
     if input_name not in inputs:
         raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
+    if input_name in settings:
+        raise ValueError(f"{source}: {input_name} is driven by the ramp and cannot be set as well")
     settable = [v.name for v in md.modelVariables if v.causality in ("input", "parameter")]
     for name, value in settings.items():
         if name not in settable:
@@ -165,21 +180,23 @@ def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
 
     callbacks = fmi2.fmi2CallbackFunctions()
     callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-        lambda env, instance, status, category, message: messages.append(message.decode("utf-8", "replace"))
+        lambda env, instance, status, category, message: messages.append(
+            " ".join(message.decode("utf-8", "replace").split())
+        )
     )
     callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
     callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-    fmu = fmi2.FMU2Slave(
-        guid=md.guid,
-        unzipDirectory=folder,
-        modelIdentifier=md.coSimulation.modelIdentifier,
-        instanceName="ramp",
-    )
     try:
-        with redirect_stdout(io.StringIO()):
-            fmu.instantiate(callbacks=callbacks, loggingOn=True)
-    except Exception as error:
-        raise RuntimeError(f"{md.modelName}: {messages[-1] if messages else error}") from None
+        fmu = fmi2.FMU2Slave(
+            guid=md.guid,
+            unzipDirectory=folder,
+            modelIdentifier=md.coSimulation.modelIdentifier,
+            instanceName="ramp",
+        )
+        fmu.instantiate(callbacks=callbacks, loggingOn=True)
+    except Exception as error:  # fmpy raises bare Exception
+        reason = messages[-1] if messages else str(error)
+        raise RuntimeError(f"{md.modelName}: {reason}") from None
     try:
         yield fmu
     finally:

@@ -20,9 +20,17 @@ _PRIVATE = "PRIVATE_PACKAGE"
 """Stands for the name that the digest of all sources gives."""
 _ENTRY = '''"""Entry point of {name} for pythonfmu; the code is in the package beside it."""
 
+import atexit
 import ctypes
 import sys
+from pathlib import Path
 
+# At exit pythonfmu 0.7 reads what it has freed, unless it is asked to tidy up before.
+for library in Path(__file__).resolve().parent.parent.glob("binaries/*/{name}.so"):
+    try:
+        atexit.register(ctypes.CDLL(str(library)).finalizePythonInterpreter)
+    except (OSError, AttributeError):
+        pass
 # pythonfmu 0.7 runs this file once per instance and gives back one reference to its globals too many
 # each time: without this one the second instance would find them freed.
 ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
@@ -53,7 +61,7 @@ def runtime_sources() -> dict[str, str]:
     core, fmus = Path(jointfmu.__file__).parent, Path(__file__).parent.parent
     files = {p: p.relative_to(core) for p in sorted(core.rglob("*.py"))}
     chosen = {p: str(r) for p, r in files.items() if r.parts[0].removesuffix(".py") in _RUNTIME}
-    chosen |= {fmus / p: f"fmus/{p}" for p in ("__init__.py", "units.py", "variables.py")}
+    chosen |= {fmus / p: f"fmus/{p}" for p in ("__init__.py", "stamp.py", "units.py", "variables.py")}
     chosen |= {fmus / "python" / p: f"fmus/python/{p}" for p in ("__init__.py", "slave.py")}
     return {inside: _private(p.read_text(encoding="utf-8")) for p, inside in sorted(chosen.items())}
 

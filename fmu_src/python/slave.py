@@ -1,18 +1,18 @@
 """The pythonfmu slave that serves every FMU. No physics lives here."""
 
 import ctypes
+import json
 import math
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from datetime import UTC, datetime
-from os import environ
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Any, ClassVar, NoReturn
+from typing import Any, ClassVar, NoReturn, TypeVar
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
+from jointfmu_fmus.stamp import build_time
 from jointfmu_fmus.units import UNITS, display_unit
 from jointfmu_fmus.variables import MODELS, Model, Variable
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
@@ -21,6 +21,27 @@ from pythonfmu.enums import Fmi2Initial, Fmi2Status
 from jointfmu import __version__
 from jointfmu.parameters import load
 from jointfmu.quantity import build, flatten
+
+T = TypeVar("T")
+
+
+def surviving(method: Callable[..., T]) -> Callable[..., T]:
+    """Let an exception of a method pass without harm to its instance.
+
+    On every exception pythonfmu 0.7 gives back one reference each to instance, class and log queue too
+    many; after a few the process would crash.
+    """
+
+    @wraps(method)
+    def guarded(self: Any, *args: Any) -> T:
+        try:
+            return method(self, *args)
+        except Exception:
+            for owned in (self, type(self), self.log_queue):
+                ctypes.pythonapi.Py_IncRef(ctypes.py_object(owned))
+            raise
+
+    return guarded
 
 
 class JointSlave(Fmi2Slave):  # type: ignore[misc]
@@ -132,56 +153,33 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)
 
-    @contextmanager
-    def surviving(self) -> Iterator[None]:
-        """Let an exception pass without harm to this instance.
-
-        On every exception pythonfmu 0.7 gives back one reference each to instance, class and log queue
-        too many; after a few the process would crash.
-        """
-        try:
-            yield
-        except Exception:
-            for owned in (self, type(self), self.log_queue):
-                ctypes.pythonapi.Py_IncRef(ctypes.py_object(owned))
-            raise
-
+    @surviving
     def exit_initialization_mode(self) -> None:
         """Check the parameters, tabulate the law, evaluate once."""
-        with self.surviving():
-            self.output(self.model.outputs[0].name)
-            self.initialized = True
+        self.output(self.model.outputs[0].name)
+        self.initialized = True
 
+    @surviving
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Nothing evolves: the outputs follow the inputs. Refuses bad inputs."""
-        with self.surviving():
-            self.output(self.model.outputs[0].name)
+        self.output(self.model.outputs[0].name)
         return True
 
-    def get_real(self, vrs: list[int]) -> list[float]:
-        """Outputs, inputs and parameters by value reference."""
-        with self.surviving():
-            return list(super().get_real(vrs))
-
-    def set_real(self, vrs: list[int], values: list[float]) -> None:
-        """Inputs and parameters by value reference."""
-        with self.surviving():
-            super().set_real(vrs, values)
-
-    def get_boolean(self, vrs: list[int]) -> list[bool]:
-        """Named choices by value reference."""
-        with self.surviving():
-            return list(super().get_boolean(vrs))
-
-    def set_boolean(self, vrs: list[int], values: list[bool]) -> None:
-        """Named choices by value reference."""
-        with self.surviving():
-            super().set_boolean(vrs, values)
+    get_real, set_real = surviving(Fmi2Slave.get_real), surviving(Fmi2Slave.set_real)
+    get_integer, set_integer = surviving(Fmi2Slave.get_integer), surviving(Fmi2Slave.set_integer)
+    get_boolean, set_boolean = surviving(Fmi2Slave.get_boolean), surviving(Fmi2Slave.set_boolean)
+    get_string, set_string = surviving(Fmi2Slave.get_string), surviving(Fmi2Slave.set_string)
 
     def _get_fmu_state(self) -> dict[str, Any]:
         return {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
 
+    @surviving
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
+        if (
+            state.keys() != {"values", "initialized", "warned"}
+            or state["values"].keys() != self.values.keys()
+        ):
+            self.refuse(f"the FMU state is none of {self.fmu}; expected one that this FMU gave")
         changed = any(self.values[name] != state["values"][name] for name in self.start)
         self.values, self.initialized = dict(state["values"]), state["initialized"]
         self.warned = set(state["warned"])
@@ -189,12 +187,19 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         if changed:
             self._spring = None
 
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
+        """A state from its bytes; unreadable ones are refused when they are set."""
+        try:
+            found = json.loads(state.decode("utf-8"))
+        except ValueError:
+            return {}
+        return found if isinstance(found, dict) else {}
+
     def to_xml(self, model_options: Any = None) -> Element:
         """The model description with what pythonfmu leaves out: units, bounds, initial unknowns."""
         root: Element = super().to_xml(dict(model_options or {}))
-        epoch = environ.get("SOURCE_DATE_EPOCH")
-        stamp = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
-        root.set("generationDateAndTime", stamp.strftime("%Y-%m-%dT%H:%M:%SZ"))
+        root.set("generationDateAndTime", build_time().strftime("%Y-%m-%dT%H:%M:%SZ"))
         root.set("generationTool", f"jointfmu {__version__}")
         root.insert(1, self._unit_definitions())
         nodes = {node.attrib["name"]: node for node in root.iter("ScalarVariable")}

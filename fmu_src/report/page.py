@@ -1,8 +1,6 @@
 """The page: figures, the table of published against computed, the checks."""
 
 import platform
-from datetime import UTC, datetime
-from os import environ
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +9,12 @@ import jinja2
 from jointfmu import __version__
 from jointfmu.parameters import write_text
 
+from ..stamp import build_time
 from . import figures
 
 
 def write_report(path: Path, outcome: Any) -> None:
     """Write the self-contained page of an outcome of the main job."""
-    epoch = environ.get("SOURCE_DATE_EPOCH")
-    when = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -29,7 +26,7 @@ def write_report(path: Path, outcome: Any) -> None:
     page = environment.get_template("page.html").render(
         version=__version__,
         python=platform.python_version(),
-        when=when.strftime("%Y-%m-%d %H:%M UTC"),
+        when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
         outcome=outcome,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
         figures=[

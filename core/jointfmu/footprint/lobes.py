@@ -46,7 +46,8 @@ def two_lobes(
     t, weight = _between(np.arcsin(_sine_at(breaks, local, depth)))
     sine = edge * np.sin(t)
     theta = np.arcsin(sine)
-    stretch = edge * np.cos(t) / np.sqrt(1.0 - sine**2)  # d theta/d t
+    cosine = np.hypot(np.cos(t), np.sqrt(1.0 - edge**2) * np.sin(t))  # of theta
+    stretch = edge * np.cos(t) / cosine  # d theta/d t
     share = 4.0 * axial[:, None] * weight * stretch / (2.0 * np.pi)
     pressure = (local - depth) + depth * np.cos(t) ** 2
     height = np.broadcast_to(z[:, None], theta.shape)

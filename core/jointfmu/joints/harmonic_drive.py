@@ -16,7 +16,7 @@ from ..surface import ArealSurface, Elastic, ElasticPlastic
 Array = NDArray[np.float64]
 
 _AXIS = (0.0, 0.0, 1.0)
-_STEPS = 160
+_STEPS, _SOFTEST = 160, 1e-100
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 
@@ -188,6 +188,11 @@ def _windup(drive: HarmonicDrive, steps: int) -> Curve:
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     K, growth = drive_stiffness(drive, T)
+    if not np.all((K > _SOFTEST) & np.isfinite(K)):
+        raise ValueError(
+            f"K_FTS0 = {drive.K_FTS0:g} N.m/rad, pair_scale = {drive.pair_scale:g} and drive_scale = "
+            f"{drive.drive_scale:g} give a stiffness outside ({_SOFTEST:g}, inf) N.m/rad"
+        )
     inner = xi[:-1, None] + half * (1.0 + _GAUSS[0])
     rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
     phi = np.concatenate([[0.0], np.cumsum(half * rate @ _GAUSS[1])])

@@ -1,0 +1,20 @@
+"""The date that goes into what is built."""
+
+from datetime import UTC, datetime
+from os import environ
+
+
+def build_time() -> datetime:
+    """Now, or SOURCE_DATE_EPOCH (seconds since 1970) where it is set, for builds that repeat.
+
+    Raises ValueError if the variable is no such number.
+    """
+    epoch = environ.get("SOURCE_DATE_EPOCH")
+    if not epoch:
+        return datetime.now(UTC)
+    try:
+        return datetime.fromtimestamp(int(epoch), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise ValueError(
+            f"SOURCE_DATE_EPOCH = {epoch!r} is no date; expected whole seconds since 1970"
+        ) from None
