@@ -14,7 +14,13 @@ TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIOS = ("eta_n", "eta_t", "elastic_fraction")
 """Quantities that are no sums over the area."""
-_STEEPEST, _BLOCK, _MAX_STEPS, _SMALLEST = 2.5, 16384, 200, -300.0
+RANGE = 300.0
+"""Largest |u| [1] of a log-area: 130 decades of area to either side of the reference."""
+_NOT_REPRESENTABLE = (
+    "D, G and the material give a critical spot area of {} m2: "
+    "not representable; is D close to the end of its interval, or G extreme?"
+)
+_STEEPEST, _BLOCK, _MAX_STEPS = 2.5, 16384, 200
 
 
 class Law(Protocol):
@@ -74,7 +80,8 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
 
     Raises
     ------
-    ValueError : a pressure is negative, NaN or infinite
+    ValueError : a pressure is negative, NaN, infinite or beyond the range of numbers; one that is too
+        small for it counts as zero
     RuntimeError : the inversion did not converge
     """
     p = np.asarray(pressure, dtype=np.float64)
@@ -83,7 +90,14 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
         raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
     spots = checked_spots(law)
     load = p * law.A_0
-    parameters = np.shape(spots.log_total("load", 1.0)[0])
+    least, most = (np.exp(spots.log_total("load", log_area(spots, v)[0])[0]) for v in (-RANGE, RANGE))
+    if np.any(high := load > most):
+        raise ValueError(
+            f"pressure = {np.broadcast_to(p, high.shape)[high].flat[0]:g} Pa is outside "
+            f"[0, {np.min(most / law.A_0):.3g}]: beyond it the largest spot is not representable"
+        )
+    load = np.where(load < least, 0.0, load)
+    parameters = np.shape(least)
     shape = np.broadcast_shapes(load.shape, parameters)
     if load.size > _BLOCK and parameters == ():
         flat = load.ravel()
@@ -98,13 +112,16 @@ def checked_spots(law: Law) -> Spots:
     Raises ValueError.
     """
     with np.errstate(all="ignore"):
-        spots = law.spots()
-        value, slope = spots.log_total("load", np.asarray(1.0))
-    if not np.all(np.isfinite(value) & np.isfinite(slope) & (spots.reference > 0.0)):
-        raise ValueError(
-            f"D, G and the material give a critical spot area of {np.max(spots.reference):g} m2: "
-            "not representable, D is too close to the end of its interval"
-        )
+        try:
+            spots = law.spots()
+        except (OverflowError, ZeroDivisionError):
+            raise ValueError(_NOT_REPRESENTABLE.format("inf")) from None
+        ends = [log_area(spots, v)[0] for v in (-RANGE, 0.0, RANGE)]
+        values = [x for u in ends for x in (*spots.log_total("load", u), spots.total("load", u))]
+        representable = np.all([np.all(np.isfinite(x)) for x in values])
+        positive = np.all((spots.reference > 0.0) & np.isfinite(1.0 / spots.reference))
+    if not (representable and positive):
+        raise ValueError(_NOT_REPRESENTABLE.format(f"{np.max(spots.reference):g}"))
     return spots
 
 
@@ -134,7 +151,7 @@ def evaluate(law: Law, u: Number) -> dict[str, Number]:
     Without load (u minus infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(u)
-    state = law.state(np.where(empty, _SMALLEST, u))
+    state = law.state(np.where(empty, -RANGE, u))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
     spot = law.spots().reference * np.exp(u)
@@ -156,9 +173,15 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     smallest = spots.reference if spots.cutoff else 0.0
     bad = ~(np.isfinite(a) & (a > smallest))
     if np.any(bad):
-        low = np.min(smallest)
-        raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside ({low:g}, inf): area of a spot")
-    return evaluate(law, np.log(a / spots.reference))
+        low, wrong = np.max(smallest), np.broadcast_to(a, bad.shape)[bad].flat[0]
+        raise ValueError(f"largest spot = {wrong:g} m2 is outside ({low:g}, inf): area of a spot")
+    u = np.log(a) - np.log(spots.reference)
+    if np.any(np.abs(u) > RANGE):
+        raise ValueError(
+            f"largest spot = {a.flat[0]:g} m2 is not representable beside the critical area "
+            f"{np.max(spots.reference):g} m2, allowed are 130 decades to either side"
+        )
+    return evaluate(law, u)
 
 
 def stiffness_curve(law: Law, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:

@@ -8,6 +8,7 @@ A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter
 `kind` is one of KINDS; the unit must be the SI unit that the code declares, nothing is converted.
 """
 
+import json
 import os
 import tempfile
 import tomllib
@@ -75,10 +76,10 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
         raise ValueError(f"{path}: is no text file; expected a parameter file (TOML, UTF-8)") from None
     except tomllib.TOMLDecodeError as error:
         raise ValueError(f"{path}: is no valid TOML ({error})") from None
-    if document.get("schema") != SCHEMA:
+    if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
         raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
     kind = document.get("joint")
-    if kind not in JOINTS:
+    if not isinstance(kind, str) or kind not in JOINTS:
         raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(JOINTS)}")
     if joint is not None and kind != joint:
         raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
@@ -103,7 +104,10 @@ def _entries(
         if not isinstance(entry, Mapping):
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
         if unknown := set(entry) - {"value", "unit", "kind", "source"}:
-            raise ValueError(f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}")
+            raise ValueError(
+                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, "
+                "allowed are value, unit, kind, source"
+            )
         if name in declared:
             unit = declared[name].metadata.get("unit")
             if entry.get("unit") != unit:
@@ -150,7 +154,8 @@ def _toml(value: Any) -> str:
 
 
 def _quoted(text: str) -> str:
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ") + '"'
+    """A TOML basic string: the escapes of JSON, and DEL."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def default(joint: str) -> ParameterFile:
@@ -190,8 +195,11 @@ def write_text(path: str | Path, text: str) -> None:
         beside.chmod(0o644)
         beside.replace(path)
     except OSError as error:
-        beside.unlink(missing_ok=True)
         raise _unwritable(path, error) from None
+    except UnicodeEncodeError as error:
+        raise ValueError(f"{path}: cannot be written ({error.reason}); expected text") from None
+    finally:
+        beside.unlink(missing_ok=True)
 
 
 def check_writable(path: str | Path) -> None:

@@ -6,8 +6,8 @@ A spot of area `a` carries a quantity `q(a) = c (a/a_ref)^p` on `[lower, upper]`
 .. math::  Q(u) = m w e^{m u} \sum_i c_i \int_{\min(lower_i, u)}^{\min(upper_i, u)} e^{(p_i - m) t} dt .
 
 All logarithms are relative to the reference area, which keeps the powers in range for |u| < 300
-(130 decades of area); the singularity at `p = m` (D = 1.5, D = 5/3, zeta (D1 + D2) = 1, ...) is
-removed by `exprel`.
+(130 decades of area to either side); the singularity at `p = m` (D = 1.5, D = 5/3,
+zeta (D1 + D2) = 1, ...) is removed by `exprel`.
 """
 
 from collections.abc import Callable, Mapping

@@ -89,7 +89,7 @@ def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
 
     Raises ValueError if there is no such file or it is no FMU.
     """
-    from fmpy import extract, read_model_description
+    from fmpy import extract, platform, read_model_description, supported_platforms
 
     path = Path(fmu)
     if not path.is_file():
@@ -101,6 +101,9 @@ def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
         raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
     except Exception as error:  # fmpy raises bare Exception for a broken description
         raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
+    if platform not in (built_for := supported_platforms(str(path))):
+        shutil.rmtree(folder, ignore_errors=True)
+        raise ValueError(f"{path}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
     try:
         _check_python_flavour(Path(folder) / "resources", path)
         yield folder, description
