@@ -1,5 +1,7 @@
 """Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
+import os
+import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -23,7 +25,7 @@ class Message(NamedTuple):
 class Fmu:
     """An instance of an FMU file in a host that keeps all messages; variables by name."""
 
-    def __init__(self, path: Path, name: str = "test", folder: str | None = None) -> None:
+    def __init__(self, path: Path, name: str = "test") -> None:
         from fmpy import calloc, fmi2, free
 
         unpacked, self.description = unpack(path, path.stat().st_mtime_ns)
@@ -39,15 +41,11 @@ class Fmu:
         self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         self.fmu = fmi2.FMU2Slave(
             guid=self.description.guid,
-            unzipDirectory=folder or unpacked,
+            unzipDirectory=unpacked,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName=name,
         )
-        before = list(sys.path)
-        try:
-            self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
-        finally:
-            sys.path[:] = before  # pythonfmu puts the resources of every FMU in front
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
 
     def set(self, values: Mapping[str, Any]) -> None:
         """Set parameters and inputs, one call each."""
@@ -113,8 +111,19 @@ def unpack(path: Path, stamp: int) -> tuple[str, Any]:
     """Folder and model description of an FMU file; `stamp` tells a rebuilt file from the old one."""
     from fmpy import extract, read_model_description
 
-    folder = path.parent / f".{path.stem}-{stamp}"
+    folder = path.parent / f".{path.stem}-{stamp}-{os.getpid()}"  # no process unpacks over another's library
     return str(extract(str(path), str(folder))), read_model_description(str(path))
+
+
+def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str]:
+    """Run a script in a process of its own, where a crash harms no other test; it can import this file."""
+    return subprocess.run(
+        [sys.executable, "-c", script, *map(str, arguments)],
+        env=os.environ | {"PYTHONPATH": str(Path(__file__).parent)},
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
 
 
 @pytest.fixture(scope="session")
@@ -131,6 +140,7 @@ def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
     """Makes instances by name, from another folder if given, and frees them after the test."""
     made: list[Fmu] = []
+    path = list(sys.path)
 
     def instance(name: str, folder: Path | None = None, instance_name: str = "test") -> Fmu:
         made.append(Fmu((folder or fmus) / f"{name}.fmu", instance_name))
@@ -139,3 +149,4 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
     yield instance
     for one in made:
         one.free()
+    sys.path[:] = path  # pythonfmu puts the resources of every instance in front

@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial, polynomial
 from scipy.integrate import quad
 
 from jointfmu.curve import CLOSING_RATIO, MAX_ERROR, Curve, approach_curve, assemble, closing
-from jointfmu.interface import at_largest_spot, stiffness_curve
+from jointfmu.interface import at_largest_spot, largest_spot, stiffness_curve
 from jointfmu.joints.harmonic_drive import torque_curve
 from jointfmu.parameters import default
 
@@ -261,11 +261,11 @@ def test_stiffness_is_the_laws(law):
 @given(data=st.data())
 def test_any_law_gives_a_monotone_table_or_is_refused(kind, data):
     law = data.draw(RANDOM[kind])
-    try:
-        curve = approach_curve(law)
-    except ValueError as error:
-        assert "plastic" in str(error)
+    if law.spots().stiff_onset + np.log(CLOSING_RATIO) >= largest_spot(law, law.hardness):
+        with pytest.raises(ValueError, match="plastic"):
+            approach_curve(law)
         return
+    curve = approach_curve(law)
     assert curve.error <= MAX_ERROR
     x = curve.displacement
     load, stiffness = curve.derivatives((x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel(), 1)
@@ -321,11 +321,10 @@ def test_closing(p, k, growth, offset):
     [
         changed(ZHAO, {"surface.D": 1.2}),
         changed(ZHAO, {"surface.D": 1.23}),
-        changed(ZHAO, {"surface.D": 1.234}),
         changed(ZHAO, {"surface.D": 1.3, "surface.G": 1e-6}),
         changed(YU, {"surface1.D": 1.2, "surface2.D": 1.2, "surface1.G": 1e-7, "surface2.G": 1e-7}),
     ],
-    ids=["zhao-D-1.2", "zhao-D-1.23", "zhao-D-1.234", "zhao-coarse", "yu"],
+    ids=["zhao-D-1.2", "zhao-D-1.23", "zhao-coarse", "yu"],
 )
 def test_only_plastic_spots_are_refused(law):
     with pytest.raises(ValueError, match="only plastic spots") as error:

@@ -169,7 +169,7 @@ def test_base_units_and_display_factors_say_what_the_names_say(root: Any) -> Non
     ("fmu_name", "variable", "shown"),
     [
         ("HarmonicDriveSpring", "phi2", "deg"),
-        ("HarmonicDriveCompliance", "phi_rel", "deg"),
+        ("HarmonicDriveCompliance", "phi_rel", "arcmin"),
         ("BoltedJoint", "p_max", "MPa"),
         ("BoltedJoint", "preload", "kN"),
         ("BoltedJoint", "K_zz", "N/um"),

@@ -182,7 +182,7 @@ def approach_curve(law: Law) -> Curve:
     spots, area = checked_spots(law), law.A_0
     first = float(spots.stiff_onset + np.log(CLOSING_RATIO))
     last = float(largest_spot(law, law.hardness))
-    if not last > first + 1.0:
+    if not last > first:
         p = float(spots.total("load", first)) / area
         raise ValueError(
             f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "

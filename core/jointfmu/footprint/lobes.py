@@ -7,8 +7,9 @@ from .nodes import Footprint
 
 Array = NDArray[np.float64]
 
-_AROUND = np.polynomial.legendre.leggauss(12)
+_AROUND = np.polynomial.legendre.leggauss(16)
 _ALONG = np.polynomial.legendre.leggauss(6)
+_CROWDING = 3
 
 
 def two_lobes(
@@ -30,7 +31,7 @@ def two_lobes(
 
     so each lobe widens as it grows. Nodes follow the lobe (sin theta = sin(edge) sin t) and sit
     between the pressures at which the interface law changes its regime, hence a sum over the nodes
-    is smooth in the peak: 12 Gauss-Legendre nodes per regime around, 6 along.
+    is smooth in the peak: 16 Gauss-Legendre nodes per regime around, 6 along.
 
     peak        : (...) [Pa] pressure on the major axis at the opening, > 0
     breaks      : (k) [Pa] pressures at which the law changes its regime
@@ -70,13 +71,18 @@ def _sine_at(breaks: Array, local: Array, depth: Array) -> Array:
 
 
 def _between(ends: Array) -> tuple[Array, Array]:
-    """Gauss-Legendre nodes and weights (..., n) on [0, pi/2], pieced together at ends (..., k)."""
-    first, last = np.zeros_like(ends[..., :1]), np.full_like(ends[..., :1], 0.5 * np.pi)
-    limits = np.concatenate([first, ends, last], axis=-1)
-    half = 0.5 * np.diff(limits)[..., None]
-    nodes = limits[..., :-1, None] + half * (1.0 + _AROUND[0])
+    """Nodes and weights (..., n) on [0, pi/2], Gauss-Legendre pieced together at ends (..., k).
+
+    The stiffness falls with a broken power of the pressure, so in each piece the nodes crowd towards
+    its end by `1 - (1 - r)^3`.
+    """
+    edge = np.zeros((*ends.shape[:-1], 1))
+    limits = np.concatenate([edge, ends, edge + 0.5 * np.pi], axis=-1)
+    rest = 0.5 * (1.0 - _AROUND[0])
+    place, weight = 1.0 - rest**_CROWDING, 0.5 * _CROWDING * rest ** (_CROWDING - 1) * _AROUND[1]
+    width = np.diff(limits)[..., None]
     shape = (*ends.shape[:-1], -1)
-    return nodes.reshape(shape), (half * _AROUND[1]).reshape(shape)
+    return (limits[..., :-1, None] + width * place).reshape(shape), (width * weight).reshape(shape)
 
 
 def _ellipse(theta: Array, radius: float, w: Array, slope: Array, z: Array) -> tuple[Array, Array]:

@@ -1,0 +1,292 @@
+"""Building: what comes out, and that a failure says why and leaves nothing behind."""
+
+import csv
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from fmpy import read_model_description
+from jointfmu_fmus import checks, pipeline
+from jointfmu_fmus.building import FLAVOURS, build
+from jointfmu_fmus.variables import MODELS
+from pythonfmu import FmuBuilder
+
+from jointfmu import cli, ramp
+from jointfmu.parameters import default, dump
+
+Capture = pytest.CaptureFixture[str]
+NAMES = list(MODELS)
+
+
+def everything(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*"))
+
+
+def refused_line(capsys: Capture, *arguments: object) -> str:
+    """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
+    try:
+        status = cli.main([str(a) for a in arguments])
+    except SystemExit as leave:
+        status = int(str(leave.code))
+    out, err = capsys.readouterr()
+    assert (status, out) == (2, "")
+    assert err.endswith("\n")
+    assert err.count("\n") == 1, err
+    return err
+
+
+@pytest.fixture
+def gear_file(tmp_path: Path) -> Path:
+    path = tmp_path / "my gear.toml"
+    path.write_text(dump(default("gear_contact").with_values({"e": 0.3}, "user", "test")))
+    return path
+
+
+# What comes out
+
+
+def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path, capsys: Capture) -> None:
+    out = tmp_path / "out with spaces äö"
+    arguments = ["build", "GearContact", "--flavour", "python", "--params", str(gear_file), "--out", str(out)]
+    assert cli.main(arguments) == 0
+    built = out / "python" / "GearContact.fmu"
+    assert capsys.readouterr().out == f"built {built}\n"
+    assert [p for p in everything(out) if p.is_file()] == [built]
+    start = {v.name: v.start for v in read_model_description(str(built)).modelVariables}
+    assert float(start["e"]) == 0.3
+    assert ramp.run(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
+
+
+def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
+    status = cli.main(["build", "BoltedJoint", "--flavour", "python", "--out", str(tmp_path), "--json"])
+    assert status == 0
+    assert json.loads(capsys.readouterr().out) == {"built": [str(tmp_path / "python" / "BoltedJoint.fmu")]}
+
+
+def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:
+    built = build([], ["python"], default("harmonic_drive"), tmp_path)
+    assert {p.stem for p in built} == {"HarmonicDriveSpring", "HarmonicDriveCompliance"}
+
+
+def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
+    (first,) = build(["GearContact"], ["python"], None, tmp_path)
+    before = read_model_description(str(first)).guid
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    (second,) = build(["GearContact"], ["python"], changed, tmp_path)
+    assert second == first
+    assert read_model_description(str(second)).guid != before
+    assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
+
+
+def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
+    build(["GearContact"], ["python"], None, tmp_path)  # what building itself imports is there now
+    before = (
+        list(sys.path),
+        set(sys.modules),
+        dict(os.environ),
+        Path.cwd(),
+    )
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    build(["GearContact"], ["python"], changed, tmp_path)
+    after = (
+        list(sys.path),
+        set(sys.modules),
+        dict(os.environ),
+        Path.cwd(),
+    )
+    assert after == before
+
+
+# Refusals
+
+
+@pytest.mark.parametrize(
+    ("names", "flavours", "joint", "parts"),
+    [
+        (["Gearbox"], ["python"], None, ["'Gearbox'", *NAMES]),
+        (["GearContact", "Gearbox"], ["python"], None, ["'Gearbox'"]),
+        (["GearContact"], ["fmi7"], None, ["'fmi7'", *FLAVOURS]),
+        (["GearContact"], ["python", "fmi7"], None, ["'fmi7'"]),
+        (["GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'", "'gear_contact'"]),
+        (["BoltedJoint", "GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'"]),
+    ],
+)
+def test_bad_choices_are_refused_before_anything_is_built(
+    tmp_path: Path,
+    capsys: Capture,
+    names: list[str],
+    flavours: list[str],
+    joint: str | None,
+    parts: list[str],
+) -> None:
+    parameters = default(joint) if joint else None
+    with pytest.raises(ValueError, match=re.escape(parts[0])):
+        build(names, flavours, parameters, tmp_path / "out")
+    arguments = ["build", *names, "--flavour", *flavours, "--out", tmp_path / "out"]
+    if parameters:
+        (tmp_path / "file.toml").write_text(dump(parameters))
+        arguments += ["--params", tmp_path / "file.toml"]
+    line = refused_line(capsys, *arguments)
+    assert [p for p in parts if p not in line] == []
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        (None, "No such file"),
+        ("", "schema"),
+        ("schema = 1\njoint = [", "TOML"),
+        ('schema = 1\njoint = "gearbox"\n', "'gearbox'"),
+        ("{good}\nextra = 1\n", "extra"),
+        ("{bad}", "e = 1.3 is outside [0, 1)"),
+    ],
+)
+def test_bad_parameter_files_are_refused(
+    tmp_path: Path, capsys: Capture, gear_file: Path, text: str | None, part: str
+) -> None:
+    path, good = tmp_path / "file.toml", gear_file.read_text()
+    bad = good.replace("value = 0.3,", "value = 1.3,")
+    if text is not None:
+        path.write_text(text.replace("{good}", good).replace("{bad}", bad))
+    line = refused_line(capsys, "build", "--params", path, "--out", tmp_path / "out")
+    assert str(path) in line
+    assert part in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None:
+    file = tmp_path / "file"
+    file.write_text("mine")
+    out = file / "below"
+    with pytest.raises(ValueError, match="cannot be written") as raised:
+        build(["GearContact"], ["python"], None, out)
+    assert str(out) in str(raised.value)
+    assert "\n" not in str(raised.value)
+    line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", out)
+    assert str(out) in line
+    assert everything(tmp_path) == [file]
+    assert file.read_text() == "mine"
+
+
+def test_a_folder_in_the_place_of_the_fmu_is_refused(tmp_path: Path) -> None:
+    place = tmp_path / "python" / "GearContact.fmu"
+    place.mkdir(parents=True)
+    with pytest.raises(ValueError, match="cannot be written"):
+        build(["GearContact"], ["python"], None, tmp_path)
+    assert everything(tmp_path) == [tmp_path / "python", place]
+
+
+@pytest.mark.parametrize(
+    "failure", [OSError(28, "No space left on device"), KeyboardInterrupt(), RuntimeError("x")]
+)
+def test_an_existing_fmu_survives_a_failed_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException
+) -> None:
+    (built,) = build(["GearContact"], ["python"], None, tmp_path)
+    before, path, modules = built.read_bytes(), list(sys.path), set(sys.modules)
+    genuine: Callable[..., Path] = FmuBuilder.build_FMU
+
+    def fail_at_the_end(*arguments: object, **options: object) -> Path:
+        genuine(*arguments, **options)
+        raise failure
+
+    monkeypatch.setattr(FmuBuilder, "build_FMU", fail_at_the_end)
+    expected = ValueError if isinstance(failure, OSError) else type(failure)
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    with pytest.raises(expected) as raised:
+        build(["GearContact"], ["python"], changed, tmp_path)
+    if isinstance(failure, OSError):
+        assert "No space left on device" in str(raised.value)
+    assert everything(tmp_path) == [tmp_path / "python", built]
+    assert built.read_bytes() == before
+    assert sys.path == path
+    assert set(sys.modules) == modules
+
+
+def test_a_bad_source_date_is_refused_by_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", tmp_path)
+    assert "SOURCE_DATE_EPOCH" in line
+    assert [p for p in everything(tmp_path) if p.is_file()] == []
+
+
+# The main job
+
+
+class Links(HTMLParser):
+    """Everything a page would load, and its tags."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: set[str] = set()
+        self.loaded: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.add(tag)
+        loading = {"src", "srcset", "data", "poster"} | (
+            {"href"} if tag in ("link", "use", "image") else set()
+        )
+        self.loaded += [v or "" for k, v in attrs if k.removeprefix("xlink:") in loading]
+
+
+def test_the_main_job_builds_checks_and_reports(tmp_path: Path, capsys: Capture) -> None:
+    assert pipeline.main(tmp_path) == 0
+    out = capsys.readouterr().out
+    assert "built: 4 FMUs" in out
+    assert "missed: 0" in out
+    assert {p.name for p in (tmp_path / "python").iterdir()} == {f"{n}.fmu" for n in NAMES}
+    report = tmp_path / "report"
+    assert {p.name for p in report.iterdir()} == {"index.html", *(f"{n}.csv" for n in NAMES)}
+    for name in NAMES:
+        with (report / f"{name}.csv").open(newline="") as file:
+            header, *rows = csv.reader(file)
+        model = MODELS[name]
+        assert header[0].split(" [")[0] == model.ramp.input
+        assert [h.split(" [")[0] for h in header[1:]] == [v.name for v in model.outputs]
+        assert len(rows) == round(model.ramp.end / model.ramp.step) + 1
+        assert float(rows[-1][0]) == pytest.approx(model.ramp.end, rel=1e-12)
+    page = (report / "index.html").read_text(encoding="utf-8")
+    links = Links()
+    links.feed(page)
+    assert "svg" in links.tags
+    assert not re.findall(r"(?:src|href)\s*=\s*[\"']?(?:https?:)?//", page)
+    assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
+    assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
+    assert [name for name in NAMES if name not in page] == []
+
+
+def test_the_main_job_fails_when_a_check_misses(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
+    assert pipeline.main(tmp_path) == 1
+    out = capsys.readouterr().out
+    assert "missed: 4" in out  # one integral per FMU
+    lines = out.partition("missed: 4\n")[2].splitlines()
+    assert [line.split(":")[0].strip() for line in lines] == NAMES
+    assert (tmp_path / "report" / "index.html").exists()  # the report shows what was missed
+
+
+def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    script = Path(__file__).parent.parent / "build_fmus.py"
+    done = subprocess.run(
+        [sys.executable, script, "--out", tmp_path / "file" / "below"],
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "cannot be written" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert everything(tmp_path) == [tmp_path / "file"]
