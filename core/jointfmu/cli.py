@@ -188,12 +188,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     args = parser().parse_args(argv)
     try:
         return int(args.run(args))
-    except ValueError as error:
-        print(f"jointfmu {args.command}: {error}", file=sys.stderr)
-        return 2
-    except RuntimeError as error:
-        print(f"jointfmu {args.command}: {error}", file=sys.stderr)
-        return 1
+    except (ValueError, RuntimeError) as error:
+        print(f"jointfmu {args.command}:", *str(error).splitlines(), file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
     except BrokenPipeError:
         sys.stderr.close()
         return 0

@@ -129,12 +129,18 @@ def assemble(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
 
 
 def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
-    """The table with the fewest steps, doubled up to four times, whose error is within MAX_ERROR."""
+    """The table with the fewest steps, doubled up to four times, whose error is within MAX_ERROR.
+
+    Raises RuntimeError if there is none.
+    """
     for factor in (1, 2, 4, 8, 16):
         curve = tabulate(steps * factor)
         if curve.error <= MAX_ERROR:
-            break
-    return curve
+            return curve
+    raise RuntimeError(
+        f"the table of {curve.load.size} nodes has an interpolation error of {curve.error:.2g}, "
+        f"allowed is {MAX_ERROR:g}: the law is not smooth enough with these parameters"
+    )
 
 
 def _join(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:

@@ -122,7 +122,7 @@ def _entries(
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
     found: list[tuple[str, Any]] = []
     for key, value in table.items():
-        if isinstance(value, Mapping) and "value" not in value:
+        if isinstance(value, Mapping) and value and "value" not in value:
             found += _leaves(value, f"{prefix}{key}.")
         else:
             found.append((prefix + key, value))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any
 
 from .observables import OBSERVABLES
@@ -26,8 +27,8 @@ class Row:
         """JSON-ready, with the verdict as a word."""
         row = asdict(self.point) | {"where": dict(self.point.where)}
         return row | {
-            "computed": self.computed,
-            "error": self.error,
+            "computed": self.computed if isfinite(self.computed) else None,
+            "error": self.error if isfinite(self.error) else None,
             "verdict": "pass" if self.passed else "miss",
         }
 

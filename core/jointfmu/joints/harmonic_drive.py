@@ -178,7 +178,15 @@ def torque_curve(drive: HarmonicDrive) -> Curve:
 
     Nodes are evenly spaced in asinh(T/T_s), dense where the stiffness bends; the wind-up is integrated
     by four Gauss-Legendre nodes per step.
+
+    Raises ValueError if the two lobes would meet within the table, where K_TS has a kink.
     """
+    highest = float(peak_pressure(drive, drive.max_torque)[0])
+    if highest >= drive.mismatch_pressure:
+        raise ValueError(
+            f"mismatch_pressure = {drive.mismatch_pressure:g} Pa is outside ({highest:g}, inf): "
+            f"the two lobes would meet below {drive.max_torque:g} N.m"
+        )
     return refined(lambda steps: _windup(drive, steps), _STEPS)
 
 
