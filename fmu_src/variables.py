@@ -145,7 +145,7 @@ def _gear_limits(spring: GearContactSpring, v: Values, out: Values) -> dict[str,
 
 
 _MOTION = ("phi1", "phi2")
-_DRIVE_HIDDEN = ("max_torque",)
+_DRIVE_HIDDEN = ("max_torque", "shear_traction")
 
 MODELS: dict[str, Model] = {
     model.name: model

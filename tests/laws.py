@@ -39,6 +39,7 @@ HU = Hu2023(
     sigma_y=835e6,
     mu=0.15,
     traction_ratio=0.4,
+    shear_traction=5e7,
     A_0=1e-3,
 )
 

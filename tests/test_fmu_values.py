@@ -122,6 +122,8 @@ def test_random_parameters_reach_the_law(fmu: Host, name: str) -> None:
     instance = fmu(name)
     for inputs in random_inputs(name, 5, seed=3):
         scaled = {k: start[k] * float(rng.uniform(0.95, 1.05)) for k in MODELS[name].parameter_fields()}
+        scaled |= {k: float(rng.integers(8, 12)) for k in scaled if k == "n_bolts"}
+        scaled |= {k: float(rng.integers(1, 4)) for k in scaled if k == "row_bolts"}
         instance.reset()
         changes = {k: v for k, v in scaled.items() if not isinstance(start[k], bool)}
         instance.start(changes | inputs)
@@ -132,6 +134,7 @@ def test_each_parameter_changes_the_outputs_that_it_should(fmu: Host, name: str)
     start = flatten(default(MODELS[name].joint).values)
     base = DRIVE_BASE if name.startswith("HarmonicDrive") else {}
     special = {"bearing.sigma_y": 0.8 * start.get("flexspline.sigma_y", 1.0)}  # the softer body counts
+    special |= {"n_bolts": 9.0, "row_bolts": 2.0}  # whole numbers
     if name == "GearContact":
         base = {"rigid_flat": False}  # with a rigid flat the second body does not matter
     instance, without = fmu(name).start(base | STATE[name]), set()

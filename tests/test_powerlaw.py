@@ -180,7 +180,7 @@ TERMS = {
     "singular": (Power(2.0, 0.71, -3.0, 2.0),),  # p = m
     "slip": (Slip(3.0, 0.5, np.exp(0.5 * 0.7), 0.5, 0.0, 4.0),),
 }
-SPOTS = Spots(reference=1e-9, cutoff=False, m=0.71, weight=1.3, terms=TERMS)
+SPOTS = Spots(reference=1e-9, m=0.71, weight=1.3, terms=TERMS)
 EDGES = (-3.0, -1.0, 0.0, 0.7, 2.0, 4.0)
 away = st.floats(-8.0, 9.0).filter(lambda u: min(abs(u - edge) for edge in EDGES) > 1e-3)
 

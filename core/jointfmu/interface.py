@@ -14,8 +14,10 @@ TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""
 RATIOS = ("eta_n", "eta_t", "elastic_fraction")
 """Quantities that are no sums over the area."""
-RANGE = 300.0
-"""Largest |u| [1] of a log-area: 130 decades of area to either side of the reference."""
+LEAST, MOST = -600.0, 300.0
+"""Log-areas [1] between which the laws are evaluated: 260 decades of area below the reference, 130 above."""
+NOTHING = 1e-200
+"""Pressure [Pa] below which there is no load."""
 _NOT_REPRESENTABLE = (
     "D, G and the material give a critical spot area of {} m2: "
     "not representable; is D close to the end of its interval, or G extreme?"
@@ -41,27 +43,16 @@ class Law(Protocol):
         """Quantities for a largest spot of log-area u."""
 
 
-def log_area(spots: Spots, v: Number) -> tuple[Number, Number]:
-    """Log-area u of the largest spot and du/dv for the unknown v of the inversion.
+def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
+    """One safeguarded Newton step in logarithms: (step, lower, upper, residual), all relative to u.
 
-    With a smallest spot, a_L = a_ref (1 + e^v): u stays positive and exact as the load vanishes.
+    ln F is monotone in u with a slope between m/2 and 2.5, so every evaluation brackets the root.
     """
-    if not spots.cutoff:
-        return v, 1.0
-    return np.logaddexp(0.0, v), 1.0 / (1.0 + np.exp(-v))
-
-
-def newton_step(spots: Spots, v: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
-    """One safeguarded Newton step in logarithms: (step, lower, upper, residual), all relative to v.
-
-    ln F is monotone in v with a slope between m/2 and 2.5, so every evaluation brackets the root.
-    """
-    u, stretch = log_area(spots, v)
     value, slope = spots.log_total("load", u)
     residual = log_load - value
     a, b = residual / (0.5 * spots.m), residual / _STEEPEST
     lower, upper = np.minimum(a, b), np.maximum(a, b)
-    step = np.minimum(np.maximum(residual / (slope * stretch), lower), upper)
+    step = np.minimum(np.maximum(residual / slope, lower), upper)
     return step, lower, upper, residual
 
 
@@ -75,13 +66,12 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
 
     Returns
     -------
-    u : (...) [1], minus infinity (or 0 with a smallest spot) at zero pressure. The relative residual
-        of the load is at most 1e-12; all points are solved at once, in blocks that fit the cache.
+    u : (...) [1], minus infinity at zero pressure. The relative residual of the load is at most
+        1e-12; all points are solved at once, in blocks that fit the cache.
 
     Raises
     ------
-    ValueError : a pressure is negative, NaN, infinite or beyond the range of numbers; one that is too
-        small for it counts as zero
+    ValueError : a pressure is negative, NaN, infinite, or its largest spot is not representable
     RuntimeError : the inversion did not converge
     """
     p = np.asarray(pressure, dtype=np.float64)
@@ -89,14 +79,14 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
     if np.any(bad):
         raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
     spots = checked_spots(law)
-    load = p * law.A_0
-    least, most = (np.exp(spots.log_total("load", log_area(spots, v)[0])[0]) for v in (-RANGE, RANGE))
-    if np.any(high := load > most):
+    load = np.where(p < NOTHING, 0.0, p) * law.A_0
+    least, most = (np.exp(spots.log_total("load", u)[0]) for u in (LEAST, MOST))
+    if np.any(bad := (load > most) | ((load > 0.0) & (load < least))):
         raise ValueError(
-            f"pressure = {np.broadcast_to(p, high.shape)[high].flat[0]:g} Pa is outside "
-            f"[0, {np.min(most / law.A_0):.3g}]: beyond it the largest spot is not representable"
+            f"pressure = {np.broadcast_to(p, bad.shape)[bad].flat[0]:g} Pa is outside "
+            f"[{np.max(least / law.A_0):.3g}, {np.min(most / law.A_0):.3g}]: its largest spot is not "
+            f"representable beside the critical area {np.max(spots.reference):.3g} m2 of this surface"
         )
-    load = np.where(load < least, 0.0, load)
     parameters = np.shape(least)
     shape = np.broadcast_shapes(load.shape, parameters)
     if load.size > _BLOCK and parameters == ():
@@ -116,7 +106,7 @@ def checked_spots(law: Law) -> Spots:
             spots = law.spots()
         except (OverflowError, ZeroDivisionError):
             raise ValueError(_NOT_REPRESENTABLE.format("inf")) from None
-        ends = [log_area(spots, v)[0] for v in (-RANGE, 0.0, RANGE)]
+        ends = (LEAST, 0.0, MOST)
         values = [x for u in ends for x in (*spots.log_total("load", u), spots.total("load", u))]
         representable = np.all([np.all(np.isfinite(x)) for x in values])
         positive = np.all((spots.reference > 0.0) & np.isfinite(1.0 / spots.reference))
@@ -128,21 +118,20 @@ def checked_spots(law: Law) -> Spots:
 def _solve(spots: Spots, load: Array) -> Array:
     empty = load <= 0.0
     target = np.log(np.where(empty, 1.0, load))
-    v = np.zeros_like(target)
+    u = np.zeros_like(target)
     low, high = np.full_like(target, -np.inf), np.full_like(target, np.inf)
     for _ in range(_MAX_STEPS):
-        step, lower, upper, residual = newton_step(spots, v, target)
+        step, lower, upper, residual = newton_step(spots, u, target)
         if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
             break
-        low, high = np.maximum(low, v + lower), np.minimum(high, v + upper)
-        v = np.minimum(np.maximum(v + step, low), high)
+        low, high = np.maximum(low, u + lower), np.minimum(high, u + upper)
+        u = np.minimum(np.maximum(u + step, low), high)
     else:
         if np.max(np.abs(residual)) > 1e-12:
             raise RuntimeError(
                 f"the inversion of the pressure stopped at a residual of {np.max(np.abs(residual)):.2g}"
             )
-    u, _ = log_area(spots, np.where(empty, -np.inf, v))
-    return np.asarray(u, dtype=np.float64)
+    return np.where(empty, -np.inf, u)
 
 
 def evaluate(law: Law, u: Number) -> dict[str, Number]:
@@ -151,7 +140,7 @@ def evaluate(law: Law, u: Number) -> dict[str, Number]:
     Without load (u minus infinity) sums are zero and ratios have their limit.
     """
     empty = np.isneginf(u)
-    state = law.state(np.where(empty, -RANGE, u))
+    state = law.state(np.where(empty, LEAST, u))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
     spot = law.spots().reference * np.exp(u)
@@ -170,16 +159,14 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     """
     a = np.asarray(area, dtype=np.float64)
     spots = checked_spots(law)
-    smallest = spots.reference if spots.cutoff else 0.0
-    bad = ~(np.isfinite(a) & (a > smallest))
+    bad = ~(np.isfinite(a) & (a > 0.0))
     if np.any(bad):
-        low, wrong = np.max(smallest), np.broadcast_to(a, bad.shape)[bad].flat[0]
-        raise ValueError(f"largest spot = {wrong:g} m2 is outside ({low:g}, inf): area of a spot")
+        raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside (0, inf): area of a spot")
     u = np.log(a) - np.log(spots.reference)
-    if np.any(np.abs(u) > RANGE):
+    if np.any(bad := (u < LEAST) | (u > MOST)):
         raise ValueError(
-            f"largest spot = {a.flat[0]:g} m2 is not representable beside the critical area "
-            f"{np.max(spots.reference):g} m2, allowed are 130 decades to either side"
+            f"largest spot = {np.broadcast_to(a, bad.shape)[bad].flat[0]:g} m2 is not representable beside "
+            f"the critical area {np.max(spots.reference):g} m2, allowed are 260 decades below to 130 above"
         )
     return evaluate(law, u)
 

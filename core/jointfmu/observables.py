@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .asperity import hu2023 as hu
 from .asperity import kogut_etsion, mindlin
 from .asperity import zhao2018 as zhao
 from .asperity.yu2022 import Yu2022
@@ -78,11 +79,8 @@ def shear_over_friction(drive: HarmonicDrive, stage: str) -> float:
 
 
 def least_mean_pressure(drive: HarmonicDrive) -> float:
-    """F_r/S_r [Pa] of purely elastic spots down to size zero, largest spot s_ec: the least F_r/S_r."""
-    law = drive.law
-    tiny = replace(law, surface=replace(law.surface, s_min=1e-60))
-    spots = tiny.spots()
-    state = at_largest_spot(tiny, spots.reference * np.exp(spots.terms["elastic_area"][0].upper))
+    """F_r/S_r [Pa] of purely elastic spots, largest spot s_ec: the least F_r/S_r of larger ones."""
+    state = at_largest_spot(drive.law, hu.critical_area(drive.law))
     return float(state["F"] / state["A_r"])
 
 

@@ -114,8 +114,10 @@ def _entries(
                 raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
         if entry.get("kind") not in KINDS:
             raise ValueError(f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(KINDS)}")
-        values[name], kinds[name] = entry.get("value"), str(entry["kind"])
-        sources[name] = str(entry.get("source", ""))
+        source = entry.get("source")
+        if not isinstance(source, str) or not source.strip():
+            raise ValueError(f"{path}: {name}: source = {source!r}, expected where the value comes from")
+        values[name], kinds[name], sources[name] = entry.get("value"), str(entry["kind"]), source
     return values, kinds, sources
 
 
@@ -203,10 +205,13 @@ def write_text(path: str | Path, text: str) -> None:
 
 
 def check_writable(path: str | Path) -> None:
-    """Raise ValueError naming the path if `write_text` could not write it."""
-    _beside(Path(path)).unlink()
-    if Path(path).is_dir():
+    """Raise ValueError naming the path if `write_text` could not write it; makes nothing."""
+    path = Path(path)
+    if path.is_dir():
         raise ValueError(f"{path}: is a folder; expected a file to write")
+    parent = next(folder for folder in path.absolute().parents if folder.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise ValueError(f"{path}: cannot be written ({parent} is not writable); expected a writable place")
 
 
 def _beside(path: Path) -> Path:

@@ -5,8 +5,8 @@ A spot of area `a` carries a quantity `q(a) = c (a/a_ref)^p` on `[lower, upper]`
 
 .. math::  Q(u) = m w e^{m u} \sum_i c_i \int_{\min(lower_i, u)}^{\min(upper_i, u)} e^{(p_i - m) t} dt .
 
-All logarithms are relative to the reference area, which keeps the powers in range for |u| < 300
-(130 decades of area to either side); the singularity at `p = m` (D = 1.5, D = 5/3,
+All logarithms are relative to the reference area, which keeps the powers in range for -600 < u < 300
+(130 decades of area above, 260 below); the singularity at `p = m` (D = 1.5, D = 5/3,
 zeta (D1 + D2) = 1, ...) is removed by `exprel`.
 """
 
@@ -93,7 +93,10 @@ class Smooth:
         return within(t, self.lower, self.upper) * self.function(inside)
 
     def integral(self, m: Number, u: Number) -> Number:
-        return gauss(lambda t: self.function(t) * np.exp(-m * t), clip(self.lower, u), clip(self.upper, u))
+        def integrand(t: Number) -> Number:
+            return self.function(np.maximum(t, self.lower)) * np.exp(-m * t)
+
+        return gauss(integrand, clip(self.lower, u), clip(self.upper, u))
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,14 +149,12 @@ class Spots:
     """A spot law together with its size distribution.
 
     reference : [m2] area at t = 0
-    cutoff    : True if no spot is smaller than the reference
     m         : [1]  exponent of the size distribution
     weight    : [1]  its prefactor w
     terms     : {quantity: regimes}; `load` [N] is always there
     """
 
     reference: Number
-    cutoff: bool
     m: Number
     weight: Number
     terms: Mapping[str, tuple[Term, ...]]

@@ -4,12 +4,12 @@ Equation numbers are the paper's; where the print is wrong the corrected form is
 (docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..powerlaw import Power, Slip, Spots, Term
-from ..quantity import Number, check, group, quantity
+from ..quantity import Number, check, choice, group, quantity
 from ..surface import (
     ArealSurface,
     Elastic,
@@ -33,6 +33,11 @@ class Hu2023:
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+
+    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    traction: str = choice(
+        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -77,12 +82,11 @@ def critical_load(law: Hu2023) -> Number:
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * critical_area(law)
 
 
-def spots(law: Hu2023, shear_strength: float | None = None) -> Spots:
-    """Size distribution (Eq. 17) and regimes between s_min and the largest spot.
+def spots(law: Hu2023) -> Spots:
+    """Size distribution (Eq. 17) and regimes up to the largest spot.
 
-    shear_strength : [Pa] None: every spot has the traction ratio x of the node (default).
-        A value: the real area carries this traction, t = tau s, so x = tau s/(mu f(s)) differs from
-        spot to spot and is clipped to full slip (Eqs. 39-43 as meant).
+    Load and area count all spots (Eqs. 18-27), the stiffness those above s_min, without which its
+    integrals diverge or are undefined (Eqs. 30, 41, corrected).
 
     Quantities: load [N]; normal, tangential [N/m]; area, elastic_area [m2].
     """
@@ -91,45 +95,50 @@ def spots(law: Hu2023, shear_strength: float | None = None) -> Spots:
     k_ec = f_ec / critical_deformation(law)
     edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
     ends = [edge, edge + np.log(SECOND_AREA), edge + np.log(PLASTIC_AREA)]
-    bounds = [0.0, *(np.maximum(end, 0.0) for end in ends)]
+    bounds = [None, *ends]
     stages = [by_area(FIRST), by_area(SECOND)]
 
-    def regime(c: Number, p: float, i: int) -> Power:
-        """`c (s/s_ec)^p` in regime i, referred to s_min."""
+    def regime(c: Number, p: float, i: int, smallest: Number = None) -> Power:
+        """`c (s/s_ec)^p` in regime i, referred to s_min; the first begins at `smallest`."""
+        lower = bounds[i] if i else smallest
         upper = bounds[i + 1] if i < 3 else None
-        return Power(c * np.exp(-p * edge), p, bounds[i], upper)
+        return Power(c * np.exp(-p * edge), p, lower, upper)
 
     load = [regime(f_ec, 1.5, 0), *(regime(f_ec * st.A, st.p, i + 1) for i, st in enumerate(stages))]
-    normal = [regime(1.5 * k_ec, 0.5, 0)]
+    normal = [regime(1.5 * k_ec, 0.5, 0, 0.0)]
     normal += [regime(k_ec * st.B, st.q, i + 1) for i, st in enumerate(stages)]
+    normal = [replace(t, lower=np.maximum(t.lower, 0.0), upper=np.maximum(t.upper, 0.0)) for t in normal]
     terms: dict[str, tuple[Term, ...]] = {
         "load": (*load, regime(H * s_ec, 1.0, 3)),
         "normal": tuple(normal),
-        "tangential": _tangential(law, load, bounds, shear_strength),
-        "area": (Power(s_min, 1.0, 0.0),),
-        "elastic_area": (Power(s_min, 1.0, 0.0, bounds[1]),),
+        "tangential": _tangential(law, load, bounds),
+        "area": (Power(s_min, 1.0),),
+        "elastic_area": (Power(s_min, 1.0, None, bounds[1]),),
     }
     D = law.surface.D
     weight = domain_extension_fit(D) ** (1.5 - 0.5 * D)
-    return Spots(reference=s_min, cutoff=True, m=0.5 * D - 0.5, weight=weight, terms=terms)
+    return Spots(reference=s_min, m=0.5 * D - 0.5, weight=weight, terms=terms)
 
 
-def _tangential(
-    law: Hu2023, load: list[Power], bounds: list[Number], shear_strength: float | None
-) -> tuple[Term, ...]:
-    """k_t = 8 G' r (1 - t/(mu f))^(1/3) in the three regimes that are not plastic, Eqs. 39, 41-43."""
+def _tangential(law: Hu2023, load: list[Power], bounds: list[Number]) -> tuple[Term, ...]:
+    """k_t = 8 G' r (1 - t/(mu f))^(1/3) in the three regimes that are not plastic, Eqs. 39, 41-43.
+
+    ratio     : every spot has the traction ratio x of the node
+    real_area : the real area carries the shear traction, t = tau s; x = tau s/(mu f(s)) differs from
+        spot to spot and is clipped to full slip
+    """
     full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)
-    if shear_strength is None:
+    if law.traction == "ratio":
         stick, _ = mindlin.stick_root(law.traction_ratio)
-        return (Power(full_stick * stick, 0.5, 0.0, bounds[3]),)
+        return (Power(full_stick * stick, 0.5, 0.0, np.maximum(bounds[3], 0.0)),)
     return tuple(
         Slip(
             c=full_stick,
             p=0.5,
-            h=shear_strength * law.surface.s_min / (law.mu * term.c),
+            h=law.shear_traction * law.surface.s_min / (law.mu * term.c),
             q=term.p - 1.0,
-            lower=term.lower,
-            upper=term.upper,
+            lower=0.0 if term.lower is None else np.maximum(term.lower, 0.0),
+            upper=np.maximum(term.upper, 0.0),
         )
         for term in load
     )

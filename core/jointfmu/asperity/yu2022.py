@@ -179,7 +179,6 @@ def spots(law: Yu2022) -> Spots:
     H = law.hardness
     return Spots(
         reference=a,
-        cutoff=False,
         m=size_exponent(law),
         weight=law.lambda_,
         terms={

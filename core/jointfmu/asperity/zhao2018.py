@@ -137,7 +137,7 @@ def spots(law: Zhao2018) -> Spots:
         "loop_area": (Power(a**1.5, 1.5, 0.0),),
     }
     weight = domain_extension(D) ** (1.0 - 0.5 * D)
-    return Spots(reference=a, cutoff=False, m=0.5 * D, weight=weight, terms=terms)
+    return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
 
 
 def state(law: Zhao2018, u: Number) -> dict[str, Number]:

@@ -27,6 +27,11 @@ class BoltedJoint(Zhao2018):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        for name in ("n_bolts", "row_bolts"):
+            if getattr(self, name) % 1.0:
+                raise ValueError(
+                    f"{name} = {getattr(self, name):g} is no whole number, allowed are 1, 2, 3, ..."
+                )
         if 2.0 * self.row_bolts > self.n_bolts:
             raise ValueError(
                 f"row_bolts = {self.row_bolts:g} is outside [1, {0.5 * self.n_bolts:g}]: "
@@ -94,17 +99,18 @@ class BoltedJointSpring:
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
         """
         start = self.tightened(preload, moment)
-        area, rho = self.joint.A_0 * self.shape.share, shear_ratio(self.joint)
+        area, rho = self.joint.A_0, shear_ratio(self.joint)
         x, y, z = s_rel
         shear = 0.5 * rho * (x * x + y * y)
         p, k, bend, twist = self.curve.derivatives(start - z, 3)
-        K_n = float(area @ k)
-        K_zz, K_t = float(area @ (k + shear * twist)), rho * K_n
-        elastic_z = float(area @ (p - self.curve.derivatives(start, 0)[0] + shear * bend))
+        nodes = footprint(self.shape, p)
+        K_n = float(area * nodes.translation(k))
+        K_zz, K_t = float(area * nodes.translation(k + shear * twist)), rho * K_n
+        elastic_z = float(area * nodes.translation(p - self.curve.derivatives(start, 0)[0] + shear * bend))
         eta_n = self.normal_loss_factor(p)
         eta_t = float(mindlin.loss_factor(self.joint.traction_ratio))
         C_n, C_t = eta_n * np.sqrt(self.joint.mass * K_n), eta_t * np.sqrt(self.joint.mass * K_t)
-        K_rx, K_ry, K_rz = self.rotational(p, k, rho)
+        K_rx, K_ry, K_rz = (float(nodes.rotation(area * k, rho * area * k, axis)) for axis in np.eye(3))
         return {
             "f_x": 0.0 - K_t * x - C_t * v_rel[0],
             "f_y": 0.0 - K_t * y - C_t * v_rel[1],
@@ -120,17 +126,9 @@ class BoltedJointSpring:
             "K_rx": K_rx,
             "K_ry": K_ry,
             "K_rz": K_rz,
-            "p_mean": float(self.shape.share @ p),
+            "p_mean": float(nodes.mean_pressure),
             "p_max": float(np.max(p)),
         }
-
-    def rotational(self, p: Array, k: Array, rho: float) -> tuple[float, float, float]:
-        """Stiffness [N.m/rad] about the three axes through the centroid, from k (n) [N/m3]."""
-        nodes = footprint(self.shape, p)
-        K_N = self.joint.A_0 * k
-        axes = np.eye(3)
-        K_rx, K_ry, K_rz = (float(nodes.rotation(K_N, rho * K_N, axis)) for axis in axes)
-        return K_rx, K_ry, K_rz
 
     def normal_loss_factor(self, p: Array) -> float:
         """eta_n [1] of the joint: plastic over elastic work of all nodes (Zhao 2018, Eqs. 16, 18, 19).

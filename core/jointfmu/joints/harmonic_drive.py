@@ -9,14 +9,14 @@ from ..asperity.hu2023 import Hu2023
 from ..curve import Curve, assemble, refined
 from ..footprint.lobes import two_lobes
 from ..footprint.nodes import Footprint
-from ..interface import largest_spot
-from ..quantity import check, group, quantity
+from ..interface import checked_spots, largest_spot
+from ..quantity import check, choice, group, quantity
 from ..surface import ArealSurface, Elastic, ElasticPlastic
 
 Array = NDArray[np.float64]
 
 _AXIS = (0.0, 0.0, 1.0)
-_STEPS, _SOFTEST = 160, 1e-100
+_STEPS, _SOFTEST, _STIFFEST = 160, 1e-100, 1e-6
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
 
@@ -27,8 +27,9 @@ class HarmonicDrive:
     surface: ArealSurface = group("equivalent rough surface of the contact pair")
     flexspline: ElasticPlastic = group("flexspline")
     bearing: ElasticPlastic = group("outer ring of the flexible bearing")
-    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction, if traction is real_area", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
     A_0: float = quantity("m2", "nominal area of the contact pair", gt=0.0)
     radius: float = quantity("m", "mean radius of the contact pair", gt=0.0)
     cup_length: float = quantity("m", "length over which the radial deformation tapers to zero", gt=0.0)
@@ -58,6 +59,9 @@ class HarmonicDrive:
     eccentricity_loss: float = quantity(
         "Pa/m", "loss of peak pressure per eccentricity", ge=0.0, calibration=True
     )
+    traction: str = choice(
+        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+    )
     pair_scale: float = quantity("1", "published K_TS over the sum of Eq. 45", gt=0.0, calibration=True)
     drive_scale: float = quantity("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0, calibration=True)
 
@@ -67,6 +71,12 @@ class HarmonicDrive:
             raise ValueError(
                 f"rated_pressure = {self.rated_pressure:g} Pa is outside "
                 f"({self.zero_torque_pressure:g}, inf): it must exceed zero_torque_pressure"
+            )
+        most = 2.0 * np.pi * self.radius * self.cup_length
+        if most <= self.A_0:
+            raise ValueError(
+                f"A_0 = {self.A_0:g} m2 is outside (0, {most:g}): the contact must be shorter than the cup "
+                f"(cup_length = {self.cup_length:g} m at radius = {self.radius:g} m)"
             )
         self._check_contact()
 
@@ -100,6 +110,8 @@ class HarmonicDrive:
             sigma_y=softer.sigma_y,
             mu=self.mu,
             traction_ratio=self.traction_ratio,
+            shear_traction=self.shear_traction,
+            traction=self.traction,
             A_0=self.A_0,
         )
 
@@ -134,10 +146,10 @@ def peak_pressure(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array
 def footprint(drive: HarmonicDrive, torque: ArrayLike) -> Footprint:
     """Nodes of one quarter of the contact pair at torques (...) [N.m]; shares stand for the whole."""
     law = drive.law
-    spots = law.spots()
+    spots = checked_spots(law)
     return two_lobes(
         peak_pressure(drive, torque)[0],
-        spots.total("load", np.array([u for u in spots.breaks if u > 0.0])) / law.A_0,
+        spots.total("load", np.array(spots.breaks)) / law.A_0,
         mismatch=drive.mismatch_pressure,
         radius=drive.radius,
         deformation=drive.radial_deformation,
@@ -196,10 +208,11 @@ def _windup(drive: HarmonicDrive, steps: int) -> Curve:
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     K, growth = drive_stiffness(drive, T)
-    if not np.all((K > _SOFTEST) & np.isfinite(K)):
+    if not np.all((K > _SOFTEST) & (K < (1.0 - _STIFFEST) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad, pair_scale = {drive.pair_scale:g} and drive_scale = "
-            f"{drive.drive_scale:g} give a stiffness outside ({_SOFTEST:g}, inf) N.m/rad"
+            f"{drive.drive_scale:g} give K_WTS = {K[-1]:g} N.m/rad, allowed is ({_SOFTEST:g}, "
+            f"{drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / _STIFFEST:g} times K_FTS0"
         )
     inner = xi[:-1, None] + half * (1.0 + _GAUSS[0])
     rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
