@@ -164,9 +164,12 @@ def test_a_wrong_computed_value_is_a_miss(monkeypatch):
 
 def test_summary_counts(rows):
     fitted = sum(p.role == "calibration" for p in ALL)
+    against = [p.id for p in ALL if p.text is not None]
+    assert len(against) == 3
     assert summary(rows) == (
         f"{len(ALL)} published points: {fitted} calibrate ({fitted} met), "
-        f"{len(ALL) - fitted} validate ({len(ALL) - fitted} met); missed: none"
+        f"{len(ALL) - fitted} validate ({len(ALL) - fitted} met), 6 of them predictions (6 met); "
+        f"text against its own equations: {', '.join(against)}; missed: none"
     )
 
 

@@ -138,6 +138,11 @@ def claim(contact: GearContact, of: str, over: str) -> bool:
     """
     if over == "MB":
         return _below_majumdar_bhushan(contact)
+    if of == "elastic_fraction" and over == "e":
+        shares = [
+            _at_real_area(_varied(contact, D1=1.56, D2=1.56, e=e), 0.01)[of] for e in (0.1, 0.3, 0.5, 0.7)
+        ]
+        return bool(max(shares) - min(shares) < 0.05)
     if of == "elastic_fraction":
         share = [_at_real_area(_varied(contact, D1=1.56, D2=D), 0.01)[of] for D in (1.45, 1.55, 1.65)]
         return bool(share[0] < share[1] and abs(share[2] - share[1]) < 0.2 * (share[1] - share[0]))

@@ -20,6 +20,8 @@ class Point:
     value : number in `unit`, or the truth of a claim
     role  : `calibration` fixes unpublished parameters, `validation` is predicted
     tolerance : relative; absolute in `unit` where `absolute`
+    prediction : whether a joint's behaviour is predicted, rather than a constant or a claim checked
+    text : what the paper's text claims, where its own equations give the opposite
     """
 
     paper: str
@@ -34,6 +36,8 @@ class Point:
     tolerance: float = CALIBRATION_TOLERANCE
     absolute: bool = False
     basis: str = field(default="fitted")
+    prediction: bool = False
+    text: bool | None = None
 
     def __post_init__(self) -> None:
         if self.role not in ROLES:

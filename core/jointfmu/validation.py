@@ -75,7 +75,7 @@ def table(rows: list[Row]) -> str:
 def _cells(row: Row) -> tuple[str, ...]:
     p = row.point
     if isinstance(p.value, bool):
-        shown = (str(p.value).lower(), str(row.computed).lower(), "-", "-")
+        shown = (published(row), str(row.computed).lower(), "-", "-")
     else:
         unit = f" {p.unit}" if p.absolute else ""
         scale, mark = (1.0, unit) if p.absolute else (100.0, " %")
@@ -88,12 +88,23 @@ def _cells(row: Row) -> tuple[str, ...]:
     return (p.paper, p.id, p.unit, *shown, p.role, "pass" if row.passed else "MISS")
 
 
+def published(row: Row) -> str:
+    """A claim as text, with the text's own where its equations give the opposite."""
+    p = row.point
+    return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
+
+
 def summary(rows: list[Row]) -> str:
-    """One line: how many points were fitted, predicted, missed."""
+    """One line: how many points were fitted, checked, predicted, missed, contradict themselves."""
     fitted = [row for row in rows if row.point.role == "calibration"]
-    predicted = [row for row in rows if row.point.role == "validation"]
+    checked = [row for row in rows if row.point.role == "validation"]
+    predicted = [row for row in checked if row.point.prediction]
+    against = [row.point.id for row in rows if row.point.text is not None]
     names = ", ".join(row.point.id for row in missed(rows)) or "none"
     return (
         f"{len(rows)} published points: {len(fitted)} calibrate ({sum(r.passed for r in fitted)} met), "
-        f"{len(predicted)} validate ({sum(r.passed for r in predicted)} met); missed: {names}"
+        f"{len(checked)} validate ({sum(r.passed for r in checked)} met), "
+        f"{len(predicted)} of them predictions ({sum(r.passed for r in predicted)} met); "
+        f"text against its own equations: {', '.join(against) or 'none'}; "
+        f"missed: {names}"
     )
