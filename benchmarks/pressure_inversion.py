@@ -28,12 +28,11 @@ def best(run, repeats=REPEATS):
 def by_brentq(law, pressures):
     """One scalar root per pressure, on the same integral."""
     spots = law.spots()
-    low = 1e-9 if spots.cutoff else -60.0
 
     def miss(u, target):
         return float(spots.log_total("load", u)[0]) - target
 
-    return np.array([brentq(miss, low, 60.0, args=(np.log(p * law.A_0),), xtol=1e-12) for p in pressures])
+    return np.array([brentq(miss, -60.0, 60.0, args=(np.log(p * law.A_0),), xtol=1e-12) for p in pressures])
 
 
 def main():
