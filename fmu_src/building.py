@@ -27,10 +27,8 @@ def build(
         joint = parameters.joint if parameters else None
         names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
     for name in names:
-        if parameters and parameters.joint != MODELS[name].joint:
-            raise ValueError(
-                f"{name}: the parameter file is of a {parameters.joint!r}, expected a {MODELS[name].joint!r}"
-            )
+        if parameters:
+            MODELS[name].check_joint(parameters.joint)
     jobs = [(flavour, name) for flavour in flavours for name in names]
     built = []
     for flavour, name in track(jobs, "build", len(jobs)):

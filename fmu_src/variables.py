@@ -71,6 +71,11 @@ class Model:
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
+    def check_joint(self, joint: str) -> None:
+        """Raise ValueError if a parameter file is of another joint than this FMU's."""
+        if joint != self.joint:
+            raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
+
     def depends(self, output: str) -> Sequence[str]:
         """Inputs on which an output depends."""
         return self.dependencies.get(output, [v.name for v in self.inputs])

@@ -15,6 +15,21 @@ settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomi
 settings.load_profile("jointfmu")
 
 
+def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
+    from jointfmu import cli
+
+    try:
+        status = cli.main([str(a) for a in arguments])
+    except SystemExit as leave:
+        status = int(str(leave.code))
+    out, err = capsys.readouterr()
+    assert (status, out) == (2, "")
+    assert err.endswith("\n")
+    assert err.count("\n") == 1, err
+    return err
+
+
 class Message(NamedTuple):
     """One logged message; status 1 is a warning, 3 an error."""
 

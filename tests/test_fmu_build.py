@@ -11,6 +11,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from conftest import refused_line
 from fmpy import read_model_description
 from jointfmu_fmus import checks, pipeline
 from jointfmu_fmus.building import FLAVOURS, build
@@ -26,19 +27,6 @@ NAMES = list(MODELS)
 
 def everything(folder: Path) -> list[Path]:
     return sorted(folder.rglob("*"))
-
-
-def refused_line(capsys: Capture, *arguments: object) -> str:
-    """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
-    try:
-        status = cli.main([str(a) for a in arguments])
-    except SystemExit as leave:
-        status = int(str(leave.code))
-    out, err = capsys.readouterr()
-    assert (status, out) == (2, "")
-    assert err.endswith("\n")
-    assert err.count("\n") == 1, err
-    return err
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Fmu, run_host
+from conftest import Fmu, refused_line, run_host
 from jointfmu_fmus.variables import MODELS
 
 from jointfmu import cli
@@ -384,19 +384,6 @@ def without(source: Path, target: Path, part: str) -> Path:
         for name in names:
             new.writestr(name, old.read(name))
     return target
-
-
-def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
-    try:
-        status = cli.main([str(a) for a in arguments])
-    except SystemExit as leave:
-        status = int(str(leave.code))
-    out, err = capsys.readouterr()
-    assert (status, out) == (2, "")
-    assert err.endswith("\n")
-    assert err.count("\n") == 1, err
-    return err
 
 
 RAMP = ("--input", "f", "--to", "100", "--step", "10")

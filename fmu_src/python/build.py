@@ -79,10 +79,7 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
     """
     from pythonfmu import FmuBuilder
 
-    if parameters.joint != MODELS[name].joint:
-        raise ValueError(
-            f"{name}: the parameter file is of a {parameters.joint!r}, expected a {MODELS[name].joint!r}"
-        )
+    MODELS[name].check_joint(parameters.joint)
     sources = runtime_sources() | {"parameters.toml": dump(parameters)}
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
