@@ -5,13 +5,18 @@ from os import environ
 
 
 def build_time() -> datetime:
-    """Now, or SOURCE_DATE_EPOCH (seconds since 1970) where it is set, for builds that repeat.
+    """Now, or SOURCE_DATE_EPOCH where it is set, for builds that repeat."""
+    return fixed_time() or datetime.now(UTC)
+
+
+def fixed_time() -> datetime | None:
+    """SOURCE_DATE_EPOCH (seconds since 1970) where it is set.
 
     Raises ValueError if the variable is no such number.
     """
     epoch = environ.get("SOURCE_DATE_EPOCH")
     if not epoch:
-        return datetime.now(UTC)
+        return None
     try:
         return datetime.fromtimestamp(int(epoch), UTC)
     except (ValueError, OverflowError, OSError):

@@ -9,10 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jointfmu.joints.bolted_joint import BoltedJoint, BoltedJointSpring, row_forces
+from jointfmu.joints.bolted_joint import BoltedJoint, BoltedJointSpring
 from jointfmu.joints.gear_contact import GearContact, GearContactSpring
 from jointfmu.joints.harmonic_drive import HarmonicDrive, HarmonicDriveSpring
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import Number, flat_fields
 
 Values = Mapping[str, float]
 
@@ -38,13 +38,26 @@ class Ramp:
 
 
 @dataclass(frozen=True, slots=True)
+class Outside:
+    """A way to leave the tables, worth a warning: a variable outside its interval.
+
+    interval : (joint, (x, y) at the end of the curve, inputs) -> (low, high); numbers or symbols
+    doc      : what happens there
+    """
+
+    variable: str
+    interval: Callable[[Any, tuple[Number, Number], Mapping[str, Number]], tuple[Number, Number]]
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """One FMU.
 
     joint    : kind of the parameter file
     spring   : makes the tabulated joint of a parameter set
     evaluate : (spring, inputs) -> outputs
-    limits   : (spring, inputs, outputs) -> warnings about a state outside the table, by a short key
+    outside  : warnings about a state outside the tables
     dependencies : inputs that an output depends on, where not on all
     hidden   : prefixes of parameters that are baked in
     """
@@ -57,7 +70,7 @@ class Model:
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
     evaluate: Callable[[Any, Values], Mapping[str, Any]]
-    limits: Callable[[Any, Values, Values], Mapping[str, str]]
+    outside: Sequence[Outside]
     ramp: Ramp
     dependencies: Mapping[str, Sequence[str]]
     hidden: Sequence[str] = ()
@@ -76,6 +89,20 @@ class Model:
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
 
+    def warnings(self, spring: Any, values: Values) -> dict[int, str]:
+        """Warnings about a state of inputs and outputs outside the tables, by number."""
+        units = {v.name: v.unit for v in (*self.inputs, *self.outputs)}
+        found = {}
+        for i, o in enumerate(self.outside):
+            value = values[o.variable]
+            low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
+            if not low <= value <= high:
+                unit = units[o.variable]
+                left, right = "(" if low == -math.inf else "[", ")" if high == math.inf else "]"
+                ends = f"{left}{low:.6g}, {high:.6g}{right}"
+                found[i] = f"{o.variable} = {value:.6g} {unit} is outside {ends} {unit}: {o.doc}"
+        return found
+
     def depends(self, output: str) -> Sequence[str]:
         """Inputs on which an output depends."""
         return self.dependencies.get(output, [v.name for v in self.inputs])
@@ -90,27 +117,6 @@ _CONTACT = (
 )
 
 
-def _spring_limits(spring: HarmonicDriveSpring, v: Values, out: Values) -> dict[str, str]:
-    end, torque = spring.curve.end
-    phi = out["phi_rel"]
-    if abs(phi) <= end:
-        return {}
-    return {
-        "end": f"phi_rel = {phi:.6g} rad is beyond the tabulated law, [{-end:.6g}, {end:.6g}] rad "
-        f"(+-{torque:.6g} N.m): the last tangent is continued"
-    }
-
-
-def _compliance_limits(spring: HarmonicDriveSpring, v: Values, out: Values) -> dict[str, str]:
-    torque = spring.curve.end[1]
-    if abs(v["tau"]) <= torque:
-        return {}
-    return {
-        "end": f"tau = {v['tau']:.6g} N.m is beyond the tabulated law, [{-torque:.6g}, {torque:.6g}] N.m: "
-        "the last tangent is continued"
-    }
-
-
 def _bolted(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
     return spring.motion(
         v["preload"],
@@ -120,33 +126,12 @@ def _bolted(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
     )
 
 
-def _bolted_limits(spring: BoltedJointSpring, v: Values, out: Values) -> dict[str, str]:
-    found = {}
-    low = min(row_forces(spring.joint, v["preload"], v["moment"]))
-    if low < 0.0:
-        found["row"] = (
-            f"moment = {v['moment']:.6g} N.m would need a bolt force of {low:.6g} N, allowed [0, inf): "
-            "the contact is open where the pressure would be negative"
-        )
-    pressure = spring.curve.end[1]
-    if out["p_max"] > pressure:
-        found["end"] = (
-            f"s_rel_z = {v['s_rel_z']:.6g} m and preload = {v['preload']:.6g} N press the contact beyond the "
-            f"tabulated law, [0, {pressure:.6g}] Pa: the last tangent is continued"
-        )
-    return found
+_BEYOND = "beyond the tabulated law the last tangent is continued"
 
 
-def _gear_limits(spring: GearContactSpring, v: Values, out: Values) -> dict[str, str]:
-    f, end = v["f"], spring.max_force
-    if f < 0.0:
-        return {"pull": f"f = {f:.6g} N pulls, allowed [0, {end:.6g}] N: the flanks are apart"}
-    if f > end:
-        return {
-            "end": f"f = {f:.6g} N is beyond the tabulated law, [0, {end:.6g}] N: "
-            "the last tangent is continued"
-        }
-    return {}
+def _row_moment(joint: Any, preload: Number) -> Number:
+    """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
+    return preload * joint.row_distance * joint.row_bolts
 
 
 _MOTION = ("phi1", "phi2")
@@ -175,7 +160,7 @@ MODELS: dict[str, Model] = {
                 *_CONTACT,
             ),
             evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
-            limits=_spring_limits,
+            outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), _BEYOND),),
             ramp=Ramp("phi2", 1.5e-3, 3e-6),
             dependencies={
                 "phi_rel": _MOTION,
@@ -196,7 +181,7 @@ MODELS: dict[str, Model] = {
             inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
             outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau)", 1e-3), *_CONTACT),
             evaluate=lambda s, v: s.windup(v["tau"]),
-            limits=_compliance_limits,
+            outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), _BEYOND),),
             ramp=Ramp("tau", 5.0, 0.01),
             dependencies={"K_FTS": ()},
             hidden=_DRIVE_HIDDEN,
@@ -236,7 +221,14 @@ MODELS: dict[str, Model] = {
                 Variable("p_max", "Pa", "largest contact pressure", 1e6),
             ),
             evaluate=_bolted,
-            limits=_bolted_limits,
+            outside=(
+                Outside(
+                    "moment",
+                    lambda j, end, v: (-_row_moment(j, v["preload"]), _row_moment(j, v["preload"])),
+                    "a bolt force would be negative; the contact is open where the pressure would be",
+                ),
+                Outside("p_max", lambda j, end, v: (-math.inf, end[1]), _BEYOND),
+            ),
             ramp=Ramp("preload", 30e3, 100.0),
             dependencies={"eta_t": ()},
             hidden=("pattern",),
@@ -255,7 +247,10 @@ MODELS: dict[str, Model] = {
                 Variable("elastic_fraction", "1", "elastic part of the real contact area"),
             ),
             evaluate=lambda s, v: s.approach(v["f"]),
-            limits=_gear_limits,
+            outside=(
+                Outside("f", lambda j, end, v: (0.0, math.inf), "it pulls, the flanks are apart"),
+                Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), _BEYOND),
+            ),
             ramp=Ramp("f", 3e3, 10.0),
             dependencies={},
             hidden=("mu", "traction_ratio"),

@@ -388,7 +388,8 @@ def test_load_cases_are_independent():
     together = two_lobes(peaks, np.array([5e7]), **ELLIPSE)
     alone = two_lobes(peaks[1, 0], np.array([5e7]), **ELLIPSE)
     for name in ("share", "position", "normal", "pressure"):
-        np.testing.assert_array_equal(getattr(together, name)[1, 0], getattr(alone, name))
+        case = getattr(together, name)[1, 0][together.share[1, 0] > 0.0]  # the others are pieces of no width
+        np.testing.assert_array_equal(case, getattr(alone, name))
     assert together.mean_pressure.shape == (2, 2)
 
 

@@ -141,7 +141,7 @@ def test_softer_body_is_the_one_that_yields_first():
 @each_drive
 def test_windup_is_the_integral_of_dT_over_K(it, springs):
     """Against adaptive quadrature of 1/K_WTS from zero, to MAX_ERROR."""
-    curve = next(spring.curve for spring in springs.values() if spring.drive is it)
+    curve = next(spring.curve for spring in springs.values() if spring.joint is it)
     torques = [0.0, 0.2 * it.torque_smoothing, it.torque_smoothing, 0.5, 5.0, it.max_torque]
     phi = 0.0
     for low, high in pairwise(torques):
@@ -154,7 +154,7 @@ def test_windup_is_the_integral_of_dT_over_K(it, springs):
 
 @each_drive
 def test_table_follows_the_law_between_its_nodes(it, springs):
-    curve = next(spring.curve for spring in springs.values() if spring.drive is it)
+    curve = next(spring.curve for spring in springs.values() if spring.joint is it)
     assert curve.error <= MAX_ERROR
     x = curve.displacement
     T, K = curve.derivatives((x[:-1] + np.linspace(0.0, 1.0, 8)[:, None] * np.diff(x)).ravel(), 1)
@@ -225,7 +225,7 @@ def test_smooth_through_zero(springs, name):
     """First and second differences of T over an odd extension: slope K(0), no kink, no bend."""
     spring = springs[name]
     K_0 = float(still(spring, 0.0)["K_WTS"])
-    scale = spring.drive.torque_smoothing / K_0  # rad, over which the stiffness bends
+    scale = spring.joint.torque_smoothing / K_0  # rad, over which the stiffness bends
     h = 1e-3 * scale
     tau = still(spring, h * np.arange(-5, 6))["tau"]
     first, second = np.diff(tau) / h, np.diff(tau, 2) / h**2
@@ -242,7 +242,7 @@ def test_smooth_through_zero(springs, name):
 def test_inverse_is_consistent(springs, name):
     """Compliance and spring are one law, also beyond the table."""
     spring = springs[name]
-    T = np.concatenate([np.geomspace(1e-9, 1.0, 201), np.linspace(-1.5, 1.5, 202)]) * spring.drive.max_torque
+    T = np.concatenate([np.geomspace(1e-9, 1.0, 201), np.linspace(-1.5, 1.5, 202)]) * spring.joint.max_torque
     given_torque = spring.windup(T)
     given_angle = still(spring, given_torque["phi_rel"])
     # the polynomial's round-off: 60 eps, carried 0.5 of the table beyond its end over a segment of 0.02

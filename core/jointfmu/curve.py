@@ -56,6 +56,11 @@ class Curve:
         object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
 
     @property
+    def closed(self) -> float:
+        """Load at zero displacement: where the closing of the contact ends."""
+        return float(self.load[np.searchsorted(self.displacement, 0.0)])
+
+    @property
     def end(self) -> tuple[float, float]:
         """Displacement and load at the end of the table."""
         return float(self.displacement[-1]), float(self.load[-1])
@@ -111,17 +116,18 @@ class Curve:
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
 
 
-def assemble(pieces: list[tuple[Array, Array, Array, Array]]) -> Curve:
+def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:
     """Join pieces (displacement, load, stiffness, bend), each sharing its last node with the next.
 
     The stiffness is continuous over the joints, its derivative need not be. The error is measured
     against the curve through every second node, at the quarter points of the segments (midway the
     spline is more accurate than elsewhere), and halved: the order falls to one at a kink.
+    `error` is that of the data themselves.
     """
     fine, coarse = _join(pieces), _join([tuple(column[::2] for column in piece) for piece in pieces])  # type: ignore[misc]
     nodes = fine.displacement
     points = np.concatenate([nodes[:-1] + part * np.diff(nodes) for part in (0.25, 0.5, 0.75)])
-    worst = 0.0
+    worst = error
     for value, rough in zip(fine.derivatives(points), coarse.derivatives(points), strict=True):
         loaded = value > 0.0
         worst = max(worst, float(np.max(np.abs(rough - value)[loaded] / value[loaded])) / 2.0)

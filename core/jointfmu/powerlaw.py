@@ -12,6 +12,7 @@ zeta (D1 + D2) = 1, ...) is removed by `exprel`.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Protocol
 
 import numpy as np
@@ -171,15 +172,17 @@ class Spots:
     @property
     def stiff_onset(self) -> Number:
         """Log-area [1] up to which every spot is plastic, so that the stiffness is zero."""
-        return min(term.lower for term in self.terms["normal"])
+        return reduce(np.minimum, (term.lower for term in self.terms["normal"]))
 
     @property
     def breaks(self) -> list[float]:
         """Log-areas [1], ascending, where a regime of the stiffness ends: its slope jumps there."""
-        ends = {
-            float(end) for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None
-        }
-        return sorted(ends)
+        return sorted({float(end) for end in self.ends})
+
+    @property
+    def ends(self) -> list[Number]:
+        """The same as numbers or symbols, unsorted, with repetitions."""
+        return [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
         """`ln Q` and its derivative in `u` (one pass, for the inversion)."""

@@ -1,7 +1,7 @@
 """The one place where a physical field declares its SI unit, open or closed interval and meaning."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, Field, field, fields, is_dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
 from math import inf
 from typing import Any, TypeAlias, TypeVar, get_type_hints
 
@@ -22,10 +22,14 @@ def quantity(
     lt: float = inf,
     le: float = inf,
     calibration: bool = False,
+    whole: bool = False,
 ) -> Any:
-    """Declare a number [unit] inside an interval; `calibration` marks a value that was fitted."""
+    """Declare a number [unit] inside an interval.
+
+    `calibration` marks a value that was fitted, `whole` one that counts.
+    """
     meta = {"unit": unit, "doc": doc, "gt": gt, "ge": ge, "lt": lt, "le": le}
-    return field(metadata={**meta, "calibration": calibration})
+    return field(metadata={**meta, "calibration": calibration, "whole": whole})
 
 
 def choice(*allowed: str | bool, doc: str) -> Any:
@@ -36,6 +40,41 @@ def choice(*allowed: str | bool, doc: str) -> Any:
 def group(doc: str) -> Any:
     """Declare a nested group of quantities (`surface`, `side1`, ...)."""
     return field(metadata={"group": True, "doc": doc})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """An interval of a parameter that other parameters decide; `ends` as in (0, 1], `doc` says why."""
+
+    name: str
+    low: Number = -inf
+    high: Number = inf
+    ends: str = "()"
+    doc: str
+
+    def problem(self, value: Number, unit: str) -> str | None:
+        """One line as from `problem` below; None if the value is inside, or a symbol."""
+        if any(is_symbol(x) for x in (value, self.low, self.high)):
+            return None
+        low, high = self.ends[0], self.ends[1]
+        above = value >= self.low if low == "[" else value > self.low
+        below = value <= self.high if high == "]" else value < self.high
+        if above and below:
+            return None
+        unit = "" if unit == "1" else f" {unit}"
+        return f"{self.name} = {value:g}{unit} is outside {low}{self.low:g}, {self.high:g}{high}: {self.doc}"
+
+
+def is_symbol(value: Any) -> bool:
+    """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
+    return type(value).__module__.startswith("casadi")
+
+
+def either(condition: Any, one: Number, other: Number) -> Number:
+    """`one` where the condition holds, else `other`; plain values stay as they are."""
+    if isinstance(condition, bool | np.bool_):
+        return one if condition else other
+    return np.where(condition, one, other)
 
 
 def label(item: Field[Any]) -> str:
@@ -55,6 +94,8 @@ def interval(item: Field[Any]) -> str:
 def problem(name: str, value: Any, item: Field[Any]) -> str | None:
     """One line that names the thing, the value with its unit, and what is allowed; None if fine."""
     meta = item.metadata
+    if is_symbol(value):
+        return None
     if "allowed" in meta:
         if any(value is option or (type(value) is str and value == option) for option in meta["allowed"]):
             return None
@@ -69,7 +110,10 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
     inside = (array > meta["gt"]) & (array >= meta["ge"]) & (array < meta["lt"]) & (array <= meta["le"])
     inside &= np.isfinite(array)
     if np.all(inside):
-        return None
+        if not meta["whole"] or np.all(array % 1.0 == 0.0):
+            return None
+        first = array[array % 1.0 != 0.0].flat[0]
+        return f"{name} = {first:g} is no whole number, allowed are 1, 2, 3, ..."
     first = array[~inside].flat[0]
     return f"{name} = {first:.10g}{unit} is outside {interval(item)}: {meta['doc']}"
 
@@ -79,6 +123,15 @@ def check(obj: Any) -> None:
     found = (problem(label(f), getattr(obj, f.name), f) for f in fields(obj) if "group" not in f.metadata)
     if problems := [text for text in found if text]:
         raise ValueError("; ".join(problems))
+
+
+def check_limits(obj: Any, limits: Iterable[Limit]) -> None:
+    """Raise ValueError for the first parameter of `obj` outside an interval that others decide."""
+    units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
+    values = flatten(obj)
+    for limit in limits:
+        if text := limit.problem(values[limit.name], units[limit.name]):
+            raise ValueError(text)
 
 
 def flat_fields(cls: type[Any], prefix: str = "") -> Iterator[tuple[str, Field[Any]]]:

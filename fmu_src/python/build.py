@@ -2,18 +2,18 @@
 
 import re
 import sys
-import tempfile
 import zipfile
 from hashlib import sha256
 from pathlib import Path
 
+from jointfmu_fmus.archive import pack, workshop
 from jointfmu_fmus.variables import MODELS
 
 import jointfmu
 from jointfmu.parameters import ParameterFile, dump
 
 _RUNTIME = (
-    "__init__", "quantity", "surface", "powerlaw", "interface", "curve", "parameters",
+    "__init__", "quantity", "surface", "powerlaw", "interface", "curve", "table", "parameters",
     "asperity", "footprint", "joints",
 )  # fmt: skip
 _PRIVATE = "PRIVATE_PACKAGE"
@@ -61,7 +61,8 @@ def runtime_sources() -> dict[str, str]:
     core, fmus = Path(jointfmu.__file__).parent, Path(__file__).parent.parent
     files = {p: p.relative_to(core) for p in sorted(core.rglob("*.py"))}
     chosen = {p: str(r) for p, r in files.items() if r.parts[0].removesuffix(".py") in _RUNTIME}
-    chosen |= {fmus / p: f"fmus/{p}" for p in ("__init__.py", "stamp.py", "units.py", "variables.py")}
+    shared = ("__init__.py", "stamp.py", "units.py", "variables.py", "xml_parts.py")
+    chosen |= {fmus / p: f"fmus/{p}" for p in shared}
     chosen |= {fmus / "python" / p: f"fmus/python/{p}" for p in ("__init__.py", "slave.py")}
     return {inside: _private(p.read_text(encoding="utf-8")) for p, inside in sorted(chosen.items())}
 
@@ -84,23 +85,16 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
     target = out / f"{name}.fmu"
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as folder:
-            work = Path(folder)
-            script = work / "src" / f"{name}_{digest}.py"
-            _write(script, _ENTRY.format(name=name, package=package, digest=digest))
-            for inside, text in sources.items():
-                root = work / "src" if inside == "parameters.toml" else work / "src" / package
-                _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
-            built = _pythonfmu(FmuBuilder, script, package, work / "out")
-            beside = work / f"{name}.fmu"
-            _repack(built, beside)
-            beside.replace(target)
-    except OSError as error:
-        raise ValueError(
-            f"{target}: cannot be written ({error.strerror}); expected a writable folder"
-        ) from None
+    with workshop(target) as work:
+        script = work / "src" / f"{name}_{digest}.py"
+        _write(script, _ENTRY.format(name=name, package=package, digest=digest))
+        for inside, text in sources.items():
+            root = work / "src" if inside == "parameters.toml" else work / "src" / package
+            _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
+        built = _pythonfmu(FmuBuilder, script, package, work / "out")
+        with zipfile.ZipFile(built) as made:
+            members = {n: made.read(n) for n in made.namelist() if "__pycache__" not in n}
+        pack(members, work / target.name)
     return target
 
 
@@ -122,18 +116,6 @@ def _pythonfmu(builder: type, script: Path, package: str, out: Path) -> Path:
             if name.split(".")[0] in (package, script.stem):
                 del sys.modules[name]
     return built
-
-
-def _repack(source: Path, target: Path) -> None:
-    """Same members, sorted and with one fixed date, so equal content gives an equal file."""
-    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
-        for name in sorted(old.namelist()):
-            if "__pycache__" in name:
-                continue
-            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-            info.external_attr = 0o644 << 16
-            info.compress_type = zipfile.ZIP_DEFLATED
-            new.writestr(info, old.read(name))
 
 
 def _write(path: Path, text: str) -> None:

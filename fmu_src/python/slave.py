@@ -3,18 +3,17 @@
 import ctypes
 import json
 import math
-import sys
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
 from typing import Any, ClassVar, NoReturn, TypeVar
 from uuid import NAMESPACE_URL, uuid5
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element
 
 import numpy as np
 from jointfmu_fmus.stamp import build_time
-from jointfmu_fmus.units import UNITS, display_unit
-from jointfmu_fmus.variables import MODELS, Model, Variable
+from jointfmu_fmus.variables import MODELS, Model
+from jointfmu_fmus.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
@@ -62,46 +61,35 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.description = self.model.doc
         self.version, self.license, self.author = __version__, "MIT", "jointfmu"
         self.guid = uuid5(NAMESPACE_URL, f"jointfmu/{self.fmu}/{self.content}")
-        steps = self.model.ramp.end / self.model.ramp.step
         self.default_experiment = DefaultExperiment(
-            start_time=0.0, stop_time=float(round(steps)), step_size=1.0
+            start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
         self.start = flatten(load(Path(self.resources) / "parameters.toml", self.model.joint).values)
+        self.listed = listed(self.model, self.start)
         self.fields = self.model.parameter_fields()
         self.values: dict[str, Any] = {**self.start, **{v.name: 0.0 for v in self.model.inputs}}
         self.initialized = False
-        self.warned: set[str] = set()
+        self.warned: set[int] = set()
         self._spring: Any = None
         self._outputs: dict[str, float] | None = None
         self._register()
 
     def _register(self) -> None:
-        for v in self.model.inputs:
-            self._variable(v.name, Real, Fmi2Causality.input, Fmi2Variability.continuous, v.doc)
-        for v in self.model.outputs:
-            self._variable(v.name, Real, Fmi2Causality.output, Fmi2Variability.continuous, v.doc)
-        for name, item in self.fields.items():
-            kind = Boolean if "allowed" in item.metadata else Real
-            doc = item.metadata["doc"]
-            if item.metadata.get("calibration"):
-                doc += " (calibration parameter: fitted to published points)"
-            self._variable(name, kind, Fmi2Causality.parameter, Fmi2Variability.fixed, doc)
+        for item in self.listed:
+            self.register_variable(self._variable(item), nested=False)
 
-    def _variable(self, name: str, kind: Any, causality: Any, variability: Any, doc: str) -> None:
-        output = causality == Fmi2Causality.output
-        options = {"initial": Fmi2Initial.calculated} if output else {}
-        if causality == Fmi2Causality.parameter:
-            options = {"initial": Fmi2Initial.exact}
-        variable = kind(
+    def _variable(self, item: Listed) -> Any:
+        name, output, parameter = item.name, item.causality == "output", item.causality == "parameter"
+        initial = Fmi2Initial.calculated if output else Fmi2Initial.exact
+        return (Boolean if item.boolean else Real)(
             name,
-            causality=causality,
-            variability=variability,
-            description=doc,
+            causality=Fmi2Causality[item.causality],
+            variability=Fmi2Variability.fixed if parameter else Fmi2Variability.continuous,
+            description=item.doc,
             getter=(lambda: self.output(name)) if output else (lambda: self.values[name]),
             setter=None if output else (lambda value: self.set(name, value)),
-            **options,
+            **({"initial": initial} if output or parameter else {}),
         )
-        self.register_variable(variable, nested=False)
 
     def set(self, name: str, value: Any) -> None:
         """Take a parameter or an input; it is checked when it is used."""
@@ -135,7 +123,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         if bad := [name for name, value in outputs.items() if not math.isfinite(value)]:
             given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
             self.refuse(f"{given}: too large, {bad[0]} is not finite")
-        for key, message in self.model.limits(self.spring(), inputs, outputs).items():
+        for key, message in self.model.warnings(self.spring(), {**inputs, **outputs}).items():
             if key not in self.warned:
                 self.warned.add(key)
                 self.log(message, Fmi2Status.warning, "logStatusWarning")
@@ -201,70 +189,13 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         root: Element = super().to_xml(dict(model_options or {}))
         root.set("generationDateAndTime", build_time().strftime("%Y-%m-%dT%H:%M:%SZ"))
         root.set("generationTool", f"jointfmu {__version__}")
-        root.insert(1, self._unit_definitions())
-        nodes = {node.attrib["name"]: node for node in root.iter("ScalarVariable")}
-        listed: dict[str, Variable] = {v.name: v for v in (*self.model.inputs, *self.model.outputs)}
-        for name, node in nodes.items():
-            real = node.find("Real")
-            if real is None:
-                continue
-            if name in listed:
-                v = listed[name]
-                shown = display_unit(v.unit, v.nominal)
-                real.attrib.update(unit=v.unit, displayUnit=shown, nominal=f"{v.nominal:g}")
-                if v.low > -math.inf:
-                    real.set("min", f"{v.low:g}")
-            else:
-                meta, start = self.fields[name].metadata, self.start[name]
-                shown = display_unit(meta["unit"], start)
-                real.attrib.update(unit=meta["unit"], displayUnit=shown, start=repr(start))
-                _bounds(real, meta)
-        self._structure(root, {name: i for i, name in enumerate(nodes, start=1)})
-        return root
-
-    def _unit_definitions(self) -> Element:
-        definitions = Element("UnitDefinitions")
-        used = {v.unit for v in (*self.model.inputs, *self.model.outputs)}
-        used |= {f.metadata["unit"] for f in self.fields.values() if "unit" in f.metadata}
-        for name in sorted(used):
-            unit = SubElement(definitions, "Unit", name=name)
-            SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
-            for shown, factor in UNITS[name].display.items():
-                SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
-        return definitions
-
-    def _structure(self, root: Element, index: dict[str, int]) -> None:
+        root.insert(1, unit_definitions(self.listed))
+        for item, node in zip(self.listed, root.iter("ScalarVariable"), strict=True):
+            if item.attributes:
+                node[0].attrib.update(item.attributes)
+                if item.start is not None:
+                    node[0].set("start", text(item.start))
         structure = root.find("ModelStructure")
         assert structure is not None
-        for child in list(structure):
-            structure.remove(child)
-        outputs, initial = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
-        parameters = [index[name] for name in self.fields]
-        for v in self.model.outputs:
-            inputs = sorted(index[name] for name in self.model.depends(v.name))
-            kinds = " ".join(["dependent"] * len(inputs))
-            SubElement(
-                outputs,
-                "Unknown",
-                index=str(index[v.name]),
-                dependencies=" ".join(map(str, inputs)),
-                dependenciesKind=kinds,
-            )
-            known = sorted(inputs + parameters)
-            SubElement(
-                initial,
-                "Unknown",
-                index=str(index[v.name]),
-                dependencies=" ".join(map(str, known)),
-                dependenciesKind=" ".join(["dependent"] * len(known)),
-            )
-
-
-def _bounds(real: Element, meta: Any) -> None:
-    """FMI bounds are closed; an open bound is narrowed to the next normal number."""
-    low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
-    if low > -math.inf:
-        beyond = sys.float_info.min if low == 0.0 else math.nextafter(low, math.inf)
-        real.set("min", repr(low if low == meta["ge"] else beyond))
-    if high < math.inf:
-        real.set("max", repr(high if high == meta["le"] else math.nextafter(high, -math.inf)))
+        structure[:] = fmi2_structure(self.model, "fixed")
+        return root

@@ -1,8 +1,11 @@
 """Two-lobe pressure on the elliptical cone between flexspline and bearing ring."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ..quantity import Number
 from .nodes import Footprint
 
 Array = NDArray[np.float64]
@@ -10,6 +13,71 @@ Array = NDArray[np.float64]
 _AROUND = np.polynomial.legendre.leggauss(16)
 _ALONG = np.polynomial.legendre.leggauss(6)
 _CROWDING = 3
+
+PLACES = 1.0 - (0.5 * (1.0 - _AROUND[0])) ** _CROWDING
+"""Nodes around [1] on a piece of a lobe from 0 to 1, crowded towards 1: the stiffness falls with a
+broken power of the pressure there."""
+WEIGHTS = 0.5 * _CROWDING * (0.5 * (1.0 - _AROUND[0])) ** (_CROWDING - 1) * _AROUND[1]
+"""Their weights [1], sum 1."""
+HEIGHTS, HEIGHT_WEIGHTS = 0.5 * (1.0 + _ALONG[0]), 0.5 * _ALONG[1]
+"""Nodes along the contact from 0 to 1 and their weights [1]."""
+
+
+class Lobe(NamedTuple):
+    """One point of the contact: pressure [Pa], position [m], unit normal [1], d theta/d t [1]."""
+
+    pressure: Number
+    x: Number
+    y: Number
+    normal_x: Number
+    normal_y: Number
+    normal_z: Number
+    stretch: Number
+
+    @property
+    def along(self) -> Number:
+        """Normal part [m] of the displacement by a unit twist about the drive's axis."""
+        return self.x * self.normal_y - self.y * self.normal_x
+
+    @property
+    def square(self) -> Number:
+        """Square [m2] of that displacement."""
+        return self.x**2 + self.y**2
+
+
+def lobe(
+    sine_t: Number,
+    cosine_t: Number,
+    z: Number,
+    local: Number,
+    *,
+    mismatch: Number,
+    radius: Number,
+    deformation: Number,
+    cup: Number,
+) -> Lobe:
+    """The point at height z [m] whose angle theta from the major axis has sin theta = edge sin t.
+
+    `local` [Pa] is the pressure on the major axis at that height, `edge` the sine at the lobe's edge.
+    """
+    depth = np.minimum(local, mismatch)
+    edge = np.sqrt(depth / mismatch)
+    sine = edge * sine_t
+    cosine = np.hypot(cosine_t, np.sqrt(1.0 - edge**2) * sine_t)
+    w = deformation * (1.0 - z / cup)
+    a, b = radius + w, radius - w
+    slope = deformation / cup * (cosine**2 - sine**2)
+    flat = 1.0 / np.sqrt(1.0 + slope**2)
+    across = flat / np.hypot(b * cosine, a * sine)
+    return Lobe(
+        pressure=(local - depth) + depth * cosine_t**2,
+        x=a * cosine,
+        y=b * sine,
+        normal_x=across * b * cosine,
+        normal_y=across * a * sine,
+        normal_z=slope * flat,
+        stretch=edge * cosine_t / cosine,
+    )
 
 
 def two_lobes(
@@ -30,8 +98,8 @@ def two_lobes(
         p = peak (1 - z/cup) - mismatch sin^2(theta), where positive,
 
     so each lobe widens as it grows. Nodes follow the lobe (sin theta = sin(edge) sin t) and sit
-    between the pressures at which the interface law changes its regime, hence a sum over the nodes
-    is smooth in the peak: 16 Gauss-Legendre nodes per regime around, 6 along.
+    between the pressures at which the interface law changes its regime, around and along, hence a
+    sum over the nodes is smooth in the peak: 16 Gauss-Legendre nodes per regime around, 6 along.
 
     peak        : (...) [Pa] pressure on the major axis at the opening, > 0
     breaks      : (k) [Pa] pressures at which the law changes its regime
@@ -39,56 +107,53 @@ def two_lobes(
     radius      : [m]  mean radius; deformation: [m] radial deformation w
     length, cup : [m]  axial length of the contact and of the cup that tapers the deformation
     """
-    z = 0.5 * length * (1.0 + _ALONG[0])
-    axial = 0.5 * _ALONG[1]
-    local = np.asarray(peak, dtype=np.float64)[..., None, None] * (1.0 - z / cup)[:, None]
-    depth = np.minimum(local, mismatch)
-    edge = np.sqrt(depth / mismatch)
-    t, weight = _between(np.arcsin(_sine_at(breaks, local, depth)))
-    sine = edge * np.sin(t)
-    theta = np.arcsin(sine)
-    cosine = np.hypot(np.cos(t), np.sqrt(1.0 - edge**2) * np.sin(t))  # of theta
-    stretch = edge * np.cos(t) / cosine  # d theta/d t
-    share = 4.0 * axial[:, None] * weight * stretch / (2.0 * np.pi)
-    pressure = (local - depth) + depth * np.cos(t) ** 2
-    height = np.broadcast_to(z[:, None], theta.shape)
-    taper = deformation * (1.0 - height / cup)
-    slope = np.arctan(deformation * np.cos(2.0 * theta) / cup)
-    position, normal = _ellipse(theta, radius, taper, slope, height)
+    z, axial = heights(np.asarray(peak, dtype=np.float64), breaks, length, cup)
+    z, axial = z[..., None], axial[..., None]
+    local = np.asarray(peak, dtype=np.float64)[..., None, None] * (1.0 - z / cup)
+    limits = piece_ends(local, breaks, mismatch)
+    width = np.diff(limits)[..., None]
+    t = _flat(limits[..., :-1, None] + width * PLACES)
+    point = lobe(
+        np.sin(t), np.cos(t), z, local, mismatch=mismatch, radius=radius, deformation=deformation, cup=cup
+    )
+    share = axial * _flat(width * WEIGHTS) * point.stretch * (2.0 / np.pi)
     shape = (*np.shape(peak), -1)
+    height = np.broadcast_to(z, t.shape)
+    normal_z = np.broadcast_to(point.normal_z, t.shape)
     return Footprint(
         share=share.reshape(shape),
-        position=position.reshape(*shape, 3),
-        normal=normal.reshape(*shape, 3),
-        pressure=pressure.reshape(shape),
+        position=np.stack([point.x, point.y, height], axis=-1).reshape(*shape, 3),
+        normal=np.stack([point.normal_x, point.normal_y, normal_z], axis=-1).reshape(*shape, 3),
+        pressure=point.pressure.reshape(shape),
     )
 
 
-def _sine_at(breaks: Array, local: Array, depth: Array) -> Array:
-    """sin t (..., k) where the pressure `local - depth sin^2 t` passes the breaks, within [0, 1]."""
-    falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
-    return np.sqrt(np.clip((local - falling) / depth, 0.0, 1.0))
+def heights(peak: Array, breaks: Array, length: float, cup: float) -> tuple[Array, Array]:
+    """z (..., n) [m] of the nodes along the contact and their weights [1], sum 1, at peaks (...) [Pa].
 
-
-def _between(ends: Array) -> tuple[Array, Array]:
-    """Nodes and weights (..., n) on [0, pi/2], Gauss-Legendre pieced together at ends (..., k).
-
-    The stiffness falls with a broken power of the pressure, so in each piece the nodes crowd towards
-    its end by `1 - (1 - r)^3`.
+    Six per piece between the heights at which the pressure on the major axis passes a break.
     """
+    falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
+    falling = falling[(falling < np.max(peak)) & (falling > np.min(peak) * (1.0 - length / cup))]
+    ends = np.clip(cup * (1.0 - falling / np.asarray(peak)[..., None]), 0.0, length)
     edge = np.zeros((*ends.shape[:-1], 1))
-    limits = np.concatenate([edge, ends, edge + 0.5 * np.pi], axis=-1)
-    rest = 0.5 * (1.0 - _AROUND[0])
-    place, weight = 1.0 - rest**_CROWDING, 0.5 * _CROWDING * rest ** (_CROWDING - 1) * _AROUND[1]
+    limits = np.concatenate([edge, ends, edge + length], axis=-1)
     width = np.diff(limits)[..., None]
-    shape = (*ends.shape[:-1], -1)
-    return (limits[..., :-1, None] + width * place).reshape(shape), (width * weight).reshape(shape)
+    return _flat(limits[..., :-1, None] + width * HEIGHTS), _flat(width / length * HEIGHT_WEIGHTS)
 
 
-def _ellipse(theta: Array, radius: float, w: Array, slope: Array, z: Array) -> tuple[Array, Array]:
-    """Points and unit normals of the elliptical cone with half axes radius +- w."""
-    a, b = radius + w, radius - w
-    position = np.stack([a * np.cos(theta), b * np.sin(theta), z], axis=-1)
-    tilt = np.arctan2(a * np.sin(theta), b * np.cos(theta))
-    flat = np.stack([np.cos(slope) * np.cos(tilt), np.cos(slope) * np.sin(tilt), np.sin(slope)], axis=-1)
-    return position, flat
+def piece_ends(local: Array, breaks: Array, mismatch: float) -> Array:
+    """t (..., k + 2) from the axis to the edge, 0 to pi/2: where the pressure passes the breaks.
+
+    local : (..., 1) [Pa] pressure on the major axis; pieces that lie above it have no width.
+    """
+    falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
+    depth = np.minimum(local, mismatch)
+    ends = np.arcsin(np.sqrt(np.clip((local - falling) / depth, 0.0, 1.0)))
+    axis = np.zeros((*ends.shape[:-1], 1))
+    return np.concatenate([axis, ends, axis + 0.5 * np.pi], axis=-1)
+
+
+def _flat(nodes: Array) -> Array:
+    """Nodes (..., pieces, n) as (..., pieces n)."""
+    return nodes.reshape(*nodes.shape[:-2], -1)

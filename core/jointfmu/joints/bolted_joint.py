@@ -1,5 +1,6 @@
 """Bolted joint: a frame under uneven pressure (Zhao 2018), normal, tangential and rotational."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,9 +10,8 @@ from ..asperity import mindlin
 from ..asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
 from ..curve import Curve, approach_curve
 from ..footprint.bolts import BoltPattern, PressureShape, pressure_shape
-from ..footprint.nodes import Footprint
 from ..interface import largest_spot
-from ..quantity import group, quantity
+from ..quantity import Limit, Number, check_limits, group, quantity
 
 Array = NDArray[np.float64]
 
@@ -20,23 +20,21 @@ Array = NDArray[np.float64]
 class BoltedJoint(Zhao2018):
     """Parameters of the bolted joint: the interface law, the bolts and how they spread their force."""
 
-    n_bolts: float = quantity("1", "number of bolts", ge=1.0)
-    row_bolts: float = quantity("1", "bolts in each of the two rows that carry the moment", ge=1.0)
+    n_bolts: float = quantity("1", "number of bolts", ge=1.0, whole=True)
+    row_bolts: float = quantity(
+        "1", "bolts in each of the two rows that carry the moment", ge=1.0, whole=True
+    )
     row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
     pattern: BoltPattern = group("frame and decay of the pressure around each bolt")
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in ("n_bolts", "row_bolts"):
-            if getattr(self, name) % 1.0:
-                raise ValueError(
-                    f"{name} = {getattr(self, name):g} is no whole number, allowed are 1, 2, 3, ..."
-                )
-        if 2.0 * self.row_bolts > self.n_bolts:
-            raise ValueError(
-                f"row_bolts = {self.row_bolts:g} is outside [1, {0.5 * self.n_bolts:g}]: "
-                "two rows cannot hold more bolts than the joint has"
-            )
+        check_limits(self, self.limits())
+
+    def limits(self) -> list[Limit]:
+        """Intervals that other parameters decide."""
+        why = "two rows cannot hold more bolts than the joint has"
+        return [Limit(name="row_bolts", low=1.0, high=0.5 * self.n_bolts, ends="[]", doc=why)]
 
 
 def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, moment: ArrayLike) -> Array:
@@ -45,9 +43,15 @@ def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, mome
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
     y < 0 (Zhao 2018, section 3). Where the sum would be negative the node is open.
     """
-    mean = np.asarray(preload) * joint.n_bolts / joint.A_0
-    shift = np.asarray(moment) / joint.row_distance / joint.A_0
-    return np.maximum(mean[..., None] * shape.equal + shift[..., None] * shape.tilt, 0.0)
+    force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
+    return np.asarray(node_pressure(joint, shape.equal, shape.tilt, force, bending))
+
+
+def node_pressure(joint: BoltedJoint, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
+    """Pressure [Pa] of a node of the pressure shape."""
+    mean = preload * joint.n_bolts / joint.A_0
+    shift = moment / joint.row_distance / joint.A_0
+    return np.maximum(mean * equal + shift * tilt, 0.0)
 
 
 def row_forces(joint: BoltedJoint, preload: float, moment: float) -> tuple[float, float]:
@@ -56,9 +60,9 @@ def row_forces(joint: BoltedJoint, preload: float, moment: float) -> tuple[float
     return preload + shift, preload - shift
 
 
-def shear_ratio(joint: BoltedJoint) -> float:
+def shear_ratio(joint: BoltedJoint) -> Number:
     """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
-    return float(tangential_stiffness(joint, 1.0) / normal_stiffness(joint, 1.0))
+    return tangential_stiffness(joint, 1.0) / normal_stiffness(joint, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,52 +102,91 @@ class BoltedJointSpring:
 
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
         """
-        start = self.tightened(preload, moment)
-        area, rho = self.joint.A_0, shear_ratio(self.joint)
-        x, y, z = s_rel
-        shear = 0.5 * rho * (x * x + y * y)
-        p, k, bend, twist = self.curve.derivatives(start - z, 3)
-        nodes = footprint(self.shape, p)
-        K_n = float(area * nodes.translation(k))
-        K_zz, K_t = float(area * nodes.translation(k + shear * twist)), rho * K_n
-        elastic_z = float(area * nodes.translation(p - self.curve.derivatives(start, 0)[0] + shear * bend))
-        eta_n = self.normal_loss_factor(p)
-        eta_t = float(mindlin.loss_factor(self.joint.traction_ratio))
-        C_n, C_t = eta_n * np.sqrt(self.joint.mass * K_n), eta_t * np.sqrt(self.joint.mass * K_t)
-        K_rx, K_ry, K_rz = (float(nodes.rotation(area * k, rho * area * k, axis)) for axis in np.eye(3))
-        return {
-            "f_x": 0.0 - K_t * x - C_t * v_rel[0],
-            "f_y": 0.0 - K_t * y - C_t * v_rel[1],
-            "f_z": elastic_z - C_n * v_rel[2],
-            "K_xx": K_t,
-            "K_yy": K_t,
-            "K_zz": K_zz,
-            "C_xx": C_t,
-            "C_yy": C_t,
-            "C_zz": C_n,
-            "eta_t": eta_t,
-            "eta_n": eta_n,
-            "K_rx": K_rx,
-            "K_ry": K_ry,
-            "K_rz": K_rz,
-            "p_mean": float(nodes.mean_pressure),
-            "p_max": float(np.max(p)),
-        }
+        start, shape = self.tightened(preload, moment), self.shape
+        tightened = self.curve.derivatives(start, 0)[0]
+        curve = self.curve.derivatives(start - s_rel[2], 3)
+        x2, y2 = shape.position.T**2
+        each = node_parts(self.joint, x2, y2, s_rel, tightened, curve, self.works(curve[0]))
+        sums = {name: np.sum(shape.share * value) for name, value in each.items()}
+        return motion(self.joint, sums, s_rel, v_rel, np.max(curve[0]))
 
-    def normal_loss_factor(self, p: Array) -> float:
-        """eta_n [1] of the joint: plastic over elastic work of all nodes (Zhao 2018, Eqs. 16, 18, 19).
+    def works(self, p: Array) -> tuple[Array, Array]:
+        """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
 
-        Inside the closing of the contact, where the law itself has hardly an elastic spot, the value
-        at its end is kept.
+        Inside the closing of the contact, where the law itself has hardly an elastic spot, the values
+        at its end are kept.
         """
-        floor = self.curve.load[np.searchsorted(self.curve.displacement, 0.0)]
-        spots, u = self.joint.spots(), largest_spot(self.joint, np.maximum(p, floor))
-        plastic = self.shape.share @ spots.total("plastic_work", u)
-        return float(plastic / (self.shape.share @ spots.total("elastic_work", u)))
+        spots, u = self.joint.spots(), largest_spot(self.joint, np.maximum(p, self.curve.closed))
+        return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-def footprint(shape: PressureShape, p: Array) -> Footprint:
-    """The flat contact with normal z as nodes."""
-    n = shape.share.size
-    position = np.column_stack([shape.position, np.zeros(n)])
-    return Footprint(shape.share, position, np.tile([0.0, 0.0, 1.0], (n, 1)), p)
+def node_parts(
+    joint: BoltedJoint,
+    x2: Number,
+    y2: Number,
+    s_rel: Sequence[Number],
+    tightened: Number,
+    curve: Sequence[Number],
+    works: Sequence[Number],
+) -> dict[str, Number]:
+    """What a node contributes to the joint, per share of the area.
+
+    x2, y2    : [m2] squares of its distances from the centroid
+    s_rel     : [m] relative displacement
+    tightened : [Pa] its pressure at tightening
+    curve     : its pressure [Pa] now and three derivatives in the approach
+    works     : [J] plastic and elastic work at this pressure
+    """
+    x, y, _ = s_rel
+    p, k, bend, twist = curve
+    shear = 0.5 * shear_ratio(joint) * (x * x + y * y)
+    plastic, elastic = works
+    return {
+        "pressure": p,
+        "stiffness": k,
+        "normal": k + shear * twist,
+        "force": p - tightened + shear * bend,
+        "about_x": k * y2,
+        "about_y": k * x2,
+        "plastic": plastic,
+        "elastic": elastic,
+    }
+
+
+def motion(
+    joint: BoltedJoint,
+    sums: Mapping[str, Number],
+    s_rel: Sequence[Number],
+    v_rel: Sequence[Number],
+    p_max: Number,
+) -> dict[str, Number]:
+    """What the joint exports, from the sums of its nodes' contributions times share.
+
+    A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
+    plane: Hu 2023, Eq. 45, corrected.
+    """
+    area, rho = joint.A_0, shear_ratio(joint)
+    K_n = area * sums["stiffness"]
+    K_t = rho * K_n
+    eta_n = sums["plastic"] / sums["elastic"]
+    eta_t = mindlin.loss_factor(joint.traction_ratio)
+    C_n, C_t = eta_n * np.sqrt(joint.mass * K_n), eta_t * np.sqrt(joint.mass * K_t)
+    K_rx, K_ry = area * sums["about_x"], area * sums["about_y"]
+    return {
+        "f_x": 0.0 - K_t * s_rel[0] - C_t * v_rel[0],
+        "f_y": 0.0 - K_t * s_rel[1] - C_t * v_rel[1],
+        "f_z": area * sums["force"] - C_n * v_rel[2],
+        "K_xx": K_t,
+        "K_yy": K_t,
+        "K_zz": area * sums["normal"],
+        "C_xx": C_t,
+        "C_yy": C_t,
+        "C_zz": C_n,
+        "eta_t": eta_t,
+        "eta_n": eta_n,
+        "K_rx": K_rx,
+        "K_ry": K_ry,
+        "K_rz": rho * (K_rx + K_ry),
+        "p_mean": sums["pressure"],
+        "p_max": p_max,
+    }

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..asperity.yu2022 import Yu2022
 from ..curve import Curve, approach_curve
 from ..interface import at_pressure
+from ..quantity import Number
 
 Array = NDArray[np.float64]
 
@@ -41,12 +42,24 @@ class GearContactSpring:
         """
         force = np.maximum(np.asarray(f, dtype=np.float64), 0.0)
         delta = self.curve.inverse(force / self.joint.A_0)
-        stiffness = self.joint.A_0 * self.curve.derivatives(delta, 1)[1]
+        stiffness = self.curve.derivatives(delta, 1)[1]
         touching = np.where(force > 0.0, force, self.max_force)
         state = at_pressure(self.joint, touching / self.joint.A_0)
-        return {
-            "s_rel": delta - self.curve.displacement[0],
-            "K_N": stiffness,
-            "A_r": np.where(force > 0.0, state["A_r"], 0.0),
-            "elastic_fraction": np.where(force > 0.0, state["elastic_fraction"], 0.0),
-        }
+        first = self.curve.displacement[0]
+        return contact(self.joint, force, delta - first, stiffness, state["A_r"], state["elastic_fraction"])
+
+
+def contact(
+    joint: GearContact, f: Number, approach: Number, stiffness: Number, area: Number, elastic: Number
+) -> dict[str, Number]:
+    """What the contact exports at a load [N].
+
+    Given are approach [m] and stiffness per area [N/m3] of the curve there, and real area [m2] and its
+    elastic part [1] of the law.
+    """
+    return {
+        "s_rel": approach,
+        "K_N": joint.A_0 * stiffness,
+        "A_r": np.where(f > 0.0, area, 0.0),
+        "elastic_fraction": np.where(f > 0.0, elastic, 0.0),
+    }

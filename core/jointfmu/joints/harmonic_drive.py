@@ -7,15 +7,26 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..asperity.hu2023 import Hu2023
 from ..curve import Curve, assemble, refined
-from ..footprint.lobes import two_lobes
+from ..footprint.lobes import (
+    PLACES,
+    WEIGHTS,
+    Lobe,
+    heights,
+    lobe,
+    piece_ends,
+    two_lobes,
+)
 from ..footprint.nodes import Footprint
 from ..interface import checked_spots, largest_spot
-from ..quantity import check, choice, group, quantity
+from ..quantity import Limit, Number, check, check_limits, choice, either, group, quantity
 from ..surface import ArealSurface, Elastic, ElasticPlastic
+from ..table import Blocks, stiffness_tables
 
 Array = NDArray[np.float64]
 
 _AXIS = (0.0, 0.0, 1.0)
+PAIR_STEPS = 25
+"""Steps of the torque curve per four cells of the pair's table and unit of log-pressure [1]."""
 _STEPS, _SOFTEST, _STIFFEST = 160, 1e-100, 1e-6
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
@@ -67,47 +78,44 @@ class HarmonicDrive:
 
     def __post_init__(self) -> None:
         check(self)
-        if self.rated_pressure <= self.zero_torque_pressure:
-            raise ValueError(
-                f"rated_pressure = {self.rated_pressure:g} Pa is outside "
-                f"({self.zero_torque_pressure:g}, inf): it must exceed zero_torque_pressure"
-            )
-        most = 2.0 * np.pi * self.radius * self.cup_length
-        if most <= self.A_0:
-            raise ValueError(
-                f"A_0 = {self.A_0:g} m2 is outside (0, {most:g}): the contact must be shorter than the cup "
-                f"(cup_length = {self.cup_length:g} m at radius = {self.radius:g} m)"
-            )
-        self._check_contact()
+        check_limits(self, self.limits())
 
-    def _check_contact(self) -> None:
-        """Refuse a deformation or eccentricity that leaves no contact without torque."""
-        reserve = self.zero_torque_pressure - self._deformation_loss
-        if reserve <= 0.0:
-            reach = (self.zero_torque_pressure / self.deformation_loss) ** 0.5
-            low, high = self.optimum_deformation - reach, self.optimum_deformation + reach
-            raise ValueError(
-                f"radial_deformation = {self.radial_deformation:g} m is outside ({low:g}, {high:g}): "
-                "beyond it the pair loses contact without torque"
-            )
-        if self.eccentricity_loss * self.eccentricity >= reserve:
-            high = reserve / self.eccentricity_loss
-            raise ValueError(
-                f"eccentricity = {self.eccentricity:g} m is outside [0, {high:g}): "
-                "beyond it the pair loses contact without torque"
-            )
+    def limits(self) -> list[Limit]:
+        """Intervals that other parameters decide."""
+        no_contact = "beyond it the pair loses contact without torque"
+        zero, loss, best = self.zero_torque_pressure, self.deformation_loss, self.optimum_deformation
+        with np.errstate(over="ignore"):
+            reach = np.sqrt(zero / np.maximum(loss, 1e-290))
+            reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
+        return [
+            Limit(name="rated_pressure", low=zero, doc="it must exceed zero_torque_pressure"),
+            Limit(
+                name="A_0",
+                low=0.0,
+                high=2.0 * np.pi * self.radius * self.cup_length,
+                doc="the contact must be shorter than the cup (2 pi radius cup_length)",
+            ),
+            Limit(name="radial_deformation", low=best - reach, high=best + reach, doc=no_contact),
+            Limit(name="eccentricity", low=0.0, high=reserve, ends="[)", doc=no_contact),
+        ]
+
+    def table_limits(self) -> list[Limit]:
+        """Intervals that the tabulated law needs beside."""
+        highest = peak_pressure(self, self.max_torque)[0]
+        meet = "the two lobes would meet below max_torque"
+        return [Limit(name="mismatch_pressure", low=highest, doc=meet)]
 
     @property
     def law(self) -> Hu2023:
         """Interface law of the pair; `side1` is the body with the lower yield strength."""
-        softer, harder = self.flexspline, self.bearing
-        if harder.sigma_y < softer.sigma_y:
-            softer, harder = harder, softer
+        one, other = self.flexspline, self.bearing
+        swap = other.sigma_y < one.sigma_y
+        E, nu = either(swap, other.E, one.E), either(swap, other.nu, one.nu)
         return Hu2023(
             surface=self.surface,
-            side1=Elastic(E=softer.E, nu=softer.nu),
-            side2=Elastic(E=harder.E, nu=harder.nu),
-            sigma_y=softer.sigma_y,
+            side1=Elastic(E=E, nu=nu),
+            side2=Elastic(E=either(swap, one.E, other.E), nu=either(swap, one.nu, other.nu)),
+            sigma_y=np.minimum(one.sigma_y, other.sigma_y),
             mu=self.mu,
             traction_ratio=self.traction_ratio,
             shear_traction=self.shear_traction,
@@ -125,20 +133,20 @@ class HarmonicDrive:
         return self._deformation_loss + self.eccentricity_loss * self.eccentricity
 
 
-def peak_pressure(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
+def peak_pressure(drive: HarmonicDrive, torque: Number) -> tuple[Number, Number]:
     """Peak contact pressure (...) [Pa] at the major axis and opening, and its torque derivative [Pa/(N.m)].
 
     `sqrt(p_0^2 + (p_r^2 - p_0^2) g(T)/g(T_r)) - loss` with `g(T) = sqrt(T^2 + T_s^2) - T_s`: the peak
     pressure of a line contact grows with the square root of its load, here a part without torque and
     a part in proportion to |T|, even and smooth through T = 0.
     """
-    T, smoothing = np.asarray(torque, dtype=np.float64), drive.torque_smoothing
+    T, smoothing = torque, drive.torque_smoothing
 
-    def growth(x: Array) -> Array:
+    def growth(x: Number) -> Number:
         return x * x / (np.hypot(x, smoothing) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / growth(np.asarray(drive.rated_torque))
+    factor = (rated**2 - zero**2) / growth(drive.rated_torque)
     free = np.sqrt(zero**2 + factor * growth(T))
     return free - drive.pressure_loss, 0.5 * factor * T / np.hypot(T, smoothing) / free
 
@@ -179,10 +187,65 @@ def pair_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Arra
 
 def drive_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
     """K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
-    pair, growth = pair_stiffness(drive, np.abs(torque))
+    total, growth = in_series(drive, *pair_stiffness(drive, np.abs(torque)))
+    return total, growth * np.sign(torque)
+
+
+def in_series(drive: HarmonicDrive, pair: Number, growth: Number) -> tuple[Number, Number]:
+    """K_WTS [N.m/rad] by Eq. 46 and its derivative, from K_TS on the paper's scale and its derivative."""
     contact = drive.drive_scale * pair
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / contact)
-    return total, (total / contact) ** 2 * drive.drive_scale * growth * np.sign(torque)
+    return total, (total / contact) ** 2 * drive.drive_scale * growth
+
+
+def pair_table(drive: HarmonicDrive, steps: int) -> tuple[Blocks, float]:
+    """`pair_stiffness` over the log of the peak pressure, with its largest relative interpolation error.
+
+    The stiffness of the nodes comes from tables over the log-pressure instead of an inversion each,
+    which makes it hundreds of times faster.
+    """
+    low, high = (float(peak_pressure(drive, torque)[0]) for torque in (0.0, drive.max_torque))
+    edges, tables = stiffness_tables(drive.law, high)
+    cells = 4 * int(np.ceil(steps / PAIR_STEPS * np.log(high / low)))
+    x = np.linspace(np.log(low), np.log(high), cells + 1)
+    length = drive.A_0 / (2.0 * np.pi * drive.radius)
+    z, axial = (column[..., None] for column in heights(np.exp(x), edges, length, drive.cup_length))
+    local = np.exp(x)[:, None, None] * (1.0 - z / drive.cup_length)
+    limits = piece_ends(local, edges, drive.mismatch_pressure)
+    value, slope = np.zeros((2, cells + 1))
+    for i, table in enumerate(reversed(tables)):
+        width = np.diff(limits[..., i : i + 2])
+        t = limits[..., i : i + 1] + width * PLACES
+        point = lobe_point(drive, np.sin(t), np.cos(t), z, local)
+        share = 2.0 / np.pi * axial * width * WEIGHTS * point.stretch
+        (normal, tangential), (normal_slope, tangential_slope) = table(np.log(point.pressure))
+        across = point.square - point.along**2
+        rise = local / point.pressure
+        value += np.sum(share * (normal * point.along**2 + tangential * across), axis=(1, 2))
+        slope += np.sum(
+            share * rise * (normal_slope * point.along**2 + tangential_slope * across), axis=(1, 2)
+        )
+    value, slope = drive.pair_scale * value[None], drive.pair_scale * slope[None]
+    fine = Blocks.of(x[0], x[1] - x[0], value, slope)
+    coarse = Blocks.of(x[0], x[2] - x[0], value[:, ::2], slope[:, ::2])
+    points = x[:-1, None] + (x[1] - x[0]) * np.array([0.25, 0.5, 0.75])
+    exact = fine(points)[0]
+    with np.errstate(invalid="ignore"):
+        return fine, float(np.max(np.abs(coarse(points)[0] / exact - 1.0)) / 2.0)
+
+
+def lobe_point(drive: HarmonicDrive, sine_t: Number, cosine_t: Number, z: Number, local: Number) -> Lobe:
+    """The point of the contact pair at a height [m] and an angle, see `lobe`."""
+    return lobe(
+        sine_t,
+        cosine_t,
+        z,
+        local,
+        mismatch=drive.mismatch_pressure,
+        radius=drive.radius,
+        deformation=drive.radial_deformation,
+        cup=drive.cup_length,
+    )
 
 
 def torque_curve(drive: HarmonicDrive) -> Curve:
@@ -193,12 +256,7 @@ def torque_curve(drive: HarmonicDrive) -> Curve:
 
     Raises ValueError if the two lobes would meet within the table, where K_TS has a kink.
     """
-    highest = float(peak_pressure(drive, drive.max_torque)[0])
-    if highest >= drive.mismatch_pressure:
-        raise ValueError(
-            f"mismatch_pressure = {drive.mismatch_pressure:g} Pa is outside ({highest:g}, inf): "
-            f"the two lobes would meet below {drive.max_torque:g} N.m"
-        )
+    check_limits(drive, drive.table_limits())
     return refined(lambda steps: _windup(drive, steps), _STEPS)
 
 
@@ -207,7 +265,15 @@ def _windup(drive: HarmonicDrive, steps: int) -> Curve:
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
-    K, growth = drive_stiffness(drive, T)
+    table, error = pair_table(drive, steps)
+
+    def stiffness(torque: Array) -> tuple[Array, Array]:
+        peak, rise = peak_pressure(drive, torque)
+        (pair,), (slope,) = table(np.log(peak))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return in_series(drive, pair, slope / peak * rise)
+
+    K, growth = stiffness(T)
     if not np.all((K > _SOFTEST) & (K < (1.0 - _STIFFEST) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad, pair_scale = {drive.pair_scale:g} and drive_scale = "
@@ -215,16 +281,16 @@ def _windup(drive: HarmonicDrive, steps: int) -> Curve:
             f"{drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / _STIFFEST:g} times K_FTS0"
         )
     inner = xi[:-1, None] + half * (1.0 + _GAUSS[0])
-    rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
+    rate = smoothing * np.cosh(inner) / stiffness(smoothing * np.sinh(inner))[0]
     phi = np.concatenate([[0.0], np.cumsum(half * rate @ _GAUSS[1])])
-    return assemble([(phi, T, K, K * growth)])
+    return assemble([(phi, T, K, K * growth)], error)
 
 
 @dataclass(frozen=True, slots=True)
 class HarmonicDriveSpring:
     """The exported spring: motion in, torque out; and torque in, motion out."""
 
-    drive: HarmonicDrive
+    joint: HarmonicDrive
     curve: Curve
 
     @classmethod
@@ -234,31 +300,49 @@ class HarmonicDriveSpring:
 
     def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Torques and stiffnesses at flange angles [rad] and speeds [rad/s] (...)."""
-        ratio = self.drive.ratio
-        phi = np.asarray(phi2) - np.asarray(phi1) / ratio
-        speed = np.asarray(w2) - np.asarray(w1) / ratio
+        motion = tuple(np.asarray(x, dtype=np.float64) for x in (phi1, w1, phi2, w2))
+        phi = wind_up(self.joint, *motion)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        tau = np.copysign(load, phi) + self.drive.d * speed
-        parts = self.parts(load, stiffness)
-        return {"tau1": tau / ratio, "tau2": -tau, "phi_rel": phi, "tau": tau, **parts}
+        return torques(self.joint, *motion, load=np.copysign(load, phi), stiffness=stiffness)
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m] with the wave generator locked."""
         phi = self.curve.inverse(np.abs(tau))
         load, stiffness = self.curve.derivatives(phi, 1)
-        return {"phi_rel": np.copysign(phi, tau), **self.parts(load, stiffness)}
+        return {"phi_rel": np.copysign(phi, tau), **parts(self.joint, load, stiffness)}
 
-    def parts(self, load: Array, stiffness: Array) -> dict[str, Array]:
-        """K_WTS and its parts at an elastic torque, and the peak contact pressure.
 
-        K_TS_pair is K_TS on the scale of the paper's Fig. 11.
-        """
-        K_FTS = np.full_like(stiffness, self.drive.K_FTS0)
-        K_TS = 1.0 / (1.0 / stiffness - 1.0 / K_FTS)
-        return {
-            "K_WTS": stiffness,
-            "K_TS": K_TS,
-            "K_FTS": K_FTS,
-            "K_TS_pair": K_TS / self.drive.drive_scale,
-            "p_max": peak_pressure(self.drive, load)[0],
-        }
+def wind_up(drive: HarmonicDrive, phi1: Number, w1: Number, phi2: Number, w2: Number) -> Number:
+    """phi_rel [rad], the wind-up at the output."""
+    return phi2 - phi1 / drive.ratio
+
+
+def torques(
+    drive: HarmonicDrive,
+    phi1: Number,
+    w1: Number,
+    phi2: Number,
+    w2: Number,
+    load: Number,
+    stiffness: Number,
+) -> dict[str, Number]:
+    """What the spring exports at a motion, given torque [N.m] and stiffness [N.m/rad] of the curve there."""
+    tau = load + drive.d * (w2 - w1 / drive.ratio)
+    phi = wind_up(drive, phi1, w1, phi2, w2)
+    ends = {"tau1": tau / drive.ratio, "tau2": -tau, "phi_rel": phi, "tau": tau}
+    return {**ends, **parts(drive, load, stiffness)}
+
+
+def parts(drive: HarmonicDrive, load: Number, stiffness: Number) -> dict[str, Number]:
+    """K_WTS and its parts at an elastic torque, and the peak contact pressure.
+
+    K_TS_pair is K_TS on the scale of the paper's Fig. 11.
+    """
+    K_TS = 1.0 / (1.0 / stiffness - 1.0 / drive.K_FTS0)
+    return {
+        "K_WTS": stiffness,
+        "K_TS": K_TS,
+        "K_FTS": drive.K_FTS0 + 0.0 * stiffness,
+        "K_TS_pair": K_TS / drive.drive_scale,
+        "p_max": peak_pressure(drive, load)[0],
+    }

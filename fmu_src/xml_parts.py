@@ -1,0 +1,156 @@
+"""What the model descriptions of all flavours say alike: variables, units, dependencies."""
+
+import math
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element, SubElement
+
+from .units import UNITS, display_unit
+from .variables import Model
+
+
+class Listed(NamedTuple):
+    """One variable as a description lists it.
+
+    start      : None if it is calculated, a bool for a Boolean
+    attributes : of a number: unit, displayUnit, bounds and nominal value, as text
+    """
+
+    name: str
+    causality: str
+    doc: str
+    start: float | bool | None
+    attributes: dict[str, str]
+
+    @property
+    def boolean(self) -> bool:
+        """Whether it is a Boolean; all others are real numbers."""
+        return isinstance(self.start, bool)
+
+
+class Unknown(NamedTuple):
+    """An output and what it depends on: {value reference: dependenciesKind}.
+
+    knowns  : at communication points and events
+    initial : in initialization mode
+    """
+
+    reference: int
+    knowns: dict[int, str]
+    initial: dict[int, str]
+
+
+# Where an output is linear in an input with a factor of parameters only ("parameters") or of none
+# ("constant"). Every other dependency has no particular structure.
+_SPEEDS = {"w1": "parameters", "w2": "parameters"}
+_LINEAR: dict[str, dict[str, dict[str, str]]] = {
+    "HarmonicDriveSpring": {
+        "phi_rel": {"phi1": "parameters", "phi2": "constant"},
+        "tau1": _SPEEDS,
+        "tau2": _SPEEDS,
+        "tau": _SPEEDS,
+    }
+}
+
+
+def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
+    """All variables in the order of their value references, which count from 1.
+
+    values : {name: value} of at least the exposed parameters
+    """
+    found = []
+    for causality, start, group in (("input", 0.0, model.inputs), ("output", None, model.outputs)):
+        for v in group:
+            attributes = _shown(v.unit, v.nominal)
+            if v.low > -math.inf:
+                attributes["min"] = repr(v.low)
+            found.append(Listed(v.name, causality, v.doc, start, attributes | {"nominal": repr(v.nominal)}))
+    for name, item in model.parameter_fields().items():
+        meta, value = item.metadata, values[name]
+        doc = meta["doc"]
+        if meta.get("calibration"):
+            doc += " (calibration parameter: fitted to published points)"
+        attributes = {}
+        if "unit" in meta:
+            attributes = _shown(meta["unit"], value) | _bounds(meta)
+            if value:
+                attributes["nominal"] = repr(abs(value))
+        found.append(Listed(name, "parameter", doc, value, attributes))
+    return found
+
+
+def text(value: float | bool) -> str:
+    """A start value, exact to the last bit."""
+    return str(value).lower() if isinstance(value, bool) else repr(float(value))
+
+
+def stop_time(model: Model) -> float:
+    """End [s] of the default experiment, the load ramp with one step per second."""
+    return float(round(model.ramp.end / model.ramp.step))
+
+
+def units(variables: Sequence[Listed]) -> list[str]:
+    """Names of all units in use, sorted."""
+    return sorted({v.attributes["unit"] for v in variables if "unit" in v.attributes})
+
+
+def unit_definitions(variables: Sequence[Listed]) -> Element:
+    """The element UnitDefinitions, the same in FMI 2.0 and 3.0."""
+    definitions = Element("UnitDefinitions")
+    for name in units(variables):
+        unit = SubElement(definitions, "Unit", name=name)
+        SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
+        for shown, factor in UNITS[name].display.items():
+            SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
+    return definitions
+
+
+def unknowns(model: Model, variability: str) -> list[Unknown]:
+    """All outputs with their dependencies; `variability` is that of the parameters."""
+    inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
+    names = [*inputs, *outputs, *model.parameter_fields()]
+    index = {name: reference for reference, name in enumerate(names, start=1)}
+    parameters = {index[name]: "dependent" for name in model.parameter_fields()}
+    found = []
+    for output in outputs:
+        knowns, initial = {}, {}
+        for name in sorted(model.depends(output), key=inputs.index):
+            linear = _LINEAR.get(model.name, {}).get(output, {}).get(name)
+            knowns[index[name]] = {None: "dependent", "parameters": variability}.get(linear, "constant")
+            # during initialization parameters still change, so only a number is a known factor
+            initial[index[name]] = "constant" if linear == "constant" else "dependent"
+        found.append(Unknown(index[output], knowns, initial | parameters))
+    return found
+
+
+def dependencies(knowns: Mapping[int, str]) -> dict[str, str]:
+    """Attributes of an unknown, the same in FMI 2.0 and 3.0."""
+    return {"dependencies": " ".join(map(str, knowns)), "dependenciesKind": " ".join(knowns.values())}
+
+
+def fmi2_structure(model: Model, variability: str) -> Element:
+    """The element ModelStructure of FMI 2.0; a variable's index is its value reference."""
+    structure = Element("ModelStructure")
+    outputs, initial = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
+    for unknown in unknowns(model, variability):
+        index = {"index": str(unknown.reference)}
+        SubElement(outputs, "Unknown", index | dependencies(unknown.knowns))
+        SubElement(initial, "Unknown", index | dependencies(unknown.initial))
+    return structure
+
+
+def _shown(unit: str, typical: float) -> dict[str, str]:
+    return {"unit": unit, "displayUnit": display_unit(unit, typical)}
+
+
+def _bounds(meta: Mapping[str, Any]) -> dict[str, str]:
+    """FMI bounds are closed; an open bound is narrowed to the next normal number."""
+    low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
+    found = {}
+    if low > -math.inf:
+        beyond = sys.float_info.min if low == 0.0 else math.nextafter(low, math.inf)
+        found["min"] = repr(low if low == meta["ge"] else beyond)
+    if high < math.inf:
+        found["max"] = repr(high if high == meta["le"] else math.nextafter(high, -math.inf))
+    return found
