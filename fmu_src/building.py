@@ -6,10 +6,15 @@ from pathlib import Path
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 
+from .native.build import build_fmi2, build_fmi3
 from .python.build import build as build_python
 from .variables import MODELS
 
-FLAVOURS: dict[str, Callable[[str, ParameterFile, Path], Path]] = {"python": build_python}
+FLAVOURS: dict[str, Callable[[str, ParameterFile, Path], Path]] = {
+    "fmi2": build_fmi2,
+    "fmi3": build_fmi3,
+    "python": build_python,
+}
 
 
 def build(

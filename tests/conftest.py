@@ -151,6 +151,16 @@ def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out / "python"
 
 
+@pytest.fixture(scope="session")
+def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder with fmi2/NAME.fmu and fmi3/NAME.fmu of the default parameters."""
+    from jointfmu_fmus.building import build
+
+    out = tmp_path_factory.mktemp("native")
+    build([], ["fmi2", "fmi3"], None, out)
+    return out
+
+
 @pytest.fixture
 def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
     """Makes instances by name, from another folder if given, and frees them after the test."""

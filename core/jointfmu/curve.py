@@ -19,7 +19,13 @@ Array = NDArray[np.float64]
 
 MAX_ERROR = 1e-8
 """Largest relative interpolation error of load and stiffness [1] that a table may have."""
-_GAUSS = np.polynomial.legendre.leggauss(5)
+MOST_NODES = 2600
+"""Most nodes of a table: what fits the memory of an FMU's instance."""
+STEPS = 12
+"""Steps of the approach curve per unit of log-area [1], doubled until it is accurate enough."""
+CLOSING_STEPS = 48
+"""Steps of the closing of the contact."""
+GAUSS = np.polynomial.legendre.leggauss(5)
 _TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients of 1, t, ... t^5
     [
         [1, 0, 0, 0, 0, 0],
@@ -141,6 +147,11 @@ def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
     """
     for factor in (1, 2, 4, 8, 16):
         curve = tabulate(steps * factor)
+        if curve.load.size > MOST_NODES:
+            raise RuntimeError(
+                f"the table needs more than {MOST_NODES} nodes: "
+                "the law is not smooth enough with these parameters"
+            )
         if curve.error <= MAX_ERROR:
             return curve
     raise RuntimeError(
@@ -200,7 +211,7 @@ def approach_curve(law: Law) -> Curve:
             f"the law has no stiffness below {p:.3g} Pa, above the hardness {float(law.hardness):.3g} Pa: "
             "the surface (D, G) leaves only plastic spots"
         )
-    return refined(lambda steps: _approach(spots, area, first, last, steps), 12)
+    return refined(lambda steps: _approach(spots, area, first, last, steps), STEPS)
 
 
 def _approach(spots: Spots, area: float, first: float, last: float, steps: int) -> Curve:
@@ -211,8 +222,8 @@ def _approach(spots: Spots, area: float, first: float, last: float, steps: int) 
         n = max(2 * int(np.ceil(0.5 * steps * (right - left))), 2)
         u = np.linspace(left, right, n + 1)
         half = 0.5 * (u[1] - u[0])
-        inner = u[:-1, None] + half * (1.0 + _GAUSS[0])
-        rise = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ _GAUSS[1]
+        inner = u[:-1, None] + half * (1.0 + GAUSS[0])
+        rise = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
         x = offset + np.concatenate([[0.0], np.cumsum(rise)])
         offset = x[-1]
         side = np.clip(u, left + 1e-9, right - 1e-9)  # one-sided derivative where a regime ends
@@ -220,4 +231,4 @@ def _approach(spots: Spots, area: float, first: float, last: float, steps: int) 
         bend = k * spots.slope("normal", side) / spots.slope("load", side)
         pieces.append((x, spots.total("load", u) / area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])
-    return assemble([closing(p, k, bend, 0.0, 49), *pieces])
+    return assemble([closing(p, k, bend, 0.0, CLOSING_STEPS + 1), *pieces])

@@ -9,10 +9,10 @@ from .interface import Law, checked_spots, largest_spot
 
 Array = NDArray[np.float64]
 
-CELL = 1.0 / 18.0
-"""Cells of the stiffness tables in ln p [1]: quintics over two cells are accurate to 1e-13 there."""
-MOST_CELLS = 1024
-"""Cells of one stiffness table."""
+CELL = 1.0 / 12.0
+"""Cells of the stiffness tables in ln p [1]: quintics over two cells are accurate to 1e-12 there."""
+MOST_CELLS = 1000
+"""Cells of all stiffness tables of a law together; wider ones on an extreme range."""
 _SIDE = 1e-9
 
 
@@ -61,9 +61,10 @@ def stiffness_tables(law: Law, highest: float) -> tuple[Array, list[Blocks]]:
     pressures = spots.total("load", ends) / law.A_0
     inside = pressures < highest
     limits = np.append(pressures[inside], highest)
+    cell = max(CELL, float(np.log(highest / limits[0])) / MOST_CELLS)
     tables = []
     for i, (low, high) in enumerate(zip(np.log(limits[:-1]), np.log(limits[1:]), strict=True)):
-        cells = 2 * int(min(np.ceil((high - low) / (2.0 * CELL)), MOST_CELLS // 2)) or 2
+        cells = 2 * max(int(np.ceil((high - low) / (2.0 * cell))), 1)
         x = np.linspace(low, high, cells + 1)
         u = np.maximum(largest_spot(law, np.exp(x)), ends[i])
         side = np.maximum(u, ends[i] + _SIDE)  # one-sided derivative where a regime begins or ends

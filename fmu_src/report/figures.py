@@ -1,12 +1,6 @@
 """The figures of the report, each as inline SVG."""
 
-import io
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from jointfmu.joints.bolted_joint import BoltedJointSpring
@@ -14,36 +8,7 @@ from jointfmu.parameters import default
 from jointfmu.ramp import Ramp
 from jointfmu.validation import Row
 
-BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
-_STYLE: Any = {
-    "svg.hashsalt": "jointfmu",
-    "svg.fonttype": "path",
-    "font.family": "DejaVu Sans",
-    "font.size": 10,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-}
-
-
-def svg(draw: Callable[[Figure], None], size: tuple[float, float] = (7.2, 4.2)) -> str:
-    """Draw a figure and return its SVG element."""
-    with rc_context(_STYLE):
-        figure = Figure(figsize=size, layout="constrained")
-        draw(figure)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None})
-    return text.getvalue()[text.getvalue().index("<svg") :]
-
-
-def _labels(axes: Axes, x: str, y: str) -> None:
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
-    axes.set_xlim(left=0.0)
-    axes.set_ylim(bottom=0.0)
+from ..drawing import BLUE, GREEN, GREY, RED, labels, svg
 
 
 def harmonic_stiffness(result: Ramp, rows: list[Row]) -> str:
@@ -78,8 +43,8 @@ def harmonic_stiffness(result: Ramp, rows: list[Row]) -> str:
             axes.plot([], [], "o", color="black", mfc="white", ms=5, label="published, calibrates")
             axes.plot([], [], "o", color="black", ms=5, label="published, validates")
             axes.legend(loc="best", fontsize=8)
-        _labels(drive, "torque [N m]", "stiffness [kN m/rad]")
-        _labels(pair, "torque [N m]", "K_TS [N m/rad]")
+        labels(drive, "torque [N m]", "stiffness [kN m/rad]")
+        labels(pair, "torque [N m]", "K_TS [N m/rad]")
 
     return svg(draw, (9.6, 4.2))
 
@@ -107,8 +72,8 @@ def bolted_stiffness(result: Ramp) -> str:
             left.plot(c["preload"] / 1e3, c[name] / 1e9, color=color, label=name)
         for name, color in (("C_zz", BLUE), ("C_xx", RED)):
             right.plot(c["preload"] / 1e3, c[name] / 1e3, color=color, label=name)
-        _labels(left, "preload per bolt [kN]", "stiffness [kN/um]")
-        _labels(right, "preload per bolt [kN]", "damping [kN s/m]")
+        labels(left, "preload per bolt [kN]", "stiffness [kN/um]")
+        labels(right, "preload per bolt [kN]", "damping [kN s/m]")
         for axes in (left, right):
             axes.legend()
 
@@ -149,7 +114,7 @@ def gear_stiffness(result: Ramp) -> str:
         left, right = figure.subplots(1, 2)
         left.plot(c["f"] / 1e3, c["K_N"] / 1e9, color=BLUE)
         right.plot(c["f"] / 1e3, c["s_rel"] * 1e6, color=BLUE)
-        _labels(left, "load [kN]", "stiffness [kN/um]")
-        _labels(right, "load [kN]", "approach [um]")
+        labels(left, "load [kN]", "stiffness [kN/um]")
+        labels(right, "load [kN]", "approach [um]")
 
     return svg(draw, (9.6, 3.8))

@@ -128,6 +128,17 @@ def two_lobes(
     )
 
 
+def height_at(peak: Number, pressure: Number, length: Number, cup: Number) -> Number:
+    """z [m] on the contact at which the major axis has a pressure [Pa]; the nearest end if none."""
+    return np.minimum(np.maximum(cup * (1.0 - pressure / peak), 0.0), length)
+
+
+def angle_at(local: Number, pressure: Number, mismatch: Number) -> Number:
+    """t [1] at which a lobe of pressure `local` on its axis has a pressure [Pa]; 0 or pi/2 if none."""
+    part = (local - pressure) / np.minimum(local, mismatch)
+    return np.arcsin(np.sqrt(np.minimum(np.maximum(part, 0.0), 1.0)))
+
+
 def heights(peak: Array, breaks: Array, length: float, cup: float) -> tuple[Array, Array]:
     """z (..., n) [m] of the nodes along the contact and their weights [1], sum 1, at peaks (...) [Pa].
 
@@ -135,7 +146,7 @@ def heights(peak: Array, breaks: Array, length: float, cup: float) -> tuple[Arra
     """
     falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
     falling = falling[(falling < np.max(peak)) & (falling > np.min(peak) * (1.0 - length / cup))]
-    ends = np.clip(cup * (1.0 - falling / np.asarray(peak)[..., None]), 0.0, length)
+    ends = height_at(np.asarray(peak)[..., None], falling, length, cup)
     edge = np.zeros((*ends.shape[:-1], 1))
     limits = np.concatenate([edge, ends, edge + length], axis=-1)
     width = np.diff(limits)[..., None]
@@ -148,8 +159,7 @@ def piece_ends(local: Array, breaks: Array, mismatch: float) -> Array:
     local : (..., 1) [Pa] pressure on the major axis; pieces that lie above it have no width.
     """
     falling = np.sort(np.asarray(breaks, dtype=np.float64))[::-1]
-    depth = np.minimum(local, mismatch)
-    ends = np.arcsin(np.sqrt(np.clip((local - falling) / depth, 0.0, 1.0)))
+    ends = angle_at(local, falling, mismatch)
     axis = np.zeros((*ends.shape[:-1], 1))
     return np.concatenate([axis, ends, axis + 0.5 * np.pi], axis=-1)
 

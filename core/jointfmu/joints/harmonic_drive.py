@@ -1,5 +1,6 @@
 """Torsional spring of a harmonic drive: contact of flexspline and flexible bearing (Hu 2023)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..asperity.hu2023 import Hu2023
 from ..curve import Curve, assemble, refined
+from ..footprint import lobes
 from ..footprint.lobes import (
     PLACES,
     WEIGHTS,
@@ -27,8 +29,13 @@ Array = NDArray[np.float64]
 _AXIS = (0.0, 0.0, 1.0)
 PAIR_STEPS = 25
 """Steps of the torque curve per four cells of the pair's table and unit of log-pressure [1]."""
-_STEPS, _SOFTEST, _STIFFEST = 160, 1e-100, 1e-6
-_GAUSS = np.polynomial.legendre.leggauss(4)
+MOST_PAIR_STEPS = 256
+"""Times four: the most cells of the pair's table."""
+STEPS = 160
+"""Steps of the torque curve, doubled until it is accurate enough."""
+SOFTEST, STIFFEST = 1e-100, 1e-6
+"""Least K_WTS [N.m/rad], and least K_FTS0 over K_TS [1], that are told from none and from infinite."""
+GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +168,7 @@ def footprint(drive: HarmonicDrive, torque: ArrayLike) -> Footprint:
         mismatch=drive.mismatch_pressure,
         radius=drive.radius,
         deformation=drive.radial_deformation,
-        length=drive.A_0 / (2.0 * np.pi * drive.radius),
+        length=contact_length(drive),
         cup=drive.cup_length,
     )
 
@@ -206,21 +213,21 @@ def pair_table(drive: HarmonicDrive, steps: int) -> tuple[Blocks, float]:
     """
     low, high = (float(peak_pressure(drive, torque)[0]) for torque in (0.0, drive.max_torque))
     edges, tables = stiffness_tables(drive.law, high)
-    cells = 4 * int(np.ceil(steps / PAIR_STEPS * np.log(high / low)))
+    cells = 4 * int(np.clip(np.ceil(steps / PAIR_STEPS * np.log(high / low)), 1, MOST_PAIR_STEPS))
     x = np.linspace(np.log(low), np.log(high), cells + 1)
-    length = drive.A_0 / (2.0 * np.pi * drive.radius)
+    length = contact_length(drive)
     z, axial = (column[..., None] for column in heights(np.exp(x), edges, length, drive.cup_length))
-    local = np.exp(x)[:, None, None] * (1.0 - z / drive.cup_length)
-    limits = piece_ends(local, edges, drive.mismatch_pressure)
+    axis = local(drive, np.exp(x)[:, None, None], z)
+    limits = piece_ends(axis, edges, drive.mismatch_pressure)
     value, slope = np.zeros((2, cells + 1))
     for i, table in enumerate(reversed(tables)):
         width = np.diff(limits[..., i : i + 2])
         t = limits[..., i : i + 1] + width * PLACES
-        point = lobe_point(drive, np.sin(t), np.cos(t), z, local)
+        point = lobe_point(drive, np.sin(t), np.cos(t), z, axis)
         share = 2.0 / np.pi * axial * width * WEIGHTS * point.stretch
         (normal, tangential), (normal_slope, tangential_slope) = table(np.log(point.pressure))
         across = point.square - point.along**2
-        rise = local / point.pressure
+        rise = axis / point.pressure
         value += np.sum(share * (normal * point.along**2 + tangential * across), axis=(1, 2))
         slope += np.sum(
             share * rise * (normal_slope * point.along**2 + tangential_slope * across), axis=(1, 2)
@@ -234,18 +241,38 @@ def pair_table(drive: HarmonicDrive, steps: int) -> tuple[Blocks, float]:
         return fine, float(np.max(np.abs(coarse(points)[0] / exact - 1.0)) / 2.0)
 
 
-def lobe_point(drive: HarmonicDrive, sine_t: Number, cosine_t: Number, z: Number, local: Number) -> Lobe:
+def lobe_point(drive: HarmonicDrive, sine_t: Number, cosine_t: Number, z: Number, axis: Number) -> Lobe:
     """The point of the contact pair at a height [m] and an angle, see `lobe`."""
     return lobe(
         sine_t,
         cosine_t,
         z,
-        local,
+        axis,
         mismatch=drive.mismatch_pressure,
         radius=drive.radius,
         deformation=drive.radial_deformation,
         cup=drive.cup_length,
     )
+
+
+def contact_length(drive: HarmonicDrive) -> Number:
+    """Length [m] of the contact along the drive's axis."""
+    return drive.A_0 / (2.0 * np.pi * drive.radius)
+
+
+def local(drive: HarmonicDrive, peak: Number, z: Number) -> Number:
+    """Pressure [Pa] on the major axis at a height [m]."""
+    return peak * (1.0 - z / drive.cup_length)
+
+
+def height_at(drive: HarmonicDrive, peak: Number, pressure: Number) -> Number:
+    """Height [m] at which the major axis has a pressure [Pa], see `lobes.height_at`."""
+    return lobes.height_at(peak, pressure, contact_length(drive), drive.cup_length)
+
+
+def angle_at(drive: HarmonicDrive, axis: Number, pressure: Number) -> Number:
+    """Where a lobe with a pressure [Pa] on its axis has another pressure, see `lobes.angle_at`."""
+    return lobes.angle_at(axis, pressure, drive.mismatch_pressure)
 
 
 def torque_curve(drive: HarmonicDrive) -> Curve:
@@ -257,7 +284,7 @@ def torque_curve(drive: HarmonicDrive) -> Curve:
     Raises ValueError if the two lobes would meet within the table, where K_TS has a kink.
     """
     check_limits(drive, drive.table_limits())
-    return refined(lambda steps: _windup(drive, steps), _STEPS)
+    return refined(lambda steps: _windup(drive, steps), STEPS)
 
 
 def _windup(drive: HarmonicDrive, steps: int) -> Curve:
@@ -274,15 +301,15 @@ def _windup(drive: HarmonicDrive, steps: int) -> Curve:
             return in_series(drive, pair, slope / peak * rise)
 
     K, growth = stiffness(T)
-    if not np.all((K > _SOFTEST) & (K < (1.0 - _STIFFEST) * drive.K_FTS0)):
+    if not np.all((K > SOFTEST) & (K < (1.0 - STIFFEST) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad, pair_scale = {drive.pair_scale:g} and drive_scale = "
-            f"{drive.drive_scale:g} give K_WTS = {K[-1]:g} N.m/rad, allowed is ({_SOFTEST:g}, "
-            f"{drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / _STIFFEST:g} times K_FTS0"
+            f"{drive.drive_scale:g} give K_WTS = {K[-1]:g} N.m/rad, allowed is ({SOFTEST:g}, "
+            f"{drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / STIFFEST:g} times K_FTS0"
         )
-    inner = xi[:-1, None] + half * (1.0 + _GAUSS[0])
+    inner = xi[:-1, None] + half * (1.0 + GAUSS[0])
     rate = smoothing * np.cosh(inner) / stiffness(smoothing * np.sinh(inner))[0]
-    phi = np.concatenate([[0.0], np.cumsum(half * rate @ _GAUSS[1])])
+    phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS[1])])
     return assemble([(phi, T, K, K * growth)], error)
 
 
@@ -301,9 +328,9 @@ class HarmonicDriveSpring:
     def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Torques and stiffnesses at flange angles [rad] and speeds [rad/s] (...)."""
         motion = tuple(np.asarray(x, dtype=np.float64) for x in (phi1, w1, phi2, w2))
-        phi = wind_up(self.joint, *motion)
+        phi = wind_up(self.joint, motion)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        return torques(self.joint, *motion, load=np.copysign(load, phi), stiffness=stiffness)
+        return torques(self.joint, motion, np.copysign(load, phi), stiffness)
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m] with the wave generator locked."""
@@ -312,24 +339,22 @@ class HarmonicDriveSpring:
         return {"phi_rel": np.copysign(phi, tau), **parts(self.joint, load, stiffness)}
 
 
-def wind_up(drive: HarmonicDrive, phi1: Number, w1: Number, phi2: Number, w2: Number) -> Number:
-    """phi_rel [rad], the wind-up at the output."""
+def wind_up(drive: HarmonicDrive, motion: Sequence[Number]) -> Number:
+    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2."""
+    phi1, _, phi2, _ = motion
     return phi2 - phi1 / drive.ratio
 
 
 def torques(
-    drive: HarmonicDrive,
-    phi1: Number,
-    w1: Number,
-    phi2: Number,
-    w2: Number,
-    load: Number,
-    stiffness: Number,
+    drive: HarmonicDrive, motion: Sequence[Number], load: Number, stiffness: Number
 ) -> dict[str, Number]:
-    """What the spring exports at a motion, given torque [N.m] and stiffness [N.m/rad] of the curve there."""
+    """What the spring exports at a motion phi1, w1, phi2, w2.
+
+    Given are torque [N.m] and stiffness [N.m/rad] of the curve there.
+    """
+    _, w1, _, w2 = motion
     tau = load + drive.d * (w2 - w1 / drive.ratio)
-    phi = wind_up(drive, phi1, w1, phi2, w2)
-    ends = {"tau1": tau / drive.ratio, "tau2": -tau, "phi_rel": phi, "tau": tau}
+    ends = {"tau1": tau / drive.ratio, "tau2": -tau, "phi_rel": wind_up(drive, motion), "tau": tau}
     return {**ends, **parts(drive, load, stiffness)}
 
 

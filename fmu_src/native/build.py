@@ -1,0 +1,81 @@
+"""Build the native flavours: FMI 2.0 and FMI 3.0, one set of C sources per joint, five platforms."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from jointfmu.parameters import ParameterFile
+
+from ..archive import pack, workshop
+from ..variables import MODELS, Model
+from .compiler import file_name, libraries, universal
+
+
+def build_fmi2(name: str, parameters: ParameterFile, out: Path) -> Path:
+    """Write `out/name.fmu` of FMI 2.0 for co-simulation and model exchange; see `build`."""
+    return build(name, parameters, out, "2")
+
+
+def build_fmi3(name: str, parameters: ParameterFile, out: Path) -> Path:
+    """Write `out/name.fmu` of FMI 3.0 for co-simulation and model exchange; see `build`."""
+    return build(name, parameters, out, "3")
+
+
+def build(name: str, parameters: ParameterFile, out: Path, version: str) -> Path:
+    """Write `out/name.fmu`; an existing file is replaced in one go. Equal content gives an equal file.
+
+    Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
+    if a package is missing, RuntimeError if the compiler fails.
+    """
+    model = MODELS[name]
+    model.check_joint(parameters.joint)
+    target = out / f"{name}.fmu"
+    with workshop(target) as work:
+        pack(_members(model, parameters, version), work / target.name)
+    return target
+
+
+def _members(model: Model, parameters: ParameterFile, version: str) -> dict[str, bytes]:
+    """{path: content} of an FMU."""
+    from .description import build_description, fmi2_xml, fmi3_xml
+    from .generate import exported, sources, token
+    from .page import documentation
+    from .terminals import terminals_and_icons
+
+    both = sources(model.name, parameters)
+    units = exported(list(both), version)
+    own = {path: text for path, text in both.items() if path in units or path.endswith(".h")}
+    found = libraries(model.name, both, units)
+    icons = terminals_and_icons(model)
+    if version == "2":
+        top = {
+            "modelDescription.xml": fmi2_xml(model, parameters, token(both), units),
+            "model.png": icons["icon.png"],
+        }
+        binaries = _fmi2_binaries(model.name, found)
+    else:
+        top = {
+            "modelDescription.xml": fmi3_xml(model, parameters, token(both)),
+            "sources/buildDescription.xml": build_description(model, units),
+        }
+        binaries = {f"{p}/{file_name(model.name, p)}": content for p, content in found.items()}
+    return (
+        top
+        | _below("binaries", binaries)
+        | _below("sources", {path: text.encode() for path, text in own.items()})
+        | _below("documentation", documentation(model, parameters))
+        | _below("terminalsAndIcons", icons)
+    )
+
+
+def _fmi2_binaries(name: str, found: Mapping[str, bytes]) -> dict[str, bytes]:
+    """{path: content} of the binaries with FMI 2.0's names; one file serves every macOS."""
+    return {
+        f"win64/{name}.dll": found["x86_64-windows"],
+        f"linux64/{name}.so": found["x86_64-linux"],
+        f"aarch64-linux/{name}.so": found["aarch64-linux"],
+        f"darwin64/{name}.dylib": universal([found["x86_64-darwin"], found["aarch64-darwin"]]),
+    }
+
+
+def _below(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    return {f"{folder}/{path}": content for path, content in files.items()}

@@ -1,0 +1,138 @@
+"""C sources to shared libraries for five platforms, on any machine, with the compiler of PyPI's ziglang."""
+
+import json
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
+from os import cpu_count
+from pathlib import Path
+
+import fmpy
+
+TARGETS = {
+    "x86_64-windows": "x86_64-windows-gnu",
+    "x86_64-linux": "x86_64-linux-gnu.2.17",
+    "aarch64-linux": "aarch64-linux-gnu.2.17",
+    "x86_64-darwin": "x86_64-macos.11.0-none",
+    "aarch64-darwin": "aarch64-macos.11.0-none",
+}
+"""FMI's names of the platforms, and zig's with the oldest glibc or macOS."""
+
+_OPTIONS = (
+    "-std=c11", "-O2", "-ffp-contract=off", "-fno-sanitize=undefined", "-fvisibility=hidden",
+    "-DNDEBUG", "-shared", "-s",
+)  # fmt: skip
+_UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
+"""Parts of the C runtime that belongs to Windows 10 and newer."""
+
+
+def libraries(name: str, sources: Mapping[str, str], units: Sequence[str]) -> dict[str, bytes]:
+    """{platform: shared library} of the .c files `units`, with FMI's functions exported.
+
+    `sources` are all files by flat name, FMI's headers come from fmpy. What units of the same sources
+    share is compiled once, in this and in later builds. Equal sources give equal bytes.
+
+    Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
+    with the compiler's first error.
+    """
+    import ziglang
+
+    windows_headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
+    own = Path(__file__).with_name("windows.c")
+    folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
+
+    def library(platform: str) -> bytes:
+        with tempfile.TemporaryDirectory() as out:
+            file = Path(out) / file_name(name, platform)
+            target = (
+                "-target",
+                TARGETS[platform],
+                *_OPTIONS,
+                *_system_options(platform, file.name, windows_headers),
+            )
+            _run(f"{name} for {platform}", folder, "cc", *target, *units, "-o", str(file))
+            return file.read_bytes()
+
+    with ThreadPoolExecutor(cpu_count()) as pool:
+        return dict(zip(TARGETS, pool.map(library, TARGETS), strict=True))
+
+
+def file_name(name: str, platform: str) -> str:
+    """The library's file name on a platform."""
+    return name + {"windows": ".dll", "linux": ".so", "darwin": ".dylib"}[platform.split("-")[1]]
+
+
+def universal(slices: Sequence[bytes]) -> bytes:
+    """One macOS file of libraries for several processors; each keeps its signature."""
+    page = 1 << 14
+    header, body = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
+    for one in slices:
+        body += bytes(-len(body) % page)
+        kind, subtype = struct.unpack_from("<II", one, 4)
+        header += struct.pack(">IIIII", kind, subtype, page + len(body), len(one), 14)
+        body += one
+    return header.ljust(page, b"\0") + body
+
+
+def _headers() -> dict[str, str]:
+    folder = Path(fmpy.__file__).parent / "c-code"
+    return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
+
+
+def _folder(files: Mapping[str, str]) -> Path:
+    """Folder with these files in zig's cache, where zig knows again what it has compiled: by its path."""
+    advice = "set ZIG_GLOBAL_CACHE_DIR to a writable folder"
+    try:
+        shown = _run("the compiler's cache", Path.cwd(), "env")
+    except RuntimeError as error:
+        raise ValueError(f"{error}; {advice}") from None
+    cache = re.search(r"global_cache_dir = (\".*\")", shown)
+    assert cache, "zig env names no global_cache_dir"
+    digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
+    folder = Path.cwd() / str(json.loads(cache[1])) / "jointfmu" / digest
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            if not (folder / name).exists():
+                with tempfile.NamedTemporaryFile("wb", dir=folder, delete=False) as file:
+                    file.write(text.encode())
+                Path(file.name).replace(folder / name)
+    except OSError as error:
+        raise ValueError(f"{folder}: cannot be written ({error.strerror}); {advice}") from None
+    return folder
+
+
+def _system_options(platform: str, file: str, windows_headers: Path) -> tuple[str, ...]:
+    if platform.endswith("-linux"):
+        return ("-lm",)
+    if platform.endswith("-darwin"):
+        return (f"-Wl,-install_name,@rpath/{file}", "-Wl,-dead_strip")
+    # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
+    # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
+    return (
+        "windows.c", "-nostdlib", "-Wl,--no-entry", "-D_UCRT", "-isystem", str(windows_headers),
+        *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
+    )  # fmt: skip
+
+
+def _run(what: str, folder: Path, *arguments: str) -> str:
+    """What zig prints, run in a folder; `what` it makes, for the error."""
+    done = subprocess.run(
+        [sys.executable, "-m", "ziglang", *arguments],
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        errors="replace",
+    )
+    if done.returncode:
+        lines = done.stderr.splitlines()
+        first = next((line for line in lines if "error" in line), done.stderr.strip() or "no message")
+        raise RuntimeError(f"{what}: {first}")
+    return done.stdout

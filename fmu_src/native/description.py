@@ -1,0 +1,195 @@
+"""modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of FMI 3.0.
+
+Value references: 0 is the time, which FMI 2.0 does not list; then inputs, outputs and parameters.
+"""
+
+from collections.abc import Sequence
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from jointfmu import __version__
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import flatten
+
+from ..stamp import fixed_time
+from ..units import UNITS
+from ..variables import Model
+from ..xml_parts import (
+    Listed,
+    dependencies,
+    fmi2_structure,
+    listed,
+    stop_time,
+    text,
+    unit_definitions,
+    units,
+    unknowns,
+)
+from .licence import copyright_line
+
+LOG_CATEGORIES = {
+    "logEvents": "changes of mode and new tables, if logging is on",
+    "logStatusWarning": "the state has left the range of the law; once for each way of leaving it",
+    "logStatusError": "why a call was refused: what was found and what was expected",
+}
+_TIME = Listed("time", "independent", "simulation time", None, {"unit": "s", "displayUnit": "s"})
+_COMMON = {"needsExecutionTool": "false", "canBeInstantiatedOnlyOncePerProcess": "false"}
+_FMI2 = _COMMON | {
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+    "providesDirectionalDerivative": "true",
+}
+_FMI2_INTERFACES = {
+    "ModelExchange": _FMI2 | {"completedIntegratorStepNotNeeded": "true"},
+    "CoSimulation": _FMI2
+    | {
+        "canHandleVariableCommunicationStepSize": "true",
+        "canInterpolateInputs": "true",
+        "maxOutputDerivativeOrder": "0",
+        "canRunAsynchronuously": "false",
+    },
+}
+_FMI3 = _COMMON | {
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "true",
+    "providesAdjointDerivatives": "true",
+    "providesPerElementDependencies": "true",
+}
+_FMI3_INTERFACES = {
+    "ModelExchange": _FMI3
+    | {"needsCompletedIntegratorStep": "false", "providesEvaluateDiscreteStates": "false"},
+    "CoSimulation": _FMI3
+    | {
+        "canHandleVariableCommunicationStepSize": "true",
+        "maxOutputDerivativeOrder": "0",
+        "recommendedIntermediateInputSmoothness": "0",
+        "providesIntermediateUpdate": "false",
+        "mightReturnEarlyFromDoStep": "false",
+        "canReturnEarlyAfterIntermediateUpdate": "false",
+        "hasEventMode": "false",
+        "providesEvaluateDiscreteStates": "false",
+    },
+}
+
+
+def fmi2_xml(model: Model, parameters: ParameterFile, token: str, sources: Sequence[str]) -> bytes:
+    """modelDescription.xml of FMI 2.0; `sources` are the C files to compile, in `sources/`."""
+    variables = listed(model, flatten(parameters.values))
+    root = _root(model, "2.0", "guid", token)
+    root.set("numberOfEventIndicators", "0")
+    for kind, flags in _FMI2_INTERFACES.items():
+        files = SubElement(SubElement(root, kind, {"modelIdentifier": model.name} | flags), "SourceFiles")
+        for name in sources:
+            SubElement(files, "File", name=name)
+    root.append(unit_definitions(variables))
+    types = SubElement(root, "TypeDefinitions")
+    for quantity, attributes in _types(variables).items():
+        SubElement(SubElement(types, "SimpleType", name=quantity), "Real", attributes)
+    _log_categories_and_experiment(root, model)
+    nodes = SubElement(root, "ModelVariables")
+    for reference, v in enumerate(variables, start=1):
+        node = SubElement(nodes, "ScalarVariable", _heading(v, reference))
+        SubElement(node, "Boolean" if v.boolean else "Real", _value(v))
+    root.append(fmi2_structure(model, "tunable"))
+    return serialized(root)
+
+
+def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
+    """modelDescription.xml of FMI 3.0."""
+    variables = [_TIME, *listed(model, flatten(parameters.values))]
+    root = _root(model, "3.0", "instantiationToken", token)
+    for kind, flags in _FMI3_INTERFACES.items():
+        SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+    root.append(unit_definitions(variables))
+    types = SubElement(root, "TypeDefinitions")
+    for quantity, attributes in _types(variables).items():
+        SubElement(types, "Float64Type", {"name": quantity} | attributes)
+    _log_categories_and_experiment(root, model)
+    nodes = SubElement(root, "ModelVariables")
+    for reference, v in enumerate(variables):
+        SubElement(nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference) | _value(v))
+    structure = SubElement(root, "ModelStructure")
+    found = unknowns(model, "tunable")
+    for tag, dependent in (
+        ("Output", [u.knowns for u in found]),
+        ("InitialUnknown", [u.initial for u in found]),
+    ):
+        for unknown, knowns in zip(found, dependent, strict=True):
+            SubElement(structure, tag, {"valueReference": str(unknown.reference)} | dependencies(knowns))
+    return serialized(root)
+
+
+def build_description(model: Model, sources: Sequence[str]) -> bytes:
+    """sources/buildDescription.xml of FMI 3.0: how to compile the C files in `sources/`.
+
+    The first configuration is for any platform; where the mathematical functions are a library of
+    their own, a further one names it.
+    """
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    for platform in (None, "x86_64-linux", "aarch64-linux"):
+        build = SubElement(root, "BuildConfiguration", modelIdentifier=model.name)
+        files = SubElement(build, "SourceFileSet", language="C11")
+        for name in sources:
+            SubElement(files, "SourceFile", name=name)
+        if platform:
+            build.set("platform", platform)
+            SubElement(build, "Library", name="m", external="true", description="mathematical functions of C")
+    return serialized(root)
+
+
+def serialized(root: Element) -> bytes:
+    """An XML file, indented, the same bytes for the same content."""
+    indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
+
+
+def _root(model: Model, version: str, token_name: str, token: str) -> Element:
+    root = Element("fmiModelDescription", {"fmiVersion": version, "modelName": model.name, token_name: token})
+    root.attrib |= {
+        "description": model.doc,
+        "author": "the jointfmu authors",
+        "version": __version__,
+        "copyright": copyright_line(),
+        "license": "MIT",
+        "generationTool": f"jointfmu {__version__}",
+        "variableNamingConvention": "structured",
+    }
+    if when := fixed_time():  # else no date: two builds of the same content are the same file
+        root.set("generationDateAndTime", when.strftime("%Y-%m-%dT%H:%M:%SZ"))
+    return root
+
+
+def _types(variables: Sequence[Listed]) -> dict[str, dict[str, str]]:
+    """Attributes of one type per quantity; a type shows the first display unit of its unit."""
+    return {
+        UNITS[name].quantity: {
+            "quantity": UNITS[name].quantity,
+            "unit": name,
+            "displayUnit": next(iter(UNITS[name].display)),
+        }
+        for name in units(variables)
+    }
+
+
+def _log_categories_and_experiment(root: Element, model: Model) -> None:
+    categories = SubElement(root, "LogCategories")
+    for name, doc in LOG_CATEGORIES.items():
+        SubElement(categories, "Category", name=name, description=doc)
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=text(stop_time(model)), stepSize="1")
+
+
+def _heading(v: Listed, reference: int) -> dict[str, str]:
+    """What FMI says of a variable of any type."""
+    variability = "tunable" if v.causality == "parameter" else "continuous"
+    heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
+    heading |= {"causality": v.causality, "variability": variability}
+    if initial := {"parameter": "exact", "output": "calculated"}.get(v.causality):
+        heading["initial"] = initial
+    return heading
+
+
+def _value(v: Listed) -> dict[str, str]:
+    """What FMI says of a variable's values. The unit repeats the type's for importers that skip types."""
+    value = {"declaredType": UNITS[v.attributes["unit"]].quantity} if v.attributes else {}
+    return value | v.attributes | ({} if v.start is None else {"start": text(v.start)})

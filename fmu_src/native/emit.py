@@ -1,0 +1,85 @@
+"""CasADi expressions as plain C: one static function of (x, c) -> y per function, libm only."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import casadi as ca
+
+_BINARY = {
+    ca.OP_ADD: "{0} + {1}",
+    ca.OP_SUB: "{0} - {1}",
+    ca.OP_MUL: "{0} * {1}",
+    ca.OP_DIV: "{0} / {1}",
+    ca.OP_POW: "pow({0}, {1})",
+    ca.OP_CONSTPOW: "pow({0}, {1})",
+    ca.OP_LT: "{0} < {1} ? 1.0 : 0.0",
+    ca.OP_LE: "{0} <= {1} ? 1.0 : 0.0",
+    ca.OP_EQ: "{0} == {1} ? 1.0 : 0.0",
+    ca.OP_NE: "{0} != {1} ? 1.0 : 0.0",
+    ca.OP_AND: "{0} != 0.0 && {1} != 0.0 ? 1.0 : 0.0",
+    ca.OP_OR: "{0} != 0.0 || {1} != 0.0 ? 1.0 : 0.0",
+    ca.OP_IF_ELSE_ZERO: "{0} != 0.0 ? {1} : 0.0",
+    ca.OP_FMIN: "{0} < {1} ? {0} : {1}",
+    ca.OP_FMAX: "{0} > {1} ? {0} : {1}",
+    ca.OP_ATAN2: "atan2({0}, {1})",
+    ca.OP_HYPOT: "hypot({0}, {1})",
+    ca.OP_COPYSIGN: "copysign({0}, {1})",
+}
+_UNARY = {
+    ca.OP_ASSIGN: "{0}",
+    ca.OP_NEG: "-{0}",
+    ca.OP_SQ: "{0} * {0}",
+    ca.OP_TWICE: "2.0 * {0}",
+    ca.OP_INV: "1.0 / {0}",
+    ca.OP_SQRT: "sqrt({0})",
+    ca.OP_EXP: "exp({0})",
+    ca.OP_LOG: "log({0})",
+    ca.OP_EXPM1: "expm1({0})",
+    ca.OP_LOG1P: "log1p({0})",
+    ca.OP_SIN: "sin({0})",
+    ca.OP_COS: "cos({0})",
+    ca.OP_TAN: "tan({0})",
+    ca.OP_ASIN: "asin({0})",
+    ca.OP_ACOS: "acos({0})",
+    ca.OP_ATAN: "atan({0})",
+    ca.OP_FABS: "fabs({0})",
+    ca.OP_NOT: "{0} == 0.0 ? 1.0 : 0.0",
+    ca.OP_SIGN: "{0} > 0.0 ? 1.0 : ({0} < 0.0 ? -1.0 : {0})",
+}
+
+
+def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any]) -> str:
+    """C of `static void name(const double *x, const double *c, double *y)`.
+
+    Every intermediate value is a constant of its own, in the order of evaluation.
+    """
+    graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
+    inputs = "xc"
+    place: dict[int, str] = {}
+    body: list[str] = []
+    given: set[str] = set()
+    for k in range(graph.n_instructions()):
+        code, out, args = graph.instruction_id(k), graph.instruction_output(k), graph.instruction_input(k)
+        if code == ca.OP_OUTPUT:
+            body.append(f"y[{out[1]}] = {place[args[0]]};")
+        elif code == ca.OP_CONST:
+            place[out[0]] = _number(graph.instruction_constant(k))
+        elif code == ca.OP_INPUT:
+            given.add(inputs[args[0]])
+            place[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
+        else:
+            form = _BINARY.get(code) or _UNARY.get(code)
+            if form is None:
+                raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
+            body.append(f"const double t{k} = {form.format(*(place[a] for a in args))};")
+            place[out[0]] = f"t{k}"
+    unused = [name for name in inputs if name not in given] + ([] if y else ["y"])
+    body += [f"(void){name};" for name in unused]
+    lines = "\n".join(f"    {line}" for line in body)
+    return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
+
+
+def _number(value: float) -> str:
+    if value != value or value in (float("inf"), float("-inf")):
+        return {"inf": "INFINITY", "-inf": "-INFINITY"}.get(repr(value), "NAN")
+    return f"({value!r})" if value < 0 else repr(value)

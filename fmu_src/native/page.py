@@ -1,0 +1,160 @@
+"""The folder documentation: one page about the joint, its connection, law, limits and parameters."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jinja2
+import numpy as np
+from matplotlib.figure import Figure
+
+from jointfmu import __version__
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import flat_fields, flatten, interval, problem
+
+from ..drawing import BLUE, GREEN, RED, labels, short, svg
+from ..units import UNITS, display_unit
+from ..variables import Model
+from ..xml_parts import listed
+from .licence import licence
+from .terminals import TERMINALS
+
+_POINTS = 41
+_PANELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
+    "HarmonicDriveSpring": (("phi_rel", ("tau",)), ("tau", ("K_WTS", "K_TS", "K_FTS"))),
+    "HarmonicDriveCompliance": (("tau", ("phi_rel",)), ("tau", ("K_WTS", "K_TS", "K_FTS"))),
+    "BoltedJoint": (("preload", ("K_zz", "K_xx")), ("preload", ("C_zz", "C_xx"))),
+    "GearContact": (("f", ("s_rel",)), ("f", ("K_N",))),
+}
+"""What the plot of the ramp shows: {FMU: ((over, quantities), ...)}."""
+
+
+class _Row(NamedTuple):
+    """One line of a table of parameters, as text but for the value."""
+
+    name: str
+    value: Any
+    unit: str
+    allowed: str
+    doc: str
+    kind: str
+    source: str
+
+
+def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
+    """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
+    return {
+        "index.html": _page(model, parameters).encode(),
+        "licenses/license.txt": licence().encode(),
+    }
+
+
+def _page(model: Model, parameters: ParameterFile) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    spring = model.spring(parameters.values)
+    variables = listed(model, flatten(parameters.values))
+    exposed = model.parameter_fields()
+    rows = _rows(parameters)
+    return environment.get_template(f"{model.joint}.html").render(
+        model=model,
+        file=parameters,
+        version=__version__,
+        inputs=[v for v in variables if v.causality == "input"],
+        outputs=[v for v in variables if v.causality == "output"],
+        exposed=[row for row in rows if row.name in exposed],
+        hidden=[row for row in rows if row.name not in exposed],
+        terminals=TERMINALS[model.name],
+        messages=_messages(model, spring),
+        figure=_figure(model, spring),
+        ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
+    )
+
+
+def _rows(parameters: ParameterFile) -> list[_Row]:
+    fields, rows = dict(flat_fields(type(parameters.values))), []
+    for name, value in flatten(parameters.values).items():
+        meta = fields[name].metadata
+        if "allowed" in meta:
+            allowed = ", ".join(str(a).lower() for a in meta["allowed"])
+        else:
+            allowed = "1, 2, 3, ..." if meta.get("whole") else interval(fields[name])
+        kind, source = parameters.kinds.get(name, "user"), parameters.sources.get(name, "default choice")
+        rows.append(_Row(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
+    return rows
+
+
+def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
+    """(level, example, meaning) of what an instance may log."""
+    name, item = next(iter(model.parameter_fields().items()))
+    v = model.inputs[0]
+    wrong = problem(name, np.nan, item) or ""
+    low = "(-inf" if v.low == -np.inf else f"[{v.low:g}"
+    found = [
+        ("error", wrong, "A parameter is outside its interval, not a number or infinite."),
+        (
+            "error",
+            f"{v.name} = nan {v.unit} is outside {low}, inf): {v.doc}",
+            "An input is not a number, infinite or outside its interval.",
+        ),
+        (
+            "error",
+            f"{v.name} = 1e+308: too large, {model.outputs[0].name} is not finite",
+            "The inputs are finite, but the result is not.",
+        ),
+        (
+            "error",
+            "FUNCTION: what happened; what was expected",
+            "A call of an FMI function in the wrong state or with wrong arguments.",
+        ),
+    ]
+    return found + [
+        ("warning", text, "Logged once until reset; the call succeeds.") for text in _warnings(model, spring)
+    ]
+
+
+def _warnings(model: Model, spring: Any) -> list[str]:
+    """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
+    inputs = {v.name: 0.0 for v in model.inputs} | {model.ramp.input: model.ramp.end}
+    values = inputs | _evaluated(model, spring, inputs)
+    found = []
+    for i, outside in enumerate(model.outside):
+        low, high = outside.interval(spring.joint, spring.curve.end, values)
+        beyond = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
+        found.append(model.warnings(spring, values | {outside.variable: float(beyond)})[i])
+    return found
+
+
+def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+    return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
+
+
+def _figure(model: Model, spring: Any) -> str:
+    """The load ramp, evaluated by the package."""
+    rest = {v.name: 0.0 for v in model.inputs}
+    ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
+    points = [rest | {model.ramp.input: float(x)} for x in ramp]
+    rows = [point | _evaluated(model, spring, point) for point in points]
+    variables = {v.name: v for v in (*model.inputs, *model.outputs)}
+
+    def column(name: str, shown: str) -> list[float]:
+        factor = UNITS[variables[name].unit].display[shown]
+        return [factor * row[name] for row in rows]
+
+    def draw(figure: Figure) -> None:
+        panels = _PANELS[model.name]
+        for axes, (over, names) in zip(figure.subplots(1, len(panels)), panels, strict=True):
+            x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
+            for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
+                axes.plot(column(over, x), column(name, y), color=color, label=name)
+            labels(axes, f"{over} [{x}]", f"{', '.join(names)} [{y}]")
+            if len(names) > 1:
+                axes.legend()
+
+    picture = short(svg(draw, (9.6, 3.8), {"svg.fonttype": "none"}))
+    return picture.replace("font-family: 'DejaVu Sans'; ", "")  # the page names the font once

@@ -1,0 +1,151 @@
+/* An instance of the FMU, the same for FMI 2 and FMI 3: values, modes, checks and messages.
+ *
+ * Every function that takes `function` reports under that name of the FMI function that was called, and
+ * an instance that is NULL is an error. Arrays may be NULL only if they have no elements. */
+#ifndef JOINTFMU_INSTANCE_H
+#define JOINTFMU_INSTANCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "joint.h"
+#include "text.h"
+#include "variables.h"
+
+/* The numbers are those of fmi2Status and fmi3Status. */
+typedef enum { OK, WARNING, DISCARD, ERROR } Status;
+
+/* Modes of an instance, and the two kinds of instances; a set of them says where a function is allowed. */
+enum {
+    INSTANTIATED = 1u << 0,
+    CONFIGURATION = 1u << 1,
+    INITIALIZATION = 1u << 2,
+    EVENT = 1u << 3,
+    CONTINUOUS_TIME = 1u << 4,
+    STEP = 1u << 5,
+    RECONFIGURATION = 1u << 6,
+    TERMINATED = 1u << 7,
+    MODEL_EXCHANGE = 1u << 8,
+    CO_SIMULATION = 1u << 9,
+
+    BOTH = MODEL_EXCHANGE | CO_SIMULATION,
+    ANY_MODE = TERMINATED | (TERMINATED - 1u),
+    READABLE = INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP | TERMINATED,
+    SETTABLE = INSTANTIATED | CONFIGURATION | INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP |
+        RECONFIGURATION
+};
+
+/* Categories of messages. */
+enum { LOG_ERRORS = 1u << 0, LOG_WARNINGS = 1u << 1, LOG_EVENTS = 1u << 2 };
+
+/* How messages reach the host. */
+typedef struct Reporter Reporter;
+struct Reporter {
+    void (*deliver)(const Reporter *to, const char *name, Status status, const char *category,
+                    const char *line);
+    void (*callback)(void); /* the host's function, of the type that `deliver` knows */
+    void *environment;
+};
+
+/* All that a host can save and restore; outputs and tables follow from it. */
+typedef struct {
+    double values[N_VALUES]; /* by value reference; [0] is the time */
+    double slopes[N_INPUTS]; /* derivatives of the inputs in the next step (FMI 2) */
+    double start, stop;      /* times; stop is infinite where the host defines none */
+    unsigned kind, mode;
+    unsigned warned; /* bits of joint_outside that were reported */
+    unsigned logs;   /* categories that are delivered */
+    Status last_step;
+} State;
+
+typedef struct {
+    State now;
+    double tabulated[N_PARAMETERS]; /* parameters of the tables */
+    Joint *joint;
+    bool dirty;              /* outputs are not those of the present inputs and parameters */
+    bool parameters_changed; /* perhaps: a parameter was set since the last evaluation */
+    bool tables_right;       /* the tables are those of `tabulated` */
+    bool logging_on;         /* as at instantiation */
+    unsigned version;        /* of FMI: 2 or 3 */
+    Reporter reporter;
+    char name[];
+} Instance;
+
+/* instance.c: life, modes, messages */
+
+/* NULL with a message if the host's name or token is wrong. */
+Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
+                       const char *token, bool logging_on, Reporter reporter);
+/* Say why there is no new instance. */
+void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
+void instance_free(Instance *m);
+/* Back to the state after instantiation. */
+void instance_reset(Instance *m);
+/* Change the mode. */
+void instance_enter(Instance *m, unsigned mode);
+/* The same for the functions that do no more, where they are allowed. */
+Status instance_change(Instance *m, const char *function, unsigned where, unsigned mode);
+/* Check parameters and inputs and leave initialization mode. */
+Status instance_initialize(Instance *m, const char *function);
+Status instance_set_time(Instance *m, const char *function, double time);
+/* Set the times of the experiment, before initialization. */
+Status instance_set_experiment(Instance *m, const char *function, double start, bool stop_defined,
+                               double stop);
+Status instance_select_logs(Instance *m, const char *function, bool on, size_t n,
+                            const char *const categories[]);
+void instance_report(const Instance *m, Status status, unsigned category, const char *line);
+/* Report "FUNCTION: what happened; what was expected" and give ERROR. */
+Status instance_refuse(const Instance *m, const char *function, const char *what);
+
+/* Checks; each reports what is wrong and gives false. */
+bool instance_allows(const Instance *m, const char *function, unsigned where);
+bool instance_lacks(const Instance *m, const char *function, const char *what);
+static inline bool instance_has(const Instance *m, const char *function, const char *what,
+                                const void *pointer)
+{
+    return pointer || instance_lacks(m, function, what);
+}
+bool instance_counts(const Instance *m, const char *function, const char *what, size_t given,
+                     size_t expected);
+
+/* values.c: variables */
+
+Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                    const double values[]);
+Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
+/* Booleans, one each, because FMI 2 and 3 hold them differently; `n` elements are checked with the first. */
+bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                               const void *values);
+bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                               const void *values);
+/* Types of which there is no variable: right with n = 0 only. */
+Status instance_no_variables(const Instance *m, const char *function, unsigned where, size_t n);
+Status instance_set_slopes(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                           const int32_t orders[], const double values[]);
+/* true if the unknowns are outputs and the knowns inputs, and the outputs are right. */
+bool instance_can_differentiate(Instance *m, const char *function, const uint32_t unknowns[],
+                                size_t n_unknowns, const uint32_t knowns[], size_t n_knowns);
+
+/* evaluate.c: outputs, steps, derivatives */
+
+/* Make the outputs right for the present inputs and parameters; reports a refusal and gives ERROR. */
+Status instance_evaluate(Instance *m);
+Status instance_step(Instance *m, const char *function, double time, double size);
+/* Derivative of outputs `unknowns` along `seed` in inputs `knowns`. */
+Status instance_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                           const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
+/* Its transpose: derivative of the sum of seed[i] * unknowns[i] by each of `knowns`. */
+Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
+
+/* state.c: states outside of an instance, and as bytes */
+
+Status state_save(const Instance *m, const char *function, void **saved);
+Status state_restore(Instance *m, const char *function, const void *saved);
+Status state_free(const Instance *m, const char *function, void **saved);
+Status state_size(const Instance *m, const char *function, const void *saved, size_t *size);
+Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size);
+Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved);
+
+#endif

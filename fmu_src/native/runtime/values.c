@@ -1,0 +1,214 @@
+#include "instance.h"
+
+#include <math.h>
+
+/* Every check below comes in two parts: a short loop for what hosts do in each step (inputs to set, outputs
+ * to read), and a long way that takes everything else and finds the words for what is wrong. */
+
+static bool all_of(const uint32_t refs[], size_t n, uint32_t first, uint32_t count)
+{
+    bool inside = true;
+    for (size_t i = 0; i < n; i++)
+        inside &= refs[i] - first < count;
+    return inside;
+}
+
+static bool is_input(uint32_t ref)
+{
+    return ref >= FIRST_INPUT && ref < FIRST_OUTPUT;
+}
+
+static bool is_output(uint32_t ref)
+{
+    return ref >= FIRST_OUTPUT && ref < FIRST_PARAMETER;
+}
+
+static bool is_parameter(uint32_t ref)
+{
+    return ref >= FIRST_PARAMETER && ref < N_VALUES;
+}
+
+static bool refused(const Instance *m, const char *function, uint32_t ref, const char *what)
+{
+    Text text;
+    text_clear(&text);
+    text_add(&text, variables[ref].name);
+    text_add(&text, what);
+    instance_refuse(m, function, text.line);
+    return false;
+}
+
+static bool known(const Instance *m, const char *function, uint32_t ref)
+{
+    const uint32_t first = m->version == 2 ? FIRST_INPUT : 0; /* FMI 2 lists no time */
+    if (ref >= first && ref < N_VALUES)
+        return true;
+    Text text;
+    text_clear(&text);
+    text_add(&text, "value reference ");
+    text_count(&text, ref);
+    text_add(&text, " is unknown; expected ");
+    text_count(&text, first);
+    text_add(&text, " to ");
+    text_count(&text, N_VALUES - 1);
+    instance_refuse(m, function, text.line);
+    return false;
+}
+
+static bool of_type(const Instance *m, const char *function, uint32_t ref, bool boolean)
+{
+    if ((variables[ref].boolean != 0) == boolean)
+        return true;
+    return refused(m, function, ref,
+                   boolean ? " is a number; expected a Boolean" : " is a Boolean; expected a number");
+}
+
+static bool has_arrays(const Instance *m, const char *function, size_t n, const void *refs,
+                       const void *values)
+{
+    return n == 0 || (instance_has(m, function, "the array of value references", refs) &&
+                      instance_has(m, function, "the array of values", values));
+}
+
+/* Set */
+
+static bool settable(const Instance *m, const char *function, uint32_t ref, bool boolean)
+{
+    if (!known(m, function, ref) || !of_type(m, function, ref, boolean))
+        return false;
+    if (is_input(ref))
+        return true;
+    if (!is_parameter(ref))
+        return refused(m, function, ref,
+                       ref == 0 ? " is the independent variable; expected an input or a parameter"
+                                : " is an output; expected an input or a parameter");
+    if (m->now.mode == CONTINUOUS_TIME)
+        return refused(m, function, ref,
+                       " is a tunable parameter set in continuous-time mode; expected event mode");
+    return true;
+}
+
+static bool can_set(Instance *m, const char *function, const uint32_t refs[], size_t n, const void *values,
+                    bool boolean)
+{
+    if (!instance_allows(m, function, BOTH | SETTABLE) || !has_arrays(m, function, n, refs, values))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (!settable(m, function, refs[i], boolean))
+            return false;
+    m->parameters_changed = true;
+    return true;
+}
+
+Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n, const double values[])
+{
+    const bool quick =
+        m && (m->now.mode & SETTABLE) && refs && values && all_of(refs, n, FIRST_INPUT, N_INPUTS);
+    if (!quick && !can_set(m, function, refs, n, values, false))
+        return ERROR;
+    for (size_t i = 0; i < n; i++)
+        m->now.values[refs[i]] = values[i];
+    m->dirty = true;
+    return OK;
+}
+
+bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                               const void *values)
+{
+    if (!can_set(m, function, refs, n, values, true))
+        return false;
+    m->dirty = true;
+    return true;
+}
+
+Status instance_set_slopes(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                           const int32_t orders[], const double values[])
+{
+    if (!instance_allows(m, function, CO_SIMULATION | INSTANTIATED | INITIALIZATION | STEP) ||
+        !has_arrays(m, function, n, refs, values) ||
+        (n && !instance_has(m, function, "the array of orders", orders)))
+        return ERROR;
+    for (size_t i = 0; i < n; i++) {
+        if (!known(m, function, refs[i]))
+            return ERROR;
+        if (!is_input(refs[i])) {
+            refused(m, function, refs[i], " is no input; expected one");
+            return ERROR;
+        }
+        if (orders[i] != 1) {
+            refused(m, function, refs[i], " is given a derivative of another order; expected order 1");
+            return ERROR;
+        }
+        if (!isfinite(values[i])) {
+            refused(m, function, refs[i], " is given a derivative that is not finite; expected a finite one");
+            return ERROR;
+        }
+    }
+    for (size_t i = 0; i < n; i++)
+        m->now.slopes[refs[i] - FIRST_INPUT] = values[i];
+    return OK;
+}
+
+/* Get */
+
+static bool can_get(Instance *m, const char *function, const uint32_t refs[], size_t n, const void *values,
+                    bool boolean)
+{
+    if (!instance_allows(m, function, BOTH | READABLE) || !has_arrays(m, function, n, refs, values))
+        return false;
+    bool output = false;
+    for (size_t i = 0; i < n; i++) {
+        if (!known(m, function, refs[i]) || !of_type(m, function, refs[i], boolean))
+            return false;
+        output |= is_output(refs[i]);
+    }
+    return !output || instance_evaluate(m) == OK;
+}
+
+Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[])
+{
+    const bool quick = m && !m->dirty && (m->now.mode & READABLE) && refs && values &&
+                       all_of(refs, n, FIRST_OUTPUT, N_OUTPUTS);
+    if (!quick && !can_get(m, function, refs, n, values, false))
+        return ERROR;
+    for (size_t i = 0; i < n; i++)
+        values[i] = m->now.values[refs[i]];
+    return OK;
+}
+
+bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                               const void *values)
+{
+    return can_get(m, function, refs, n, values, true);
+}
+
+/* Others */
+
+Status instance_no_variables(const Instance *m, const char *function, unsigned where, size_t n)
+{
+    if (!instance_allows(m, function, where))
+        return ERROR;
+    return instance_counts(m, function, "variables of a type that this FMU does not have", n, 0) ? OK : ERROR;
+}
+
+bool instance_can_differentiate(Instance *m, const char *function, const uint32_t unknowns[],
+                                size_t n_unknowns, const uint32_t knowns[], size_t n_knowns)
+{
+    if (!instance_allows(m, function, BOTH | READABLE) ||
+        (n_unknowns && !instance_has(m, function, "the array of unknowns", unknowns)) ||
+        (n_knowns && !instance_has(m, function, "the array of knowns", knowns)))
+        return false;
+    for (size_t i = 0; i < n_unknowns; i++) {
+        if (!known(m, function, unknowns[i]))
+            return false;
+        if (!is_output(unknowns[i]))
+            return refused(m, function, unknowns[i], " is among the unknowns; expected outputs");
+    }
+    for (size_t i = 0; i < n_knowns; i++) {
+        if (!known(m, function, knowns[i]))
+            return false;
+        if (!is_input(knowns[i]))
+            return refused(m, function, knowns[i], " is among the knowns; expected inputs");
+    }
+    return instance_evaluate(m) == OK;
+}

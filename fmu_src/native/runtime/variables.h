@@ -1,0 +1,33 @@
+/* The list of variables, generated into variables.c for each FMU.
+ *
+ * Value references count the list: 0 is the time, then inputs, outputs and parameters in their order. */
+#ifndef JOINTFMU_VARIABLES_H
+#define JOINTFMU_VARIABLES_H
+
+#include "model.h" /* generated: MODEL_NAME, MODEL_TOKEN, MODEL_VERSION, N_INPUTS, N_OUTPUTS, N_PARAMETERS */
+
+typedef struct {
+    const char *name;
+    const char *unit; /* SI; "" for a number without unit */
+    const char *doc;
+    const char *interval; /* allowed values as text, "(0, 1]" */
+    double start;
+    double low, high;                /* allowed interval */
+    unsigned char low_open, high_open; /* 1: the end itself is not allowed */
+    unsigned char whole;             /* 1: whole numbers only */
+    unsigned char boolean;           /* 1: a Boolean, 0 or 1 */
+} Variable;
+
+enum {
+    FIRST_INPUT = 1,
+    FIRST_OUTPUT = FIRST_INPUT + N_INPUTS,
+    FIRST_PARAMETER = FIRST_OUTPUT + N_OUTPUTS,
+    N_VALUES = FIRST_PARAMETER + N_PARAMETERS
+};
+
+extern const Variable variables[N_VALUES]; /* by value reference; [0] is the time */
+
+/* Outputs that depend on an input, and all on parameters: 1 or 0. */
+extern const unsigned char depends[N_OUTPUTS][N_INPUTS];
+
+#endif

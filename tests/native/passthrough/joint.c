@@ -1,0 +1,51 @@
+#include "joint.h"
+
+#include "variables.h"
+
+struct Joint {
+    double gain;
+};
+
+size_t joint_size(void)
+{
+    return sizeof(Joint);
+}
+
+bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+{
+    (void)why;
+    joint->gain = parameters[0];
+    return true;
+}
+
+bool joint_evaluate(Joint *joint, const double *inputs, double *outputs, Text *why)
+{
+    (void)why;
+    for (int i = 0; i < N_OUTPUTS; i++)
+        outputs[i] = joint->gain * inputs[i];
+    return true;
+}
+
+void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+{
+    (void)inputs;
+    for (int i = 0; i < N_OUTPUTS; i++)
+        result[i] = joint->gain * seed[i];
+}
+
+unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+{
+    (void)joint;
+    (void)inputs;
+    (void)outputs;
+    return 0;
+}
+
+void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+{
+    (void)joint;
+    (void)inputs;
+    (void)outputs;
+    (void)bit;
+    (void)text;
+}

@@ -1,0 +1,161 @@
+"""Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
+
+The hosts in tests/native are built for each platform by the same compiler as the FMUs. macOS is not run.
+"""
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy import read_model_description
+from jointfmu_fmus.variables import MODELS, Model
+
+LIBM_TOLERANCE = 1e-12
+"""Largest relative difference that another mathematical library may make [1]."""
+POINTS = 200
+SYSROOT = Path("/usr/aarch64-linux-gnu")
+HOSTS = Path(__file__).parent / "native"
+VERSIONS = ("fmi2", "fmi3")
+
+
+class Machine(NamedTuple):
+    """How to build and run a host; `needs` is what must be there, {what: whether it is}."""
+
+    target: str
+    options: tuple[str, ...]
+    folders: dict[str, str]
+    end: str
+    prefix: tuple[str, ...]
+    needs: dict[str, bool]
+
+
+HERE = Machine(
+    "x86_64-linux-gnu.2.34",
+    ("-ldl", "-lpthread"),
+    {"fmi2": "linux64", "fmi3": "x86_64-linux"},
+    "so",
+    (),
+    {"a Linux x86_64 machine": sys.platform == "linux" and platform.machine() == "x86_64"},
+)
+OTHERS = {
+    "windows": Machine(
+        "x86_64-windows-gnu",
+        (),
+        {"fmi2": "win64", "fmi3": "x86_64-windows"},
+        "dll",
+        ("wine",),
+        HERE.needs | {"wine": shutil.which("wine") is not None},
+    ),
+    "aarch64": Machine(
+        "aarch64-linux-gnu.2.34",
+        ("-ldl", "-lpthread"),
+        {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
+        "so",
+        ("qemu-aarch64", "-L", str(SYSROOT)),
+        HERE.needs
+        | {
+            "qemu-aarch64": shutil.which("qemu-aarch64") is not None,
+            f"{SYSROOT} (Debian's libc6-arm64-cross)": (SYSROOT / "lib" / "libm.so.6").exists(),
+        },
+    ),
+}
+Run = Callable[..., str]
+
+
+@pytest.fixture(scope="module")
+def run(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Runs a host with an FMU's library on a machine and gives what it prints."""
+    work = tmp_path_factory.mktemp("hosts")
+    wine = {"WINEPREFIX": str(work / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+
+    @cache
+    def host(program: str, machine: str) -> Path:
+        m = OTHERS.get(machine, HERE)
+        file = work / f"{program}-{machine}.exe"
+        include = Path(fmpy.__file__).parent / "c-code"
+        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-O1", "-g0"]
+        sources = [str(HOSTS / f"{program}.c"), "-I", str(include)]
+        done = subprocess.run(
+            [*compile_, *sources, *m.options, "-o", str(file)], capture_output=True, text=True, cwd=work
+        )
+        assert done.returncode == 0, done.stderr
+        return file
+
+    @cache
+    def library(name: str, version: str, machine: str) -> Path:
+        m = OTHERS.get(machine, HERE)
+        folder = work / f"{name}-{version}-{machine}"
+        with zipfile.ZipFile(native / version / f"{name}.fmu") as fmu:
+            return Path(fmu.extract(f"binaries/{m.folders[version]}/{name}.{m.end}", folder))
+
+    def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
+        m = OTHERS.get(machine, HERE)
+        if missing := [what for what, there in m.needs.items() if not there]:
+            pytest.skip(f"needs {missing[0]}")
+        file = library(name, version, machine)
+        description = read_model_description(str(native / version / f"{name}.fmu"))
+        token = description.guid if version == "fmi2" else description.instantiationToken
+        done = subprocess.run(
+            [*m.prefix, host(program, machine), file, version[-1], token, *map(str, arguments)],
+            input=points,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            cwd=file.parent,
+            env=os.environ | wine,
+        )
+        assert done.returncode == 0, done.stderr[-2000:]
+        return done.stdout
+
+    return go
+
+
+def counts(model: Model) -> tuple[int, int, int]:
+    return len(model.inputs), len(model.outputs), len(model.parameter_fields())
+
+
+def points(model: Model) -> str:
+    """Lines of inputs: the driven one along its ramp, the others of any sign and many magnitudes."""
+    rng = np.random.default_rng(3)
+    columns = [
+        rng.uniform(0.0, model.ramp.end, POINTS)
+        if v.name == model.ramp.input
+        else v.nominal * 10.0 ** rng.uniform(-4.0, 0.0, POINTS) * rng.choice([-1.0, 1.0], POINTS)
+        for v in model.inputs
+    ]
+    return "\n".join(" ".join(map(repr, map(float, line))) for line in zip(*columns, strict=True)) + "\n"
+
+
+def table(text: str) -> np.ndarray:
+    return np.array([[float(x) for x in line.split()] for line in text.splitlines()])
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("machine", OTHERS)
+def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, version: str) -> None:
+    model = MODELS[name]
+    inputs, outputs, _ = counts(model)
+    found, expected = (
+        table(run("run", m, name, version, inputs, outputs, points=points(model))) for m in (machine, "here")
+    )
+    assert expected.shape == (POINTS, outputs)
+    scale = np.abs(expected).max(axis=0)
+    assert np.isfinite(expected).all()
+    assert np.max(np.abs(found - expected) / np.where(scale > 0.0, scale, 1.0)) <= LIBM_TOLERANCE
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("machine", OTHERS)
+def test_it_lives_a_whole_life(run: Run, machine: str, version: str) -> None:
+    run("lifecycle", machine, "GearContact", version, *counts(MODELS["GearContact"]))
