@@ -20,6 +20,8 @@ INTEGRATION_TOLERANCE = 1e-6
 """FMU against an independent integration of its stiffness [1]."""
 REPEAT_TOLERANCE = 1e-9
 """FMU at ten times larger steps against the same points [1]."""
+FLAVOUR_TOLERANCE = 1e-9
+"""One flavour against another [1]: both evaluate the same law, to the round-off of its inversion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +59,13 @@ def check(name: str, folder: Path, result: ramp.Ramp) -> list[Check]:
         Check(name, "ten times larger steps, every output at the shared points", worst, REPEAT_TOLERANCE),
         Check(name, *integral, INTEGRATION_TOLERANCE),
     ]
+
+
+def same(name: str, folder: Path, expected: ramp.Ramp) -> Check:
+    """The ramp of another flavour against the one expected."""
+    found = default_ramp(name, folder).columns
+    worst = max(_deviation(found[column], value) for column, value in expected.columns.items())
+    return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
 
 
 def _deviation(value: object, expected: object) -> float:

@@ -10,8 +10,8 @@ from jointfmu import ramp, validation
 from jointfmu.parameters import write_text
 from jointfmu.progress import track
 
-from .building import build
-from .checks import Check, check, default_ramp, published_through_fmus
+from .building import FLAVOURS, build
+from .checks import Check, check, default_ramp, published_through_fmus, same
 from .report import write_report
 from .variables import MODELS
 
@@ -47,18 +47,23 @@ class Outcome:
 
 
 def run(out: Path) -> Outcome:
-    """Build into `out/python`, check, and write `out/report/index.html` with the ramps as CSV."""
+    """Build all flavours, check, and write `out/report/index.html` with the ramps as CSV.
+
+    The ramps shown are those of the flavour `fmi2`; the others must repeat them.
+    """
     outcome = Outcome()
-    outcome.built = build([], ["python"], None, out)
-    folder = out / "python"
+    outcome.built = build([], list(FLAVOURS), None, out)
+    folder = out / "fmi2"
     for name in track(MODELS, "validate and ramp", len(MODELS)):
-        path = folder / f"{name}.fmu"
-        outcome.problems += [f"{name}: {problem}" for problem in validate_fmu(str(path))]
+        for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
+            shown = f"{path.parent.name}/{name}"
+            outcome.problems += [f"{shown}: {problem}" for problem in validate_fmu(str(path))]
         result = default_ramp(name, folder)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, folder, result)
+        outcome.checks += [same(name, out / other, result) for other in FLAVOURS if out / other != folder]
     for step in track(("package", "FMUs", "report"), "compare and report", 3):
         if step == "package":
             outcome.rows = validation.validate()
@@ -73,11 +78,12 @@ def main(out: Path) -> int:
     """Run the main job; the last lines say what was built, compared and missed."""
     try:
         outcome = run(out)
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:
         print(f"build_fmus.py: {error}", file=sys.stderr)
-        return 2
+        return 2 if isinstance(error, ValueError) else 1
     misses = outcome.misses
-    print(f"built: {len(outcome.built)} FMUs in {out / 'python'}: {', '.join(p.stem for p in outcome.built)}")
+    folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
+    print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")
     print(f"validated with fmpy: {len(outcome.built)}; ramps run: {len(outcome.ramps)}")
     print(
         f"compared: {validation.summary(outcome.rows)}; "

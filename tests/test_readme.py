@@ -20,7 +20,7 @@ def blocks(language):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("readme")
-    build([], ["python"], None, place / "dist")
+    build([], ["fmi2", "fmi3"], None, place / "dist")
     (place / "my_joint.toml").write_text((ROOT / "models/bolted_joint/box_specimen.toml").read_text())
     return place
 

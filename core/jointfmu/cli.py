@@ -164,7 +164,11 @@ def parser() -> argparse.ArgumentParser:
     make = command("build", _build, "build FMUs")
     make.add_argument("names", nargs="*", metavar="NAME", help="FMUs to build (default: all)")
     make.add_argument(
-        "--flavour", nargs="+", default=["python"], metavar="FLAVOUR", help="flavours to build: python"
+        "--flavour",
+        nargs="+",
+        default=["fmi2", "fmi3"],
+        metavar="FLAVOUR",
+        help="flavours to build: fmi2, fmi3 (default: both), python",
     )
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
     make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")

@@ -67,7 +67,7 @@ def run(
 
     Parameters
     ----------
-    fmu        : path of an FMI 2.0 co-simulation FMU
+    fmu        : path of a co-simulation FMU, FMI 2.0 or 3.0
     input_name : the input that is driven
     to, step   : [unit of the input] end and step of the ramp
     settings   : start values of parameters and other inputs
@@ -147,18 +147,17 @@ def _drive(
     rows: list[list[float]] = []
     with slave(folder, md, messages) as fmu:
         try:
-            fmu.setupExperiment(startTime=0.0)
-            fmu.enterInitializationMode()
+            fmu.begin()
             for name, value in settings.items():
-                set_value(fmu, variables[name], value)
-            fmu.setReal([variables[input_name].valueReference], [points[0]])
-            fmu.exitInitializationMode()
+                fmu.set(variables[name], value)
+            fmu.set(variables[input_name], points[0])
+            fmu.fmu.exitInitializationMode()
             references = [v.valueReference for v in outputs]
             for i, value in enumerate(track(points, Path(source).stem, len(points))):
-                fmu.setReal([variables[input_name].valueReference], [float(value)])
+                fmu.set(variables[input_name], value)
                 if i:
-                    fmu.doStep(currentCommunicationPoint=float(i - 1), communicationStepSize=1.0)
-                rows.append(fmu.getReal(references))
+                    fmu.fmu.doStep(currentCommunicationPoint=float(i - 1), communicationStepSize=1.0)
+                rows.append(fmu.get(references))
         except Exception as error:
             raise ValueError(f"{source}: {messages[0] if messages else error}") from None
     table = np.asarray(rows).reshape(len(points), len(outputs))
@@ -167,40 +166,27 @@ def _drive(
     return Ramp(columns, units, tuple(messages))
 
 
-def set_value(fmu: Any, variable: Any, value: Any) -> None:
-    """Set a Real or Boolean start value."""
-    setter = fmu.setBoolean if variable.type == "Boolean" else fmu.setReal
-    setter([variable.valueReference], [value])
-
-
 @contextmanager
 def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
-    """An instantiated FMI 2.0 co-simulation slave; what it logs is appended to `messages`.
+    """An instantiated co-simulation slave; what it logs is appended to `messages`.
 
     Raises RuntimeError with the logged reason if it does not instantiate.
     """
-    from fmpy import calloc, fmi2, free
+    from . import host
 
-    callbacks = fmi2.fmi2CallbackFunctions()
-    callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-        lambda env, instance, status, category, message: messages.append(
-            " ".join(message.decode("utf-8", "replace").split())
-        )
+    one = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
+    fmu = one(
+        guid=md.guid,
+        unzipDirectory=folder,
+        modelIdentifier=md.coSimulation.modelIdentifier,
+        instanceName="ramp",
     )
-    callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
-    callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
     try:
-        fmu = fmi2.FMU2Slave(
-            guid=md.guid,
-            unzipDirectory=folder,
-            modelIdentifier=md.coSimulation.modelIdentifier,
-            instanceName="ramp",
-        )
-        fmu.instantiate(callbacks=callbacks, loggingOn=True)
+        fmu.start(lambda text: messages.append(" ".join(text.decode("utf-8", "replace").split())))
     except Exception as error:  # fmpy raises bare Exception
         reason = messages[-1] if messages else str(error)
         raise RuntimeError(f"{md.modelName}: {reason}") from None
     try:
         yield fmu
     finally:
-        fmu.freeInstance()
+        fmu.fmu.freeInstance()

@@ -27,8 +27,8 @@ class Function:
 
     name: str
     doc: str
-    x: Symbols
-    y: Symbols
+    x: Sequence[ca.SX]
+    y: Sequence[ca.SX]
 
 
 @dataclass(slots=True)
@@ -46,11 +46,11 @@ class Graph:
     constants: list[ca.SX] = field(default_factory=list)
     symbols: list[ca.SX] = field(default_factory=list)
 
-    def add(self, name: str, doc: str, x: Symbols, y: Symbols) -> None:
+    def add(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols) -> None:
         """Add a function."""
         self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y]))
 
-    def add_with_seed(self, name: str, doc: str, x: Symbols, y: Symbols, fixed: int = 0) -> None:
+    def add_with_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int = 0) -> None:
         """Add a function and `name_seed`: its derivative along a seed for all x but the first `fixed`."""
         self.add(name, doc, x, y)
         moving = ca.vertcat(*x[fixed:])

@@ -17,12 +17,8 @@ void text_add(Text *text, const char *piece)
     if (n > room)
         for (n = room; n > 0 && ((unsigned char)piece[n] & 0xC0u) == 0x80u; n--)
             ; /* do not cut a UTF-8 character in two */
-    char *end = text->line + text->length;
-    for (size_t i = 0; i < n; i++) {
-        const unsigned char c = (unsigned char)piece[i];
-        end[i] = c < 0x20 || c == 0x7F ? ' ' : piece[i];
-    }
-    end[n] = '\0';
+    memcpy(text->line + text->length, piece, n);
+    text->line[text->length + n] = '\0';
     text->length += n;
 }
 

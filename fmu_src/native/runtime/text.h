@@ -10,7 +10,6 @@ typedef struct {
 } Text;
 
 void text_clear(Text *text);
-/* A piece of the line; a line break or another control character becomes a space. */
 void text_add(Text *text, const char *piece);
 /* A string of the host in quotation marks: its first 80 bytes, what is not printable ASCII as '?'. */
 void text_quote(Text *text, const char *piece);
