@@ -9,7 +9,7 @@ from time import perf_counter
 import numpy as np
 from scipy.optimize import brentq
 
-from jointfmu.cli import LAWS, law_parameters
+from jointfmu.commands.law import LAWS, law_parameters
 from jointfmu.interface import at_pressure, largest_spot
 
 POINTS, OBVIOUS, REPEATS = 1_000_000, 300, 5

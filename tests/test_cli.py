@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from jointfmu import __version__, reference, validation
-from jointfmu.cli import LAWS, ROW, law_parameters, main
+from jointfmu.cli import main
+from jointfmu.commands.law import LAWS, ROW, law_parameters
 from jointfmu.interface import at_largest_spot, at_pressure
 from jointfmu.observables import OBSERVABLES
 from jointfmu.parameters import default, dump

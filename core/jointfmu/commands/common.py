@@ -1,0 +1,53 @@
+"""What commands share: the parser, `--json`, `--set`, numbers as JSON."""
+
+import argparse
+import re
+import sys
+from collections.abc import Callable
+from typing import Any, NoReturn
+
+from ..parameters import parse_setting
+
+Run = Callable[[argparse.Namespace], int]
+
+
+class Parser(argparse.ArgumentParser):
+    """argparse with one line for an error, and negative numbers in any notation."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
+
+    def error(self, message: str) -> NoReturn:
+        """Print one line and exit with 2."""
+        print(f"{self.prog}: {message}", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def command(commands: Any, name: str, run: Run, text: str) -> argparse.ArgumentParser:
+    """Declare a command with `--json`."""
+    sub: argparse.ArgumentParser = commands.add_parser(name, help=text, description=text)
+    sub.set_defaults(run=run)
+    sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    return sub
+
+
+def settings(sub: argparse.ArgumentParser) -> None:
+    """Declare `--set NAME=VALUE ...`."""
+    sub.add_argument(
+        "--set",
+        dest="settings",
+        nargs="+",
+        action="extend",
+        type=_setting,
+        default=[],
+        metavar="NAME=VALUE",
+        help="set parameters (SI units)",
+    )
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    try:
+        return parse_setting(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None

@@ -1,0 +1,74 @@
+"""`jointfmu law`: one interface law at pressures or largest spots."""
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..asperity.hu2023 import Hu2023
+from ..asperity.yu2022 import Yu2022
+from ..asperity.zhao2018 import Zhao2018
+from ..interface import at_largest_spot, at_pressure
+from ..parameters import ParameterFile, default, load
+from ..quantity import build, flat_fields, flatten
+from .common import command, settings
+
+LAWS: dict[str, tuple[type[Any], str]] = {
+    "zhao2018": (Zhao2018, "bolted_joint"),
+    "hu2023": (Hu2023, "harmonic_drive"),
+    "yu2022": (Yu2022, "gear_contact"),
+}
+ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
+"""Columns of every law; a law that does not define one gives null."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    law = command(commands, "law", _law, "evaluate one interface law at pressures or largest spots")
+    law.add_argument("law", choices=list(LAWS), metavar="LAW", help=f"one of {', '.join(LAWS)}")
+    at = law.add_mutually_exclusive_group(required=True)
+    at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
+    at.add_argument(
+        "--largest-spot", type=float, nargs="+", metavar="A", help="area of the largest spot [m2]"
+    )
+    law.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    settings(law)
+
+
+def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
+    """The law's parameter set from a joint's parameter file (default: the joint's own) and settings."""
+    cls, joint = LAWS[law]
+    values = (file or default(joint)).values
+    known = flatten(values.law if law == "hu2023" else values)
+    names = {name for name, _ in flat_fields(cls)}
+    return build(cls, {k: v for k, v in known.items() if k in names} | settings)
+
+
+def _law(args: argparse.Namespace) -> int:
+    joint = LAWS[args.law][1]
+    file = load(args.params, joint) if args.params else None
+    law = law_parameters(args.law, file, dict(args.settings))
+    with np.errstate(over="ignore"):
+        if args.pressure is not None:
+            state = at_pressure(law, np.array(args.pressure))
+        else:
+            state = at_largest_spot(law, np.array(args.largest_spot))
+    names = [*ROW, *(name for name in state if name not in ROW)]
+    count = len(args.pressure or args.largest_spot)
+    rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
+    if args.json:
+        print(json.dumps({"law": args.law, "parameters": flatten(law), "rows": rows}))
+        return 0
+    print("  ".join(f"{name:>12}" for name in names))
+    for row in rows:
+        cells = ("-" if row[n] is None else f"{row[n]:.6g}" for n in names)
+        print("  ".join(f"{cell:>12}" for cell in cells))
+    return 0
+
+
+def _json_number(column: Any, i: int) -> float | None:
+    value = float(np.broadcast_to(column, (i + 1,) if np.ndim(column) == 0 else np.shape(column))[i])
+    return value if math.isfinite(value) else None
