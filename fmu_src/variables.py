@@ -135,6 +135,8 @@ def _row_moment(joint: Any, preload: Number) -> Number:
 
 
 _MOTION = ("phi1", "phi2")
+_TIGHT = ("preload", "moment")
+_SHIFT = ("s_rel_x", "s_rel_y", "s_rel_z")
 _DRIVE_HIDDEN = ("max_torque", "shear_traction")
 
 MODELS: dict[str, Model] = {
@@ -230,7 +232,29 @@ MODELS: dict[str, Model] = {
                 Outside("p_max", lambda j, end, v: (-math.inf, end[1]), _BEYOND),
             ),
             ramp=Ramp("preload", 30e3, 100.0),
-            dependencies={"eta_t": ()},
+            dependencies={
+                "f_x": (*_TIGHT, "s_rel_x", "s_rel_z", "v_rel_x"),
+                "f_y": (*_TIGHT, "s_rel_y", "s_rel_z", "v_rel_y"),
+                "f_z": (*_TIGHT, *_SHIFT, "v_rel_z"),
+                "K_zz": (*_TIGHT, *_SHIFT),
+                "eta_t": (),
+                **dict.fromkeys(
+                    (
+                        "K_xx",
+                        "K_yy",
+                        "C_xx",
+                        "C_yy",
+                        "C_zz",
+                        "eta_n",
+                        "K_rx",
+                        "K_ry",
+                        "K_rz",
+                        "p_mean",
+                        "p_max",
+                    ),
+                    (*_TIGHT, "s_rel_z"),
+                ),
+            },
             hidden=("pattern",),
         ),
         Model(

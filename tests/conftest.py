@@ -35,59 +35,87 @@ class Message(NamedTuple):
 
     status: int
     text: str
+    category: str
 
 
 class Fmu:
-    """An instance of an FMU file in a host that keeps all messages; variables by name."""
+    """An instance of an FMU file, FMI 2.0 or 3.0, in a host that keeps all messages; variables by name."""
 
-    def __init__(self, path: Path, name: str = "test") -> None:
-        from fmpy import calloc, fmi2, free
+    def __init__(self, path: Path, name: str = "test", exchange: bool = False, logging: bool = True) -> None:
+        from fmpy import fmi2, fmi3
 
         unpacked, self.description = unpack(path, path.stat().st_mtime_ns)
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.outputs = [v.name for v in self.description.modelVariables if v.causality == "output"]
         self.messages: list[Message] = []
         self.time = 0.0
+        self.version = int(self.description.fmiVersion[0])
+        self.exchange = exchange
+        kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
+        interface = self.description.modelExchange if exchange else self.description.coSimulation
+        self.fmu = kinds[self.version][exchange](
+            guid=self.description.guid,
+            unzipDirectory=unpacked,
+            modelIdentifier=interface.modelIdentifier,
+            instanceName=name,
+        )
+        native = self.description.modelExchange is not None
+        self.error_statuses = (3,) if native else (3, 4)  # pythonfmu turns every exception into fatal
+        if self.version == 2:
+            self.read, self.write = self.fmu.getReal, self.fmu.setReal
+            self._instantiate2(logging)
+        else:
+            self.read, self.write = self.fmu.getFloat64, self.fmu.setFloat64
+            self.fmu.instantiate(
+                loggingOn=logging,
+                logMessage=lambda env, status, category, text: self._log(status, category, text),
+            )
+
+    def _instantiate2(self, logging: bool) -> None:
+        from fmpy import calloc, fmi2, free
+
         self.callbacks = fmi2.fmi2CallbackFunctions()
         self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-            lambda env, instance, status, category, text: self.messages.append(Message(status, text.decode()))
+            lambda env, instance, status, category, text: self._log(status, category, text)
         )
         self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        self.fmu = fmi2.FMU2Slave(
-            guid=self.description.guid,
-            unzipDirectory=unpacked,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            instanceName=name,
-        )
-        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
+
+    def _log(self, status: int, category: bytes | None, text: bytes) -> None:
+        self.messages.append(Message(status, text.decode(), (category or b"").decode()))
 
     def set(self, values: Mapping[str, Any]) -> None:
         """Set parameters and inputs, one call each."""
         for name, value in values.items():
-            setter = self.fmu.setBoolean if self.variables[name].type == "Boolean" else self.fmu.setReal
+            setter = self.fmu.setBoolean if self.variables[name].type == "Boolean" else self.write
             setter([self.variables[name].valueReference], [value])
 
     def get(self, *names: str) -> dict[str, float]:
         """Outputs (default: all), inputs or parameters, all in one call."""
         names = names or tuple(self.outputs)
-        return dict(
-            zip(names, self.fmu.getReal([self.variables[n].valueReference for n in names]), strict=True)
-        )
+        return dict(zip(names, self.read([self.variables[n].valueReference for n in names]), strict=True))
+
+    def begin(self, start: float = 0.0, stop: float | None = None) -> None:
+        """Enter initialization mode."""
+        if self.version == 2:
+            self.fmu.setupExperiment(startTime=start, stopTime=stop)
+            self.fmu.enterInitializationMode()
+        else:
+            self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
+        self.time = start
 
     def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
         """Set start values in initialization mode and leave it."""
-        self.fmu.setupExperiment(startTime=0.0)
-        self.fmu.enterInitializationMode()
+        self.begin()
         self.set(values or {})
         self.fmu.exitInitializationMode()
-        self.time = 0.0
         return self
 
-    def step(self) -> None:
-        """One step of one second."""
-        self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=1.0)
-        self.time += 1.0
+    def step(self, size: float = 1.0) -> None:
+        """One step."""
+        self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=size)
+        self.time += size
 
     def at(self, values: Mapping[str, float]) -> dict[str, float]:
         """All outputs at inputs, without a step."""
@@ -105,11 +133,12 @@ class Fmu:
         seen = len(self.messages)
         with pytest.raises(FMICallException) as raised:
             call(*args)
-        assert raised.value.status in (3, 4)  # pythonfmu turns every exception into fatal
-        errors = [m.text for m in self.messages[seen:] if m.status == 3]
+        assert raised.value.status in self.error_statuses
+        errors = [m for m in self.messages[seen:] if m.status == 3]
         assert len(errors) == 1, self.messages[seen:]
-        assert "\n" not in errors[0]
-        return errors[0]
+        assert errors[0].category == "logStatusError"
+        assert "\n" not in errors[0].text
+        return errors[0].text
 
     @property
     def warnings(self) -> list[str]:

@@ -506,3 +506,13 @@ def test_defaults_of_a_parameter_file_are_the_start_values(fmu: Host, tmp_path: 
     expected = law("GearContact", file.values)({"f": 2e4})
     assert other.get() == pytest.approx(expected, rel=SAME)
     assert other.get() != fmu("GearContact").start({"f": 2e4}).get()
+
+
+def test_an_output_changes_with_the_inputs_it_is_said_to_depend_on_and_with_no_other(name: str) -> None:
+    model = MODELS[name]
+    spring = model.spring(default(model.joint).values)
+    base = model.evaluate(spring, STATE[name])
+    for variable in model.inputs:
+        moved = model.evaluate(spring, {**STATE[name], variable.name: 1.01 * STATE[name][variable.name]})
+        changed = {o.name for o in model.outputs if moved[o.name] != base[o.name]}
+        assert changed == {o.name for o in model.outputs if variable.name in model.depends(o.name)}

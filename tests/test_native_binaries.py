@@ -5,7 +5,6 @@ macOS binaries cannot run here; their load commands and signatures are checked i
 
 import re
 import struct
-import sys
 import zipfile
 from collections.abc import Iterator
 from hashlib import sha256
@@ -15,7 +14,7 @@ from typing import Any
 import fmpy
 import lief
 import pytest
-from conftest import refused_line
+from conftest import run_host
 from jointfmu_fmus.building import build
 from jointfmu_fmus.native import compiler
 from jointfmu_fmus.variables import MODELS
@@ -182,16 +181,20 @@ def test_no_fmu_is_large(native: Path) -> None:
     assert {name: size for name, size in sizes.items() if size > LARGEST_FMU} == {}
 
 
-def test_a_build_elsewhere_from_a_cold_cache_gives_the_same_bytes(
+def test_another_process_with_a_cold_cache_builds_the_same_bytes(
     native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
-    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONHASHSEED", "7")
+    script = "import sys; from jointfmu import cli; sys.exit(cli.main(sys.argv[1:]))"
+    done = run_host(script, "build", "--flavour", *VERSIONS, "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
     for version in VERSIONS:
-        (again,) = build(["GearContact"], [version], None, Path("out"))
-        first, second = members(native / version / "GearContact.fmu"), members(again)
-        assert [n for n in first | second if first.get(n) != second.get(n)] == []
-        assert again.read_bytes() == (native / version / "GearContact.fmu").read_bytes()
+        for name in MODELS:
+            first, again = (folder / version / f"{name}.fmu" for folder in (native, tmp_path / "out"))
+            one, two = members(first), members(again)
+            assert [member for member in one | two if one.get(member) != two.get(member)] == []
+            assert first.read_bytes() == again.read_bytes()
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -203,6 +206,13 @@ def test_no_path_of_this_machine_is_inside(native: Path, version: str) -> None:
 
 # What fails
 
+WITHOUT_PACKAGE = """
+import sys
+from jointfmu import cli
+
+sys.modules[sys.argv[1]] = None
+sys.exit(cli.main(["build", "GearContact", "--flavour", "fmi2", "--out", sys.argv[2]]))
+"""
 
 SOURCES = {"good.c": "int good(void);\nint good(void) { return 1; }\n"}
 
@@ -222,16 +232,39 @@ def test_what_does_not_compile_is_named_in_one_line(text: str, part: str) -> Non
     assert part in str(raised.value)
 
 
-def test_a_missing_compiler_is_one_line_that_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("package", ["ziglang", "casadi"])
+def test_a_missing_package_is_one_line_that_says_what_to_install(tmp_path: Path, package: str) -> None:
+    done = run_host(WITHOUT_PACKAGE, package, tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert package in done.stderr
+    assert "pip install 'jointfmu[build]'" in done.stderr
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+
+
+def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (built,) = build(["GearContact"], ["fmi3"], None, tmp_path)
+    before = built.read_bytes()
+
+    def fail(*arguments: object) -> None:
+        raise RuntimeError("law.c:1:1: error: no")
+
+    monkeypatch.setattr("jointfmu_fmus.native.build.libraries", fail)
+    with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
+        build(["GearContact"], ["fmi3"], None, tmp_path)
+    assert sorted(tmp_path.rglob("*")) == [built.parent, built]
+    assert built.read_bytes() == before
+
+
+def test_an_unwritable_place_is_refused_before_anything_is_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for package in ("ziglang", "casadi"):
-        with monkeypatch.context() as patched:
-            patched.setitem(sys.modules, package, None)
-            line = refused_line(capsys, "build", "GearContact", "--flavour", "fmi2", "--out", tmp_path)
-        assert package in line
-        assert "pip install 'jointfmu[build]'" in line
-        assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+    (tmp_path / "file").write_text("mine")
+    monkeypatch.setattr("jointfmu_fmus.native.build.libraries", lambda *arguments: pytest.fail("compiled"))
+    with pytest.raises(ValueError, match="cannot be written") as raised:
+        build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
+    assert "\n" not in str(raised.value)
+    assert (tmp_path / "file").read_text() == "mine"
 
 
 def test_an_unwritable_cache_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -38,6 +38,10 @@ class Machine(NamedTuple):
     prefix: tuple[str, ...]
     needs: dict[str, bool]
 
+    def lacks(self) -> str:
+        """The first thing that is not there; empty if nothing is missing."""
+        return next((what for what, there in self.needs.items() if not there), "")
+
 
 HERE = Machine(
     "x86_64-linux-gnu.2.34",
@@ -54,7 +58,7 @@ OTHERS = {
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
         "dll",
         ("wine",),
-        HERE.needs | {"wine": shutil.which("wine") is not None},
+        HERE.needs | {"wine": all(shutil.which(program) for program in ("wine", "wineserver"))},
     ),
     "aarch64": Machine(
         "aarch64-linux-gnu.2.34",
@@ -73,10 +77,28 @@ Run = Callable[..., str]
 
 
 @pytest.fixture(scope="module")
-def run(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """The environment of a Windows of its own, which runs until the end."""
+    folder = tmp_path_factory.mktemp("wine")
+    setting = {"WINEPREFIX": str(folder), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+
+    def call(*command: str) -> None:
+        subprocess.run(
+            command, env=os.environ | setting, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+
+    if not OTHERS["windows"].lacks():
+        call("wineserver", "-p")
+        call("wine", "wineboot", "--init")
+    yield setting
+    if not OTHERS["windows"].lacks():
+        call("wineserver", "-k")
+
+
+@pytest.fixture(scope="module")
+def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, str]) -> Run:
     """Runs a host with an FMU's library on a machine and gives what it prints."""
     work = tmp_path_factory.mktemp("hosts")
-    wine = {"WINEPREFIX": str(work / "wine"), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
 
     @cache
     def host(program: str, machine: str) -> Path:
@@ -100,8 +122,8 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
 
     def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
         m = OTHERS.get(machine, HERE)
-        if missing := [what for what, there in m.needs.items() if not there]:
-            pytest.skip(f"needs {missing[0]}")
+        if missing := m.lacks():
+            pytest.skip(f"needs {missing}")
         file = library(name, version, machine)
         description = read_model_description(str(native / version / f"{name}.fmu"))
         token = description.guid if version == "fmi2" else description.instantiationToken
@@ -150,12 +172,21 @@ def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, versio
         table(run("run", m, name, version, inputs, outputs, points=points(model))) for m in (machine, "here")
     )
     assert expected.shape == (POINTS, outputs)
-    scale = np.abs(expected).max(axis=0)
-    assert np.isfinite(expected).all()
-    assert np.max(np.abs(found - expected) / np.where(scale > 0.0, scale, 1.0)) <= LIBM_TOLERANCE
+    assert len(np.unique(expected, axis=0)) > POINTS / 2
+    np.testing.assert_allclose(found, expected, rtol=LIBM_TOLERANCE, atol=0.0)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
+@pytest.mark.parametrize("machine", OTHERS)
+def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
+    run(program, machine, "GearContact", version, *counts(MODELS["GearContact"]))
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("machine", OTHERS)
-def test_it_lives_a_whole_life(run: Run, machine: str, version: str) -> None:
-    run("lifecycle", machine, "GearContact", version, *counts(MODELS["GearContact"]))
+def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, version: str) -> None:
+    model = MODELS["GearContact"]
+    inputs, outputs, _ = counts(model)
+    first_parameter = 1 + inputs + outputs
+    run("threads", machine, model.name, version, inputs, outputs, first_parameter, points=points(model))

@@ -31,7 +31,9 @@ _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "ut
 """Parts of the C runtime that belongs to Windows 10 and newer."""
 
 
-def libraries(name: str, sources: Mapping[str, str], units: Sequence[str]) -> dict[str, bytes]:
+def libraries(
+    name: str, sources: Mapping[str, str], units: Sequence[str], platforms: Sequence[str] = tuple(TARGETS)
+) -> dict[str, bytes]:
     """{platform: shared library} of the .c files `units`, with FMI's functions exported.
 
     `sources` are all files by flat name, FMI's headers come from fmpy. What units of the same sources
@@ -40,26 +42,18 @@ def libraries(name: str, sources: Mapping[str, str], units: Sequence[str]) -> di
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
     """
-    import ziglang
-
-    windows_headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
+    options = {platform: _options(platform, name) for platform in platforms}
     own = Path(__file__).with_name("windows.c")
     folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
 
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
             file = Path(out) / file_name(name, platform)
-            target = (
-                "-target",
-                TARGETS[platform],
-                *_OPTIONS,
-                *_system_options(platform, file.name, windows_headers),
-            )
-            _run(f"{name} for {platform}", folder, "cc", *target, *units, "-o", str(file))
+            _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, "-o", str(file))
             return file.read_bytes()
 
     with ThreadPoolExecutor(cpu_count()) as pool:
-        return dict(zip(TARGETS, pool.map(library, TARGETS), strict=True))
+        return dict(zip(platforms, pool.map(library, platforms), strict=True))
 
 
 def file_name(name: str, platform: str) -> str:
@@ -77,6 +71,24 @@ def universal(slices: Sequence[bytes]) -> bytes:
         header += struct.pack(">IIIII", kind, subtype, page + len(body), len(one), 14)
         body += one
     return header.ljust(page, b"\0") + body
+
+
+def _options(platform: str, name: str) -> tuple[str, ...]:
+    """Everything that zig is told besides the files."""
+    import ziglang
+
+    common = ("-target", TARGETS[platform], *_OPTIONS)
+    if platform.endswith("-linux"):
+        return (*common, "-lm")
+    if platform.endswith("-darwin"):
+        return (*common, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
+    # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
+    # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
+    headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
+    return (
+        *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-D_UCRT", "-isystem", str(headers),
+        *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
+    )  # fmt: skip
 
 
 def _headers() -> dict[str, str]:
@@ -105,19 +117,6 @@ def _folder(files: Mapping[str, str]) -> Path:
     except OSError as error:
         raise ValueError(f"{folder}: cannot be written ({error.strerror}); {advice}") from None
     return folder
-
-
-def _system_options(platform: str, file: str, windows_headers: Path) -> tuple[str, ...]:
-    if platform.endswith("-linux"):
-        return ("-lm",)
-    if platform.endswith("-darwin"):
-        return (f"-Wl,-install_name,@rpath/{file}", "-Wl,-dead_strip")
-    # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
-    # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
-    return (
-        "windows.c", "-nostdlib", "-Wl,--no-entry", "-D_UCRT", "-isystem", str(windows_headers),
-        *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
-    )  # fmt: skip
 
 
 def _run(what: str, folder: Path, *arguments: str) -> str:

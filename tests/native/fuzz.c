@@ -219,7 +219,7 @@ static int reset(Actor *a)
 static int ask(Actor *a)
 {
     void *c = a->fmu.instance;
-    double number;
+    double number = 0.0;
     size_t count;
     fmi2Status status;
     fmi2Boolean boolean;

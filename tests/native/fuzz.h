@@ -73,7 +73,10 @@ static uint32_t any_ref(const uint32_t refs[], size_t n)
 {
     if (!chance(60))
         return refs[below((unsigned)n)];
-    return chance(2) ? below((unsigned)(v.inputs + v.outputs) + 4) : (uint32_t)random_bits();
+    if (chance(2))
+        return (uint32_t)random_bits();
+    return chance(2) ? below((unsigned)v.inputs + (unsigned)v.outputs + 1)
+                     : (uint32_t)(v.inputs + v.outputs + v.parameters) + below(3);
 }
 
 static size_t any_refs(uint32_t filled[], const uint32_t refs[], size_t n)

@@ -4,8 +4,11 @@
  * on as bytes; 10 000 instances one after another without growth. */
 #include "host.h"
 
-#ifdef __linux__
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 33)
 #include <malloc.h>
+#define HAS_MALLINFO2
+#endif
 #endif
 
 static Library library;
@@ -315,7 +318,7 @@ static void check_refusals(void)
 
 static size_t allocated(void)
 {
-#if defined __linux__ && defined __GLIBC__
+#ifdef HAS_MALLINFO2
     return mallinfo2().uordblks;
 #else
     return 0;

@@ -220,6 +220,7 @@ void instance_enter(Instance *m, unsigned mode)
     m->now.mode = mode;
     Text text;
     text_clear(&text);
+    text_add(&text, "now in ");
     add_modes(&text, mode);
     instance_report(m, OK, LOG_EVENTS, text.line);
 }
