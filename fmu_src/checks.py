@@ -1,5 +1,6 @@
 """The load ramps through the FMUs, and what must hold of them."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +15,7 @@ from jointfmu.parameters import default
 from jointfmu.reference import Point, points
 from jointfmu.validation import Row, compare
 
+from .ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing
 from .variables import MODELS
 
 INTEGRATION_TOLERANCE = 1e-6
@@ -66,6 +68,17 @@ def same(name: str, folder: Path, expected: ramp.Ramp) -> Check:
     found = default_ramp(name, folder).columns
     worst = max(_deviation(found[column], value) for column, value in expected.columns.items())
     return Check(name, f"flavour {folder.name}: every output the same", worst, FLAVOUR_TOLERANCE)
+
+
+def check_ringing(found: Mapping[str, Sequence[Ringing]]) -> list[Check]:
+    """Simulated free motion against stiffness and damping of the joint."""
+    checks = []
+    for name, rings in found.items():
+        frequency = max(abs(r.frequency / r.expected - 1.0) for r in rings)
+        damping = max(abs(r.damping / r.stated - 1.0) for r in rings)
+        checks.append(Check(name, "resonance against sqrt(K/J)", frequency, RESONANCE_TOLERANCE))
+        checks.append(Check(name, "free decay against the stated damping", damping, DAMPING_TOLERANCE))
+    return checks
 
 
 def _deviation(value: object, expected: object) -> float:

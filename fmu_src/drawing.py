@@ -9,26 +9,16 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
-_STYLE: Any = {
-    "svg.hashsalt": "jointfmu",
-    "svg.fonttype": "path",
-    "font.family": "DejaVu Sans",
-    "font.size": 10,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "axes.axisbelow": True,
-    "legend.frameon": False,
-}
+from jointfmu.plots import BLUE, GREEN, GREY, RED, STYLE
+
+__all__ = ["BLUE", "GREEN", "GREY", "RED", "labels", "short", "svg"]
 
 
 def svg(
     draw: Callable[[Figure], None], size: tuple[float, float] = (7.2, 4.2), style: Any = None, **options: Any
 ) -> str:
     """Draw a figure of a size [inch] and return its SVG element; `style` changes the style of all figures."""
-    with rc_context(_STYLE | (style or {})):
+    with rc_context(STYLE | (style or {})):
         figure = Figure(figsize=size, **{"layout": "constrained"} | options)
         draw(figure)
         text = io.StringIO()

@@ -11,8 +11,10 @@ from jointfmu.parameters import write_text
 from jointfmu.progress import track
 
 from .building import FLAVOURS, build
-from .checks import Check, check, default_ramp, published_through_fmus, same
+from .checks import Check, check, check_ringing, default_ramp, published_through_fmus, same
 from .report import write_report
+from .ringing import Ringing, examples
+from .ssp import build_systems
 from .variables import MODELS
 
 
@@ -21,11 +23,13 @@ class Outcome:
     """What was built and found."""
 
     built: list[Path] = field(default_factory=list)
+    systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     ramps: dict[str, ramp.Ramp] = field(default_factory=dict)
     checks: list[Check] = field(default_factory=list)
     rows: list[validation.Row] = field(default_factory=list)
     fmu_rows: list[validation.Row] = field(default_factory=list)
+    ringing: dict[str, list[Ringing]] = field(default_factory=dict)
 
     @property
     def misses(self) -> list[str]:
@@ -53,6 +57,7 @@ def run(out: Path) -> Outcome:
     """
     outcome = Outcome()
     outcome.built = build([], list(FLAVOURS), None, out)
+    outcome.systems = build_systems(out, None, joints=False)
     folder = out / "fmi2"
     for name in track(MODELS, "validate and ramp", len(MODELS)):
         for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
@@ -64,11 +69,16 @@ def run(out: Path) -> Outcome:
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, folder, result)
         outcome.checks += [same(name, out / other, result) for other in FLAVOURS if out / other != folder]
-    for step in track(("package", "FMUs", "report"), "compare and report", 3):
+    for path in (p for p in outcome.systems if p.suffix == ".fmu"):
+        outcome.problems += [f"{path.parent.name}/{path.stem}: {text}" for text in validate_fmu(str(path))]
+    for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):
         if step == "package":
             outcome.rows = validation.validate()
         elif step == "FMUs":
             outcome.fmu_rows = published_through_fmus(folder)
+        elif step == "systems":
+            outcome.ringing = examples(folder)
+            outcome.checks += check_ringing(outcome.ringing)
         else:
             write_report(out / "report" / "index.html", outcome)
     return outcome
@@ -84,6 +94,7 @@ def main(out: Path) -> int:
     misses = outcome.misses
     folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")
+    print(f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out / 'ssp'}")
     print(f"validated with fmpy: {len(outcome.built)}; ramps run: {len(outcome.ramps)}")
     print(
         f"compared: {validation.summary(outcome.rows)}; "

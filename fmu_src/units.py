@@ -21,8 +21,10 @@ UNITS: dict[str, Unit] = {
     "s": Unit("Time", {"s": 1}, {"s": 1.0}),
     "rad": Unit("Angle", {"rad": 1}, {"deg": _DEG, "arcmin": 60.0 * _DEG}),
     "rad/s": Unit("AngularVelocity", {"rad": 1, "s": -1}, {"rev/min": 60.0 / 6.283185307179586}),
+    "rad/s2": Unit("AngularAcceleration", {"rad": 1, "s": -2}, {"rad/s2": 1.0}),
     "m": Unit("Length", {"m": 1}, {"mm": 1e3, "um": 1e6}),
     "m/s": Unit("Velocity", {"m": 1, "s": -1}, {"mm/s": 1e3}),
+    "m/s2": Unit("Acceleration", {"m": 1, "s": -2}, {"m/s2": 1.0}),
     "m2": Unit("Area", {"m": 2}, {"mm2": 1e6, "um2": 1e12}),
     "N": Unit("Force", {"kg": 1, "m": 1, "s": -2}, {"kN": 1e-3}),
     "N.m": Unit("Torque", {"kg": 1, "m": 2, "s": -2}, {"N.m": 1.0}),
@@ -37,6 +39,7 @@ UNITS: dict[str, Unit] = {
     "Pa": Unit("Pressure", {"kg": 1, "m": -1, "s": -2}, {"MPa": 1e-6, "GPa": 1e-9}),
     "Pa/m": Unit("PressureGradient", {"kg": 1, "m": -2, "s": -2}, {"MPa/um": 1e-12}),
     "Pa/m2": Unit("PressureCurvature", {"kg": 1, "m": -3, "s": -2}, {"MPa/um2": 1e-18}),
+    "kg.m2": Unit("MomentOfInertia", {"kg": 1, "m": 2}, {"kg.m2": 1.0}),
     "kg": Unit("Mass", {"kg": 1}, {"kg": 1.0}),
 }
 

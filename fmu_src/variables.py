@@ -30,11 +30,12 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Ramp:
-    """Load ramp: the default experiment, one step per second."""
+    """Load ramp: the default experiment, one step per interval [s]."""
 
     input: str
     end: float
     step: float
+    interval: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,8 @@ class Model:
     outside  : warnings about a state outside the tables
     dependencies : inputs that an output depends on, where not on all
     hidden   : prefixes of parameters that are baked in
+    states   : continuous states, the first outputs; the rate of each is the output after it
+    moves    : outputs change with time, while inputs rest
     """
 
     name: str
@@ -74,6 +77,8 @@ class Model:
     ramp: Ramp
     dependencies: Mapping[str, Sequence[str]]
     hidden: Sequence[str] = ()
+    states: int = 0
+    moves: bool = False
 
     def parameter_fields(self) -> dict[str, Any]:
         """Structured names and fields of the parameters that the FMU exposes."""
@@ -104,7 +109,7 @@ class Model:
         return found
 
     def depends(self, output: str) -> Sequence[str]:
-        """Inputs on which an output depends."""
+        """Inputs and states on which an output depends."""
         return self.dependencies.get(output, [v.name for v in self.inputs])
 
 

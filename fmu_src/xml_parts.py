@@ -15,6 +15,7 @@ class Listed(NamedTuple):
 
     start      : None if it is calculated, a bool for a Boolean
     attributes : of a number: unit, displayUnit, bounds and nominal value, as text
+    rate_of    : value reference of the state whose rate it is
     """
 
     name: str
@@ -22,6 +23,7 @@ class Listed(NamedTuple):
     doc: str
     start: float | bool | None
     attributes: dict[str, str]
+    rate_of: int | None = None
 
     @property
     def boolean(self) -> bool:
@@ -32,11 +34,14 @@ class Listed(NamedTuple):
 class Unknown(NamedTuple):
     """An output and what it depends on: {value reference: dependenciesKind}.
 
+    state, rate : whether it is a continuous state, or the rate of one
     knowns  : at communication points and events
     initial : in initialization mode
     """
 
     reference: int
+    state: bool
+    rate: bool
     knowns: dict[int, str]
     initial: dict[int, str]
 
@@ -59,13 +64,16 @@ def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
 
     values : {name: value} of at least the exposed parameters
     """
-    found = []
+    found: list[Listed] = []
     for causality, start, group in (("input", 0.0, model.inputs), ("output", None, model.outputs)):
-        for v in group:
+        for i, v in enumerate(group):
             attributes = _shown(v.unit, v.nominal)
             if v.low > -math.inf:
                 attributes["min"] = repr(v.low)
-            found.append(Listed(v.name, causality, v.doc, start, attributes | {"nominal": repr(v.nominal)}))
+            state = causality == "output" and i < model.states
+            rate_of = len(found) if causality == "output" and 0 < i <= model.states else None
+            attributes["nominal"] = repr(v.nominal)
+            found.append(Listed(v.name, causality, v.doc, 0.0 if state else start, attributes, rate_of))
     for name, item in model.parameter_fields().items():
         meta, value = item.metadata, values[name]
         doc = meta["doc"]
@@ -86,8 +94,8 @@ def text(value: float | bool) -> str:
 
 
 def stop_time(model: Model) -> float:
-    """End [s] of the default experiment, the load ramp with one step per second."""
-    return float(round(model.ramp.end / model.ramp.step))
+    """End [s] of the default experiment, the load ramp."""
+    return round(model.ramp.end / model.ramp.step) * model.ramp.interval
 
 
 def units(variables: Sequence[Listed]) -> list[str]:
@@ -108,19 +116,20 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
 
 def unknowns(model: Model, variability: str) -> list[Unknown]:
     """All outputs with their dependencies; `variability` is that of the parameters."""
-    inputs, outputs = [v.name for v in model.inputs], [v.name for v in model.outputs]
-    names = [*inputs, *outputs, *model.parameter_fields()]
+    outputs = [v.name for v in model.outputs]
+    names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
     index = {name: reference for reference, name in enumerate(names, start=1)}
     parameters = {index[name]: "dependent" for name in model.parameter_fields()}
     found = []
-    for output in outputs:
+    for i, output in enumerate(outputs):
         knowns, initial = {}, {}
-        for name in sorted(model.depends(output), key=inputs.index):
+        for name in sorted(model.depends(output), key=index.__getitem__):
             linear = _LINEAR.get(model.name, {}).get(output, {}).get(name)
             knowns[index[name]] = {None: "dependent", "parameters": variability}.get(linear, "constant")
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"
-        found.append(Unknown(index[output], knowns, initial | parameters))
+        state, rate = i < model.states, 0 < i <= model.states
+        found.append(Unknown(index[output], state, rate, knowns, initial | parameters))
     return found
 
 
@@ -132,11 +141,17 @@ def dependencies(knowns: Mapping[int, str]) -> dict[str, str]:
 def fmi2_structure(model: Model, variability: str) -> Element:
     """The element ModelStructure of FMI 2.0; a variable's index is its value reference."""
     structure = Element("ModelStructure")
-    outputs, initial = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
-    for unknown in unknowns(model, variability):
-        index = {"index": str(unknown.reference)}
-        SubElement(outputs, "Unknown", index | dependencies(unknown.knowns))
-        SubElement(initial, "Unknown", index | dependencies(unknown.initial))
+    found = unknowns(model, variability)
+    groups = (
+        ("Outputs", [(u, u.knowns) for u in found]),
+        ("Derivatives", [(u, u.knowns) for u in found if u.rate]),
+        ("InitialUnknowns", [(u, u.initial) for u in found if not u.state]),
+    )
+    for tag, rows in groups:
+        if rows:
+            group = SubElement(structure, tag)
+            for unknown, knowns in rows:
+                SubElement(group, "Unknown", {"index": str(unknown.reference)} | dependencies(knowns))
     return structure
 
 

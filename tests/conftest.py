@@ -204,3 +204,29 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
     for one in made:
         one.free()
     sys.path[:] = path  # pythonfmu puts the resources of every instance in front
+
+
+@pytest.fixture(params=["fmi2", "fmi3"])
+def version(request: pytest.FixtureRequest) -> str:
+    """Every native flavour."""
+    return str(request.param)
+
+
+@pytest.fixture(params=[False, True], ids=["co-simulation", "model exchange"])
+def exchange(request: pytest.FixtureRequest) -> bool:
+    """Both interfaces: whether it is model exchange."""
+    return bool(request.param)
+
+
+@pytest.fixture
+def host(native: Path) -> Iterator[Callable[..., Fmu]]:
+    """Makes instances of native FMUs, from another folder if given, and frees them after the test."""
+    made: list[Fmu] = []
+
+    def instance(name: str, version: str = "fmi3", folder: Path = native, **options: Any) -> Fmu:
+        made.append(Fmu(folder / version / f"{name}.fmu", **options))
+        return made[-1]
+
+    yield instance
+    for one in made:
+        one.free()

@@ -15,6 +15,8 @@ from conftest import refused_line
 from fmpy import read_model_description
 from jointfmu_fmus import checks, pipeline
 from jointfmu_fmus.building import FLAVOURS, build
+from jointfmu_fmus.partners import PARTNERS
+from jointfmu_fmus.systems import SYSTEMS
 from jointfmu_fmus.variables import MODELS
 from pythonfmu import FmuBuilder
 
@@ -232,7 +234,9 @@ def test_the_main_job_builds_checks_and_reports(tmp_path: Path, capsys: Capture)
     assert "built: 12 FMUs" in out
     assert "missed: 0" in out
     for flavour in ("fmi2", "fmi3", "python"):
-        assert {p.name for p in (tmp_path / flavour).iterdir()} == {f"{n}.fmu" for n in NAMES}
+        partners = [] if flavour == "python" else list(PARTNERS)
+        assert {p.stem for p in (tmp_path / flavour).iterdir()} == {*NAMES, *partners}
+    assert {p.stem for p in (tmp_path / "ssp").iterdir()} == set(SYSTEMS)
     report = tmp_path / "report"
     assert {p.name for p in report.iterdir()} == {"index.html", *(f"{n}.csv" for n in NAMES)}
     for name in NAMES:

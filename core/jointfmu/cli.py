@@ -7,10 +7,10 @@ import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import build, law, ramp, validate
+from .commands import build, fit, law, modelica, ramp, surface, sweep, uncertainty, validate
 from .commands.common import Parser
 
-COMMANDS = (law, build, ramp, validate)
+COMMANDS = (law, build, modelica, ramp, surface, fit, uncertainty, sweep, validate)
 
 
 def parser() -> Parser:

@@ -187,19 +187,26 @@ def parse_setting(text: str) -> tuple[str, Any]:
 
 
 def write_text(path: str | Path, text: str) -> None:
+    """Write a text file (UTF-8) as `write_bytes` does; ValueError also for what is no text."""
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:
+        raise ValueError(f"{path}: cannot be written ({error.reason}); expected text") from None
+    write_bytes(path, data)
+
+
+def write_bytes(path: str | Path, data: bytes) -> None:
     """Write a file in one go: beside its place, then renamed; a failure leaves nothing behind.
 
     Raises ValueError naming the path if it cannot be written.
     """
     beside = _beside(Path(path))
     try:
-        beside.write_text(text, encoding="utf-8", newline="")
+        beside.write_bytes(data)
         beside.chmod(0o644)
         beside.replace(path)
     except OSError as error:
         raise _unwritable(path, error) from None
-    except UnicodeEncodeError as error:
-        raise ValueError(f"{path}: cannot be written ({error.reason}); expected text") from None
     finally:
         beside.unlink(missing_ok=True)
 

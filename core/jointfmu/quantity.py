@@ -101,12 +101,12 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
             return None
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
-    shown = " ".join(repr(value).split())[:80]
-    if isinstance(value, bool) or not isinstance(value, int | float | np.ndarray | np.number):
-        return f"{name} = {shown} is not a number{unit and f' in{unit}'}: {meta['doc']}"
+    number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)
-    if array.dtype.kind not in "fiu":
-        return f"{name} = {shown} is not a real number{unit and f' in{unit}'}: {meta['doc']}"
+    if not number or array.dtype.kind not in "fiu":
+        shown = " ".join(repr(value).split())[:80]
+        kind = "real number" if number else "number"
+        return f"{name} = {shown} is not a {kind}{unit and f' in{unit}'}: {meta['doc']}"
     inside = (array > meta["gt"]) & (array >= meta["ge"]) & (array < meta["lt"]) & (array <= meta["le"])
     inside &= np.isfinite(array)
     if np.all(inside):

@@ -6,6 +6,7 @@ from pathlib import Path
 from jointfmu.parameters import ParameterFile
 
 from ..archive import pack, workshop
+from ..partners import PARTNERS
 from ..variables import MODELS, Model
 from .compiler import file_name, libraries, universal
 
@@ -26,7 +27,7 @@ def build(name: str, parameters: ParameterFile, out: Path, version: str) -> Path
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
     """
-    model = MODELS[name]
+    model = (MODELS | PARTNERS)[name]
     model.check_joint(parameters.joint)
     target = out / f"{name}.fmu"
     with workshop(target) as work:

@@ -111,11 +111,12 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
         SubElement(nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference) | _value(v))
     structure = SubElement(root, "ModelStructure")
     found = unknowns(model, "tunable")
-    for tag, dependent in (
-        ("Output", [u.knowns for u in found]),
-        ("InitialUnknown", [u.initial for u in found]),
+    for tag, rows in (
+        ("Output", [(u, u.knowns) for u in found]),
+        ("ContinuousStateDerivative", [(u, u.knowns) for u in found if u.rate]),
+        ("InitialUnknown", [(u, u.initial) for u in found if not u.state]),
     ):
-        for unknown, knowns in zip(found, dependent, strict=True):
+        for unknown, knowns in rows:
             SubElement(structure, tag, {"valueReference": str(unknown.reference)} | dependencies(knowns))
     return serialized(root)
 
@@ -176,7 +177,8 @@ def _log_categories_and_experiment(root: Element, model: Model) -> None:
     categories = SubElement(root, "LogCategories")
     for name, doc in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=doc)
-    SubElement(root, "DefaultExperiment", startTime="0", stopTime=text(stop_time(model)), stepSize="1")
+    stop, step = text(stop_time(model)), f"{model.ramp.interval:g}"
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=stop, stepSize=step)
 
 
 def _heading(v: Listed, reference: int) -> dict[str, str]:
@@ -184,12 +186,14 @@ def _heading(v: Listed, reference: int) -> dict[str, str]:
     variability = "tunable" if v.causality == "parameter" else "continuous"
     heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
     heading |= {"causality": v.causality, "variability": variability}
-    if initial := {"parameter": "exact", "output": "calculated"}.get(v.causality):
-        heading["initial"] = initial
+    if v.causality in ("parameter", "output"):
+        heading["initial"] = "calculated" if v.start is None else "exact"
     return heading
 
 
 def _value(v: Listed) -> dict[str, str]:
     """What FMI says of a variable's values. The unit repeats the type's for importers that skip types."""
     value = {"declaredType": UNITS[v.attributes["unit"]].quantity} if v.attributes else {}
+    if v.rate_of:
+        value["derivative"] = str(v.rate_of)
     return value | v.attributes | ({} if v.start is None else {"start": text(v.start)})

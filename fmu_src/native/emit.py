@@ -22,7 +22,7 @@ _BINARY = {
     ca.OP_FMIN: "{0} < {1} ? {0} : {1}",
     ca.OP_FMAX: "{0} > {1} ? {0} : {1}",
     ca.OP_ATAN2: "atan2({0}, {1})",
-    ca.OP_HYPOT: "hypot({0}, {1})",
+    ca.OP_HYPOT: "root_of_squares({0}, {1})",
     ca.OP_COPYSIGN: "copysign({0}, {1})",
 }
 _UNARY = {
@@ -34,7 +34,7 @@ _UNARY = {
     ca.OP_SQRT: "sqrt({0})",
     ca.OP_EXP: "exp({0})",
     ca.OP_LOG: "log({0})",
-    ca.OP_EXPM1: "expm1({0})",
+    ca.OP_EXPM1: "exp_less_one({0})",
     ca.OP_LOG1P: "log1p({0})",
     ca.OP_SIN: "sin({0})",
     ca.OP_COS: "cos({0})",
@@ -47,11 +47,27 @@ _UNARY = {
     ca.OP_SIGN: "{0} > 0.0 ? 1.0 : ({0} < 0.0 ? -1.0 : {0})",
 }
 
+HELPERS = """/* expm1, at less cost where nothing cancels. */
+static inline double exp_less_one(double x)
+{
+    return x < -0.7 || x > 0.7 ? exp(x) - 1.0 : expm1(x);
+}
 
-def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any]) -> str:
+/* hypot, at less cost where the squares stay in range. */
+static inline double root_of_squares(double a, double b)
+{
+    const double sum = a * a + b * b;
+    return sum > 1e-280 && sum < 1e280 ? sqrt(sum) : hypot(a, b);
+}
+"""
+"""What the functions call besides libm."""
+
+
+def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any], derivative: bool = False) -> str:
     """C of `static void name(const double *x, const double *c, double *y)`.
 
-    Every intermediate value is a constant of its own, in the order of evaluation.
+    Every intermediate value is a constant of its own, in the order of evaluation. In a `derivative`
+    nothing that changes makes no change, where the slope is infinite too: 0/0 is 0.
     """
     graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
     inputs = "xc"
@@ -69,6 +85,8 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any]) -> str:
             place[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
         else:
             form = _BINARY.get(code) or _UNARY.get(code)
+            if derivative and code == ca.OP_DIV:
+                form = "{0} == 0.0 ? 0.0 : {0} / {1}"
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
             body.append(f"const double t{k} = {form.format(*(place[a] for a in args))};")

@@ -84,8 +84,12 @@ def graph(model: Model, parameters: ParameterFile) -> Graph:
         theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
         joint = build(model.parameters, {**flatten(parameters.values), **theta})
         found = Graph(theta, joint, limits(joint))
-        _bounds(found, model)
-        {"harmonic_drive": _drive, "bolted_joint": _bolted, "gear_contact": _gear}[model.joint](found, model)
+        if model.moves:
+            _partner(found, model)
+        else:
+            _bounds(found, model)
+            kinds = {"harmonic_drive": _drive, "bolted_joint": _bolted, "gear_contact": _gear}
+            kinds[model.joint](found, model)
         found.settle()
     finally:
         ca.GlobalOptions.setNumpyMode(before)
@@ -103,13 +107,21 @@ def limits(joint: Any) -> list[Limit]:
     return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
 
 
+def _partner(g: Graph, model: Model) -> None:
+    names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
+    v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
+    found = model.evaluate(g.joint, v)
+    doc = "time, inputs, states -> outputs"
+    g.add_with_seed("outputs", doc, list(v.values()), [found[o.name] for o in model.outputs])
+
+
 def _bounds(g: Graph, model: Model) -> None:
     ends = [end for limit in g.limits for end in (limit.low, limit.high)]
     g.add("parameter_limits", "-> low, high of every limit that parameters set each other", [], ends)
-    v = dict(zip([v.name for v in (*model.inputs, *model.outputs)], symbols("v", 99), strict=False))
+    v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
     end = symbols("end", 2)
     rows = [e for o in model.outside for e in o.interval(g.joint, (end[0], end[1]), v)]
-    doc = "inputs, outputs, x and y at the end of the curve -> low, high of every warning"
+    doc = "inputs, x and y at the end of the curve -> low, high of every warning"
     g.add("outside_limits", doc, [*v.values(), *end], rows)
 
 

@@ -175,9 +175,34 @@ def _contact(axes: Axes) -> None:
     axes.add_patch(Ellipse((0, 0), 0.12, 0.3, angle=np.degrees(_PRESSURE), fc=RED, ec="white", lw=1.2))
 
 
+def _inertia(axes: Axes) -> None:
+    """A disk on a shaft."""
+    axes.add_patch(Rectangle((-0.95, -0.1), 1.9, 0.2, fc=LIGHT, ec=INK, lw=1.6))
+    axes.add_patch(FancyBboxPatch((-0.35, -0.7), 0.7, 1.4, "round,pad=0.05", fc=STEEL, ec=INK, lw=1.6))
+
+
+def _mass(axes: Axes) -> None:
+    """A block on a line."""
+    axes.add_patch(FancyBboxPatch((-0.55, -0.4), 1.1, 0.8, "round,pad=0.05", fc=STEEL, ec=INK, lw=1.6))
+    axes.plot([-0.95, 0.95], [-0.47, -0.47], color=INK, lw=1.6)
+
+
+def _load(axes: Axes) -> None:
+    """A ramp and a pulse over time."""
+    x = np.linspace(0.0, np.pi, 30)
+    rise = 0.4 * (1.0 - np.cos(x))
+    axes.plot([-0.9, -0.9, 0.95], [0.9, -0.8, -0.8], color=INK, lw=1.6)
+    axes.plot(-0.8 + 0.25 * x, rise - 0.7, color=BLUE, lw=3.0)
+    axes.plot(0.05 + 0.25 * x, 0.1 + 0.7 * np.sin(x) ** 2, color=RED, lw=3.0)
+
+
 _DRAWINGS: dict[str, Callable[[Axes], None]] = {
     "HarmonicDriveSpring": _spring,
     "HarmonicDriveCompliance": _compliance,
     "BoltedJoint": _bolted,
     "GearContact": _contact,
+    "RotationalInertia": _inertia,
+    "TranslationalMass": _mass,
+    "TorqueProfile": _load,
+    "ForceProfile": _load,
 }

@@ -43,13 +43,14 @@ class _Row(NamedTuple):
 
 def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
+    page = _partner_page if model.moves else _page
     return {
-        "index.html": _page(model, parameters).encode(),
+        "index.html": page(model, parameters).encode(),
         "licenses/license.txt": licence().encode(),
     }
 
 
-def _page(model: Model, parameters: ParameterFile) -> str:
+def _template(name: str) -> jinja2.Template:
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent),
         autoescape=True,
@@ -57,11 +58,21 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    return environment.get_template(name)
+
+
+def _partner_page(model: Model, parameters: ParameterFile) -> str:
+    return _template("partner.html").render(
+        model=model, version=__version__, variables=listed(model, flatten(parameters.values))
+    )
+
+
+def _page(model: Model, parameters: ParameterFile) -> str:
     spring = model.spring(parameters.values)
     variables = listed(model, flatten(parameters.values))
     exposed = model.parameter_fields()
     rows = _rows(parameters)
-    return environment.get_template(f"{model.joint}.html").render(
+    return _template(f"{model.joint}.html").render(
         model=model,
         file=parameters,
         version=__version__,

@@ -83,7 +83,7 @@ def terminals_and_icons(model: Model) -> dict[str, bytes]:
     """{file name: content} of the folder terminalsAndIcons."""
     png, svg = icon(model.name)
     files = {"terminalsAndIcons.xml": terminals_xml(model), "icon.png": png, "icon.svg": svg.encode()}
-    for terminal in TERMINALS[model.name]:
+    for terminal in TERMINALS.get(model.name, ()):
         files[f"{_icon_name(terminal)}.png"] = flange_icon(terminal.kind == _ROTATIONAL, terminal.side == "a")
     return files
 
@@ -95,6 +95,8 @@ def terminals_xml(model: Model) -> bytes:
     graphics = SubElement(root, "GraphicalRepresentation")
     SubElement(graphics, "CoordinateSystem", corners | {"suggestedScalingFactorTo_mm": "0.1"})
     SubElement(graphics, "Icon", corners)
+    if model.name not in TERMINALS:
+        return serialized(root)
     terminals = SubElement(root, "Terminals")
     for terminal in TERMINALS[model.name]:
         node = SubElement(

@@ -10,7 +10,7 @@ from jointfmu import __version__
 from jointfmu.parameters import write_text
 
 from ..stamp import build_time
-from . import figures
+from . import figures, systems
 
 
 def write_report(path: Path, outcome: Any) -> None:
@@ -61,6 +61,20 @@ def write_report(path: Path, outcome: Any) -> None:
                 "Up to about a tenth of the nominal area in real contact.",
                 figures.gear_stiffness(ramps["GearContact"]),
                 "GearContact.csv",
+            ),
+            (
+                "In a system: resonance of the robot joint over its torque",
+                "The link rings about a working point, motor held. Circles: peak of the simulated signal's "
+                "spectrum; line: square root of K_WTS over the link's inertia. Right: the decay at the first "
+                "torque, between the envelopes of the stated damping.",
+                systems.ringing(outcome.ringing["robot_joint"], "torque [N m]", 1.0, "wind-up [urad]", 1e6),
+                None,
+            ),
+            (
+                "In a system: resonance of the bolted column over its preload",
+                "The same for the mass on the bolted joint, along the joint's normal.",
+                systems.ringing(outcome.ringing["bolted_column"], "preload [kN]", 1e-3, "motion [nm]", 1e9),
+                None,
             ),
         ],
     )

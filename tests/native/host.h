@@ -205,10 +205,11 @@ static inline bool fmu_instantiate(Fmu *fmu, const Library *f, const char *token
         fmu->instance = f->two.Instantiate("test", exchange ? fmi2ModelExchange : fmi2CoSimulation, token, "",
                                            &callbacks, fmi2False, logging);
     else if (exchange)
-        fmu->instance = f->three.InstantiateModelExchange("test", token, "", false, logging, &fmu->log, logger3);
+        fmu->instance =
+            f->three.InstantiateModelExchange("test", token, "", false, logging, &fmu->log, logger3);
     else
-        fmu->instance = f->three.InstantiateCoSimulation("test", token, "", false, logging, false, false, NULL, 0,
-                                                         &fmu->log, logger3, NULL);
+        fmu->instance = f->three.InstantiateCoSimulation("test", token, "", false, logging, false, false,
+                                                         NULL, 0, &fmu->log, logger3, NULL);
     return fmu->instance != NULL;
 }
 

@@ -27,11 +27,11 @@ static size_t size;
     X(ExitInitializationMode, "i", "i", (c))                                                                 \
     X(Terminate, "et", "s", (c))                                                                             \
     X(Reset, ANY, ANY, (c))                                                                                  \
-    X(GetReal, "ietx", "isx", (c, &out, 1, &number))                                                          \
+    X(GetReal, "ietx", "isx", (c, &out, 1, &number))                                                         \
     X(GetInteger, "ietx", "isx", (c, NULL, 0, NULL))                                                         \
     X(GetBoolean, "ietx", "isx", (c, NULL, 0, NULL))                                                         \
     X(GetString, "ietx", "isx", (c, NULL, 0, NULL))                                                          \
-    X(SetReal, "niet", "nis", (c, &in, 1, &zero))                                                           \
+    X(SetReal, "niet", "nis", (c, &in, 1, &zero))                                                            \
     X(SetInteger, "niet", "nis", (c, NULL, 0, NULL))                                                         \
     X(SetBoolean, "niet", "nis", (c, NULL, 0, NULL))                                                         \
     X(SetString, "niet", "nis", (c, NULL, 0, NULL))                                                          \
@@ -39,9 +39,9 @@ static size_t size;
     X(SetFMUstate, ANY, ANY, (c, state))                                                                     \
     X(FreeFMUstate, ANY, ANY, (c, &nothing))                                                                 \
     X(SerializedFMUstateSize, ANY, ANY, (c, state, &size))                                                   \
-    X(SerializeFMUstate, ANY, ANY, (c, state, (char *)bytes, size))                                                  \
-    X(DeSerializeFMUstate, ANY, ANY, (c, (char *)bytes, size, &state))                                               \
-    X(GetDirectionalDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, &number))                           \
+    X(SerializeFMUstate, ANY, ANY, (c, state, (char *)bytes, size))                                          \
+    X(DeSerializeFMUstate, ANY, ANY, (c, (char *)bytes, size, &state))                                       \
+    X(GetDirectionalDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, &number))                          \
     X(EnterEventMode, "et", "", (c))                                                                         \
     X(NewDiscreteStates, "e", "", (c, &(fmi2EventInfo){0}))                                                  \
     X(EnterContinuousTimeMode, "e", "", (c))                                                                 \
@@ -57,7 +57,7 @@ static size_t size;
     X(DoStep, "", "s", (c, 0.0, 1.0, 1))                                                                     \
     X(CancelStep, "", "", (c))                                                                               \
     X(GetStatus, "", "sx", (c, fmi2DoStepStatus, &(fmi2Status){0}))                                          \
-    X(GetRealStatus, "", "sx", (c, fmi2LastSuccessfulTime, &number))                                          \
+    X(GetRealStatus, "", "sx", (c, fmi2LastSuccessfulTime, &number))                                         \
     X(GetBooleanStatus, "", "sx", (c, fmi2Terminated, &(fmi2Boolean){0}))                                    \
     X(GetStringStatus, "", "sx", (c, fmi2PendingStatus, &(fmi2String){0}))
 #define X(name, exchange, co_simulation, arguments)                                                          \
@@ -80,8 +80,8 @@ static const Call calls2[] = {CALLS2(X){NULL, NULL, NULL, NULL}};
     X(EnterEventMode, "t", "", (c))                                                                          \
     X(Terminate, "etr", "sr", (c))                                                                           \
     X(Reset, ANY, ANY, (c))                                                                                  \
-    X(GetFloat64, "ietx", "isx", (c, &out, 1, &number, 1))                                                    \
-    X(SetFloat64, "ncietr", "ncisr", (c, &in, 1, &zero, 1))                                                 \
+    X(GetFloat64, "ietx", "isx", (c, &out, 1, &number, 1))                                                   \
+    X(SetFloat64, "ncietr", "ncisr", (c, &in, 1, &zero, 1))                                                  \
     NO_VALUES(X, GetFloat32) NO_VALUES(X, GetInt8) NO_VALUES(X, GetUInt8) NO_VALUES(X, GetInt16)             \
     NO_VALUES(X, GetUInt16) NO_VALUES(X, GetInt32) NO_VALUES(X, GetUInt32) NO_VALUES(X, GetInt64)            \
     NO_VALUES(X, GetUInt64) NO_VALUES(X, GetBoolean) NO_VALUES(X, GetString)                                 \
@@ -92,16 +92,16 @@ static const Call calls2[] = {CALLS2(X){NULL, NULL, NULL, NULL}};
     X(SetBinary, "ncietr", "ncisr", (c, NULL, 0, NULL, NULL, 0))                                             \
     X(GetClock, ANY, ANY, (c, NULL, 0, NULL))                                                                \
     X(SetClock, ANY, ANY, (c, NULL, 0, NULL))                                                                \
-    X(GetNumberOfVariableDependencies, ANY, ANY, (c, in, &(size_t){0}))                               \
-    X(GetVariableDependencies, ANY, ANY, (c, in, NULL, NULL, NULL, NULL, 0))                          \
+    X(GetNumberOfVariableDependencies, ANY, ANY, (c, in, &(size_t){0}))                                      \
+    X(GetVariableDependencies, ANY, ANY, (c, in, NULL, NULL, NULL, NULL, 0))                                 \
     X(GetFMUState, ANY, ANY, (c, &state))                                                                    \
     X(SetFMUState, ANY, ANY, (c, state))                                                                     \
     X(FreeFMUState, ANY, ANY, (c, &nothing))                                                                 \
     X(SerializedFMUStateSize, ANY, ANY, (c, state, &size))                                                   \
-    X(SerializeFMUState, ANY, ANY, (c, state, bytes, size))                                      \
-    X(DeserializeFMUState, ANY, ANY, (c, bytes, size, &state))                                   \
-    X(GetDirectionalDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, 1, &number, 1))                     \
-    X(GetAdjointDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, 1, &number, 1))                         \
+    X(SerializeFMUState, ANY, ANY, (c, state, bytes, size))                                                  \
+    X(DeserializeFMUState, ANY, ANY, (c, bytes, size, &state))                                               \
+    X(GetDirectionalDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, 1, &number, 1))                    \
+    X(GetAdjointDerivative, "ietx", "isx", (c, &out, 1, &in, 1, &one, 1, &number, 1))                        \
     X(EnterConfigurationMode, "ne", "ns", (c))                                                               \
     X(ExitConfigurationMode, "cr", "cr", (c))                                                                \
     X(GetIntervalDecimal, ANY, ANY, (c, NULL, 0, NULL, NULL))                                                \
@@ -114,7 +114,7 @@ static const Call calls2[] = {CALLS2(X){NULL, NULL, NULL, NULL}};
     X(SetShiftFraction, ANY, ANY, (c, NULL, 0, NULL, NULL))                                                  \
     X(EvaluateDiscreteStates, "ie", "i", (c))                                                                \
     X(UpdateDiscreteStates, "e", "",                                                                         \
-      (c, &(bool){0}, &(bool){0}, &(bool){0}, &(bool){0}, &(bool){0}, &number))                               \
+      (c, &(bool){0}, &(bool){0}, &(bool){0}, &(bool){0}, &(bool){0}, &number))                              \
     X(EnterContinuousTimeMode, "e", "", (c))                                                                 \
     X(CompletedIntegratorStep, "t", "", (c, true, &(bool){0}, &(bool){0}))                                   \
     X(SetTime, "et", "", (c, 0.0))                                                                           \
@@ -127,7 +127,7 @@ static const Call calls2[] = {CALLS2(X){NULL, NULL, NULL, NULL}};
     X(GetNumberOfContinuousStates, ANY, "", (c, &(size_t){0}))                                               \
     X(EnterStepMode, "", "", (c))                                                                            \
     X(GetOutputDerivatives, "", "sx", (c, NULL, 0, NULL, NULL, 0))                                           \
-    X(DoStep, "", "s", (c, 0.0, 1.0, true, &(bool){0}, &(bool){0}, &(bool){0}, &number))                      \
+    X(DoStep, "", "s", (c, 0.0, 1.0, true, &(bool){0}, &(bool){0}, &(bool){0}, &number))                     \
     X(ActivateModelPartition, "", "", (c, 0, 0.0))
 #define X(name, exchange, co_simulation, arguments)                                                          \
     static int call3_##name(void *c)                                                                         \
@@ -168,7 +168,8 @@ static void check_mode(const char *token, bool exchange, char mode)
     MUST(CALL(GetFMUstate(c, &state), GetFMUState(c, &state)), &fmu);
     MUST(CALL(SerializedFMUstateSize(c, state, &size), SerializedFMUStateSize(c, state, &size)), &fmu);
     CHECK(size <= sizeof bytes, &fmu.log);
-    MUST(CALL(SerializeFMUstate(c, state, (char *)bytes, size), SerializeFMUState(c, state, bytes, size)), &fmu);
+    MUST(CALL(SerializeFMUstate(c, state, (char *)bytes, size), SerializeFMUState(c, state, bytes, size)),
+         &fmu);
     check_calls(library.version == 2 ? calls2 : calls3, &fmu, mode, before);
     MUST(CALL(FreeFMUstate(c, &before), FreeFMUState(c, &before)), &fmu);
     MUST(CALL(FreeFMUstate(c, &state), FreeFMUState(c, &state)), &fmu);

@@ -21,15 +21,22 @@ def add(commands: Any) -> None:
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
+    make.add_argument(
+        "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
+    )
     make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
 
 
 def _build(args: argparse.Namespace) -> int:
     file = load(args.params) if args.params else None
     try:
-        from jointfmu_fmus import building
+        from jointfmu_fmus import building, ssp
 
-        built = building.build(args.names, args.flavour, file, args.out)
+        built = []
+        if args.names or not args.systems:
+            built += building.build(args.names, args.flavour, file, args.out)
+        if args.systems:
+            built += ssp.build_systems(args.out, file)
     except ImportError as error:
         raise ValueError(
             f"the package {error.name or error} is missing, needed to build; "

@@ -19,6 +19,7 @@ static bool closing(Approach *approach, Curve *curve, double p, double k, double
             .bend = p / (length * length) * z * (6.0 * a + 12.0 * b * z + 20.0 * part * z * z),
         };
         approach->u[i] = u;
+        approach->rate[i] = 0.0;
         if (i == 0)
             curve_piece(curve, node);
         else if (!curve_add(curve, node))
@@ -27,12 +28,15 @@ static bool closing(Approach *approach, Curve *curve, double p, double k, double
     return true;
 }
 
-static Node node_at(const Spots *spots, const double *c, double u, double left, double right, double x)
+/* `rate` is that of u along the curve. */
+static Node node_at(const Spots *spots, const double *c, double u, double left, double right, double x,
+                    double *rate)
 {
     double y[N_LAW_TABLE], side[N_LAW_TABLE];
     spots_table(spots, c, u, y);
     spots_table(spots, c, fmin(fmax(u, left + SIDE), right - SIDE), side);
     const double k = y[2] / spots->area;
+    *rate = y[2] / y[1];
     return (Node){.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]};
 }
 
@@ -77,7 +81,8 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
             return false;
         const int n = 2 * (int)fmax(pairs, 1.0);
         const double step = (right - left) / n;
-        Node node = node_at(spots, c, left, left, right, x);
+        double rate;
+        Node node = node_at(spots, c, left, left, right, x, &rate);
         if (piece == 0) {
             curve_begin(curve, 0.0);
             approach->closed = node.y;
@@ -85,30 +90,26 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
                 return false;
         }
         curve_piece(curve, node);
+        approach->rate[curve->n - 1] = rate;
         for (int i = 0; i < n; i++) {
             const double u = i + 1 == n ? right : left + (i + 1) * step;
             x += rise(spots, c, left + i * step, 0.5 * step);
-            node = node_at(spots, c, u, left, right, x);
+            node = node_at(spots, c, u, left, right, x, &rate);
             if (!curve_add(curve, node))
                 return false;
             approach->u[curve->n - 1] = u;
+            approach->rate[curve->n - 1] = rate;
         }
     }
     curve_finish(curve);
     return true;
 }
 
-double approach_guess(const Approach *approach, const Curve *curve, double pressure)
+double approach_guess(const Approach *approach, const Curve *curve, double x)
 {
-    int low = 0, high = curve->n - 2;
-    while (low < high) {
-        const int middle = (low + high + 1) / 2;
-        if (pressure < curve->a[middle][0])
-            high = middle - 1;
-        else
-            low = middle;
-    }
-    const double p = curve->a[low][0], next = low + 2 < curve->n ? curve->a[low + 1][0] : curve_last(curve).y;
-    const double place = p > 0.0 ? log(pressure / p) / log(next / p) : 0.0;
-    return approach->u[low] + (place < 1.0 ? place : 1.0) * (approach->u[low + 1] - approach->u[low]);
+    double t;
+    const int i = curve_segment(curve, x, &t);
+    const double h = curve->x[i + 1] - curve->x[i], rise = approach->u[i + 1] - approach->u[i];
+    const double begin = h * approach->rate[i] - rise, end = h * approach->rate[i + 1] - rise;
+    return approach->u[i] + t * (rise + (1.0 - t) * ((1.0 - t) * begin - t * end));
 }

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+static const double CLOSE = 1e-8; /* relative change by a Newton step that leaves round-off */
+
 static void polynomial(const Node *p, const Node *q, double *a)
 {
     const double h = q->x - p->x;
@@ -15,14 +17,18 @@ static void polynomial(const Node *p, const Node *q, double *a)
     a[5] = 6.0 * rise - 3.0 * s0 - 3.0 * s1 - 0.5 * c0 + 0.5 * c1;
 }
 
+/* In pairs, which a processor evaluates at the same time. */
+
 static double value(const double *a, double t)
 {
-    return a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
+    const double square = t * t;
+    return (a[0] + t * a[1]) + square * ((a[2] + t * a[3]) + square * (a[4] + t * a[5]));
 }
 
 static double slope(const double *a, double t)
 {
-    return a[1] + t * (2.0 * a[2] + t * (3.0 * a[3] + t * (4.0 * a[4] + t * 5.0 * a[5])));
+    const double square = t * t;
+    return (a[1] + t * (2.0 * a[2])) + square * ((3.0 * a[3] + t * (4.0 * a[4])) + square * (5.0 * a[5]));
 }
 
 void curve_begin(Curve *curve, double error)
@@ -82,9 +88,18 @@ bool curve_add(Curve *curve, Node node)
     return true;
 }
 
+/* A node from the polynomial of a segment, at its beginning (t = 0) or end (1). */
+static Node node_of(const Curve *curve, int i, double t)
+{
+    const double h = curve->x[i + 1] - curve->x[i];
+    return (Node){.x = curve->x[i + (t > 0.0)], .y = value(curve->a[i], t), .s = slope(curve->a[i], t) / h};
+}
+
 void curve_finish(Curve *curve)
 {
     const double first = curve->x[0], length = curve->x[curve->n - 1] - first;
+    curve->first = node_of(curve, 0, 0.0);
+    curve->end = node_of(curve, curve->n - 2, 1.0);
     curve->per_bucket = CURVE_BUCKETS / length;
     int segment = 0;
     for (int k = 0; k <= CURVE_BUCKETS; k++) {
@@ -112,28 +127,40 @@ static int find(const Curve *curve, double x)
     return low;
 }
 
-static void derivatives(const Curve *curve, int i, double t, double h, int order, double *y)
+/* `per` is the number of segments like this one per displacement. */
+static void derivatives(const double *a, double t, double per, int order, double *y)
 {
-    const double *a = curve->a[i];
     y[0] = value(a, t);
-    y[1] = slope(a, t) / h;
+    y[1] = slope(a, t) * per;
     if (order >= 2)
-        y[2] = (2.0 * a[2] + t * (6.0 * a[3] + t * (12.0 * a[4] + t * 20.0 * a[5]))) / (h * h);
+        y[2] = (2.0 * a[2] + t * (6.0 * a[3] + t * (12.0 * a[4] + t * 20.0 * a[5]))) * (per * per);
     if (order >= 3)
-        y[3] = (6.0 * a[3] + t * (24.0 * a[4] + t * 60.0 * a[5])) / (h * h * h);
+        y[3] = (6.0 * a[3] + t * (24.0 * a[4] + t * 60.0 * a[5])) * (per * per * per);
     if (order >= 4)
-        y[4] = (24.0 * a[4] + t * 120.0 * a[5]) / (h * h * h * h);
+        y[4] = (24.0 * a[4] + t * 120.0 * a[5]) * (per * per * per * per);
+}
+
+static double inside(const Curve *curve, double x)
+{
+    return x < curve->first.x ? curve->first.x : (x > curve->end.x ? curve->end.x : x);
+}
+
+int curve_segment(const Curve *curve, double x, double *t)
+{
+    const double at = inside(curve, x);
+    const int i = find(curve, at);
+    *t = (at - curve->x[i]) / (curve->x[i + 1] - curve->x[i]);
+    return i;
 }
 
 void curve_at(const Curve *curve, double x, int order, double *y)
 {
-    const double first = curve->x[0], end = curve->x[curve->n - 1];
-    const double inside = x < first ? first : (x > end ? end : x);
-    const int i = find(curve, inside);
-    const double h = curve->x[i + 1] - curve->x[i];
-    derivatives(curve, i, (inside - curve->x[i]) / h, h, order, y);
-    if (x != inside) {
-        y[0] += (x - inside) * y[1];
+    const double at = inside(curve, x);
+    const int i = find(curve, at);
+    const double per = 1.0 / (curve->x[i + 1] - curve->x[i]);
+    derivatives(curve->a[i], (at - curve->x[i]) * per, per, order, y);
+    if (x != at) {
+        y[0] += (x - at) * y[1];
         for (int k = 2; k <= order; k++)
             y[k] = 0.0;
     }
@@ -141,19 +168,14 @@ void curve_at(const Curve *curve, double x, int order, double *y)
 
 double curve_inverse(const Curve *curve, double load)
 {
-    const Node begin = curve_first(curve), end = curve_last(curve);
-    if (load <= begin.y)
-        return begin.s == 0.0 ? begin.x : begin.x + (load - begin.y) / begin.s;
-    if (load >= end.y)
-        return end.x + (load - end.y) / end.s;
-    int i = 0, last = curve->n - 2;
-    while (i < last) {
-        const int middle = (i + last + 1) / 2;
-        if (load < curve->a[middle][0])
-            last = middle - 1;
-        else
-            i = middle;
-    }
+    const Node *first = &curve->first, *end = &curve->end;
+    if (load <= first->y)
+        return first->s == 0.0 ? first->x : first->x + (load - first->y) / first->s;
+    if (load >= end->y)
+        return end->x + (load - end->y) / end->s;
+    int i = 0;
+    for (int n = curve->n - 1; n > 1; n -= n / 2) /* i is among n segments */
+        i += load < curve->a[i + n / 2][0] ? 0 : n / 2;
     const double *a = curve->a[i];
     const double h = curve->x[i + 1] - curve->x[i], top = value(a, 1.0);
     double low = 0.0, high = 1.0, t = top > a[0] ? (load - a[0]) / (top - a[0]) : 0.0;
@@ -164,24 +186,12 @@ double curve_inverse(const Curve *curve, double load)
         else
             high = t;
         const double step = s > 0.0 ? t + rest / s : -1.0;
-        const double next = step >= low && step <= high ? step : 0.5 * (low + high);
+        const bool newton = step >= low && step <= high;
+        const double next = newton ? step : 0.5 * (low + high);
         const double change = fabs(next - t);
         t = next;
-        if (change <= 4e-16 * t)
+        if (change <= (newton ? CLOSE : 4e-16) * t)
             break;
     }
     return curve->x[i] + t * h;
-}
-
-Node curve_first(const Curve *curve)
-{
-    const double h = curve->x[1] - curve->x[0];
-    return (Node){.x = curve->x[0], .y = curve->a[0][0], .s = curve->a[0][1] / h};
-}
-
-Node curve_last(const Curve *curve)
-{
-    const int i = curve->n - 2;
-    const double h = curve->x[i + 1] - curve->x[i];
-    return (Node){.x = curve->x[i + 1], .y = value(curve->a[i], 1.0), .s = slope(curve->a[i], 1.0) / h};
 }

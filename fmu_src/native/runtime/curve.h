@@ -21,6 +21,7 @@ typedef struct {
     double error; /* largest relative interpolation error of load and stiffness, measured when built */
     double x[CURVE_NODES];
     double a[CURVE_NODES][6]; /* of 1, t, ... t^5 on each segment, t from 0 to 1 */
+    Node first, end;          /* the two ends as the polynomials have them */
     Node last[3];             /* the last nodes of the piece under construction */
     int piece;                /* nodes of this piece so far */
     double per_bucket;        /* buckets per displacement */
@@ -36,15 +37,14 @@ void curve_piece(Curve *curve, Node node);
 bool curve_add(Curve *curve, Node node);
 void curve_finish(Curve *curve);
 
+/* Segment that holds x, and where in it (0 to 1); of an x beyond the table that at its end. */
+int curve_segment(const Curve *curve, double x, double *t);
+
 /* y[0] load, y[1] ... y[order] its derivatives at x; order 1 to 4. */
 void curve_at(const Curve *curve, double x, int order, double *y);
 
 /* Displacement at which the table carries a load, to round-off; the first node below the table if it
  * begins flat. */
 double curve_inverse(const Curve *curve, double load);
-
-/* Displacement and load at the two ends. */
-Node curve_first(const Curve *curve);
-Node curve_last(const Curve *curve);
 
 #endif

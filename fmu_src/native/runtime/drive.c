@@ -1,16 +1,30 @@
 #include "drive.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tables.h"
 
 static const double SIDE = 1e-9; /* where a regime ends its derivative is taken this far inside, in log-area */
 
+static void add_parameter(Text *why, const Joint *joint, const char *name)
+{
+    int i = 0;
+    while (i + 1 < N_PARAMETERS && strcmp(variables[FIRST_PARAMETER + i].name, name) != 0)
+        i++;
+    text_add(why, name);
+    text_add(why, " = ");
+    text_number(why, joint->c[i], 6);
+}
+
 static void no_stiffness(const Joint *joint, double K, Text *why)
 {
-    text_add(why, "K_FTS0 = ");
-    text_number(why, joint->kind.K_FTS0, 6);
-    text_add(why, " N.m/rad, pair_scale and drive_scale give K_WTS = ");
+    add_parameter(why, joint, "K_FTS0");
+    text_add(why, " N.m/rad, ");
+    add_parameter(why, joint, "pair_scale");
+    text_add(why, " and ");
+    add_parameter(why, joint, "drive_scale");
+    text_add(why, " give K_WTS = ");
     text_number(why, K, 6);
     text_add(why, " N.m/rad, allowed is (");
     text_number(why, SOFTEST, 6);
@@ -236,25 +250,27 @@ bool kind_tabulate(Joint *joint, Text *why)
     return tabulate_regimes(joint, highest[0], why) && refined(joint, windup, DRIVE_STEPS, why);
 }
 
-/* Wind-up, torque and stiffness (and its derivative) of the curve at an argument: wind-up or torque. */
-static void look_up(const Joint *joint, const double *inputs, double *x, double *y)
+/* Wind-up of the curve, torque and its derivatives up to an order (2 at most), at an argument: wind-up or
+ * torque. */
+static void look_up(const Joint *joint, const double *inputs, int order, double *x, double *y)
 {
     double at;
     argument(inputs, joint->c, &at);
     const double size = fabs(at), phi = ARGUMENT_IS_LOAD ? curve_inverse(&joint->curve, size) : size;
-    curve_at(&joint->curve, phi, 2, y);
+    curve_at(&joint->curve, phi, order, y);
     *x = copysign(phi, at);
     y[0] = copysign(y[0], at);
-    y[2] = copysign(y[2], at);
+    if (order == 2)
+        y[2] = copysign(y[2], at);
 }
 
 bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
 {
-    double x[N_INPUTS + 3], y[3];
+    double x[N_INPUTS + 3], y[2];
     (void)why;
     for (int i = 0; i < N_INPUTS; i++)
         x[i] = inputs[i];
-    look_up(joint, inputs, &x[N_INPUTS], y);
+    look_up(joint, inputs, 1, &x[N_INPUTS], y);
     x[N_INPUTS + 1] = y[0];
     x[N_INPUTS + 2] = y[1];
     outputs(x, joint->c, out);
@@ -270,7 +286,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *seed, do
         x[N + i] = at[N_INPUTS + i] = seed[i];
     }
     argument_seed(at, joint->c, &rate);
-    look_up(joint, inputs, &x[N_INPUTS], y);
+    look_up(joint, inputs, 2, &x[N_INPUTS], y);
     x[N_INPUTS + 1] = y[0];
     x[N_INPUTS + 2] = y[1];
     if (ARGUMENT_IS_LOAD)

@@ -13,8 +13,9 @@ static Status refuse(const Instance *m, const Text *why)
 
 static bool inside(const Variable *v, double value)
 {
-    return isfinite(value) && (v->low_open ? value > v->low : value >= v->low) &&
-           (v->high_open ? value < v->high : value <= v->high);
+    if (value > v->low && value < v->high)
+        return true;
+    return isfinite(value) && ((value == v->low && !v->low_open) || (value == v->high && !v->high_open));
 }
 
 static void add_value(Text *text, const Variable *v, double value, int digits)
@@ -93,11 +94,14 @@ static Status refuse_input(const Instance *m, size_t i)
     return refuse(m, &why);
 }
 
-static Status refuse_output(const Instance *m, size_t bad)
+static Status refuse_outputs(const Instance *m)
 {
     Text why;
     text_clear(&why);
     const char *between = "";
+    size_t bad = 0;
+    while (isfinite(m->now.values[FIRST_OUTPUT + bad]))
+        bad++;
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
         if (m->now.values[i] != 0.0) {
             text_add(&why, between);
@@ -138,9 +142,11 @@ Status instance_evaluate(Instance *m)
     text_clear(&why);
     if (!joint_evaluate(m->joint, inputs, outputs, &why))
         return refuse(m, &why);
+    bool finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)
-        if (!isfinite(outputs[i]))
-            return refuse_output(m, i);
+        finite &= fabs(outputs[i]) < INFINITY;
+    if (!finite)
+        return refuse_outputs(m);
     const unsigned outside = joint_outside(m->joint, inputs, outputs) & ~m->now.warned;
     if (outside)
         warn(m, outside);
@@ -149,6 +155,32 @@ Status instance_evaluate(Instance *m)
 }
 
 /* Steps */
+
+static bool has_slopes(const State *now)
+{
+    bool any = false;
+    for (size_t i = 0; i < N_INPUTS; i++)
+        any |= now->slopes[i] != 0.0;
+    return any;
+}
+
+/* Evaluate at the end of a step, to which inputs with a derivative move; a refusal changes nothing. */
+static Status evaluate_moved(Instance *m, double size)
+{
+    State *now = &m->now;
+    double before[N_INPUTS], *inputs = now->values + FIRST_INPUT;
+    for (size_t i = 0; i < N_INPUTS; i++) {
+        before[i] = inputs[i];
+        inputs[i] += now->slopes[i] * size;
+    }
+    m->dirty = true;
+    if (instance_evaluate(m) != OK) {
+        memcpy(inputs, before, sizeof before);
+        return ERROR;
+    }
+    memset(now->slopes, 0, sizeof now->slopes);
+    return OK;
+}
 
 static Status refuse_step(const Instance *m, const char *function, const char *what, double time, double size,
                           const char *expected, double limit)
@@ -167,6 +199,25 @@ static Status refuse_step(const Instance *m, const char *function, const char *w
     return instance_refuse(m, function, text.line);
 }
 
+/* A step over which states move; a refusal changes nothing. */
+static Status step_moving(Instance *m, double size, double end)
+{
+    State *now = &m->now;
+    const State before = *now;
+    if (instance_evaluate(m) != OK)
+        return ERROR;
+    instance_advance(m, size);
+    now->values[0] = end;
+    m->dirty = true;
+    const bool sloping = has_slopes(now);
+    if ((sloping ? evaluate_moved(m, size) : instance_evaluate(m)) != OK) {
+        *now = before;
+        m->dirty = true;
+        return ERROR;
+    }
+    return now->last_step = OK;
+}
+
 Status instance_step(Instance *m, const char *function, double time, double size)
 {
     if (!instance_allows(m, function, CO_SIMULATION | STEP))
@@ -183,21 +234,11 @@ Status instance_step(Instance *m, const char *function, double time, double size
     if (end > now->stop + slack)
         return refuse_step(m, function, "the step ends after the stop time", time, size, "an end until ",
                            now->stop);
+    if (MOVES)
+        return step_moving(m, size, end);
 
-    double before[N_INPUTS];
-    double *inputs = now->values + FIRST_INPUT;
-    for (size_t i = 0; i < N_INPUTS; i++) {
-        before[i] = inputs[i];
-        if (now->slopes[i] != 0.0) {
-            inputs[i] += now->slopes[i] * size;
-            m->dirty = true;
-        }
-    }
-    if (instance_evaluate(m) != OK) {
-        memcpy(inputs, before, sizeof before); /* a refused step changes nothing */
+    if ((has_slopes(now) ? evaluate_moved(m, size) : instance_evaluate(m)) != OK)
         return ERROR;
-    }
-    memset(now->slopes, 0, sizeof now->slopes);
     now->values[0] = end;
     return now->last_step = OK;
 }
@@ -221,9 +262,12 @@ Status instance_derivative(Instance *m, const char *function, const uint32_t unk
         (n_knowns && !instance_has(m, function, "the seed", seed)) ||
         (n_unknowns && !instance_has(m, function, "the array of sensitivities", result)))
         return ERROR;
-    double direction[N_INPUTS] = {0.0}, change[N_OUTPUTS];
-    for (size_t i = 0; i < n_knowns; i++)
+    double direction[N_INPUTS + N_STATES] = {0.0}, change[N_OUTPUTS];
+    for (size_t i = 0; i < n_knowns; i++) {
+        if (!isfinite(seed[i]))
+            return refuse_derivative(m, function, knowns[i]);
         direction[knowns[i] - FIRST_INPUT] += seed[i];
+    }
     joint_derivative(m->joint, m->now.values + FIRST_INPUT, direction, change);
     for (size_t i = 0; i < n_unknowns; i++) {
         result[i] = change[unknowns[i] - FIRST_OUTPUT];
@@ -240,8 +284,11 @@ Status instance_adjoint(Instance *m, const char *function, const uint32_t unknow
         (n_unknowns && !instance_has(m, function, "the seed", seed)) ||
         (n_knowns && !instance_has(m, function, "the array of sensitivities", result)))
         return ERROR;
+    for (size_t i = 0; i < n_unknowns; i++)
+        if (!isfinite(seed[i]))
+            return refuse_derivative(m, function, unknowns[i]);
     for (size_t j = 0; j < n_knowns; j++) {
-        double direction[N_INPUTS] = {0.0}, change[N_OUTPUTS];
+        double direction[N_INPUTS + N_STATES] = {0.0}, change[N_OUTPUTS];
         direction[knowns[j] - FIRST_INPUT] = 1.0;
         joint_derivative(m->joint, m->now.values + FIRST_INPUT, direction, change);
         result[j] = 0.0;

@@ -189,7 +189,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
         instance_derivative(c, __func__, vUnknown_ref, nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown));
 }
 
-/* Model exchange: no states, no event indicators */
+/* Model exchange: no event indicators, and states in systems only */
 
 fmi2Status fmi2EnterEventMode(fmi2Component c)
 {
@@ -227,42 +227,33 @@ fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
     return STATUS(instance_set_time(c, __func__, time));
 }
 
-/* Functions of arrays with as many elements as there are states or event indicators: none. */
-static fmi2Status none(fmi2Component c, const char *function, unsigned where, const char *what, size_t n)
-{
-    return instance_allows(c, function, MODEL_EXCHANGE | where) && instance_counts(c, function, what, n, 0)
-               ? fmi2OK
-               : fmi2Error;
-}
-
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx)
 {
-    (void)x;
-    return none(c, __func__, CONTINUOUS_TIME, "continuous states", nx);
+    return STATUS(instance_set_states(c, __func__, x, nx));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx)
 {
-    (void)derivatives;
-    return none(c, __func__, READABLE, "continuous states", nx);
+    return STATUS(instance_get_rates(c, __func__, derivatives, nx));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni)
 {
     (void)eventIndicators;
-    return none(c, __func__, READABLE, "event indicators", ni);
+    return instance_allows(c, __func__, MODEL_EXCHANGE | READABLE) &&
+                   instance_counts(c, __func__, "event indicators", ni, 0)
+               ? fmi2OK
+               : fmi2Error;
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx)
 {
-    (void)x;
-    return none(c, __func__, READABLE, "continuous states", nx);
+    return STATUS(instance_get_states(c, __func__, x, nx));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x_nominal[], size_t nx)
 {
-    (void)x_nominal;
-    return none(c, __func__, READABLE | INSTANTIATED, "continuous states", nx);
+    return STATUS(instance_get_nominals(c, __func__, READABLE | INSTANTIATED, x_nominal, nx));
 }
 
 /* Co-simulation */

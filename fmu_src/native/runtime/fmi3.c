@@ -251,13 +251,13 @@ fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference 
     return fmi3Error;
 }
 
-/* Dependencies: an output on inputs, element 0 being the whole variable */
+/* Dependencies: an output on inputs and states, element 0 being the whole variable */
 
 static size_t n_dependencies(fmi3ValueReference ref)
 {
     size_t n = 0;
     if (ref >= FIRST_OUTPUT && ref < FIRST_PARAMETER)
-        for (size_t i = 0; i < N_INPUTS; i++)
+        for (size_t i = 0; i < N_INPUTS + N_STATES; i++)
             n += depends[ref - FIRST_OUTPUT][i];
     return n;
 }
@@ -297,7 +297,7 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference
         !instance_has(instance, __func__, "elementIndicesOfIndependents", elementIndicesOfIndependents) ||
         !instance_has(instance, __func__, "dependencyKinds", dependencyKinds))
         return fmi3Error;
-    for (uint32_t i = 0, n = 0; i < N_INPUTS; i++)
+    for (uint32_t i = 0, n = 0; i < N_INPUTS + N_STATES; i++)
         if (depends[dependent - FIRST_OUTPUT][i]) {
             elementIndicesOfDependent[n] = elementIndicesOfIndependents[n] = 0;
             independents[n] = FIRST_INPUT + i;
@@ -398,7 +398,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
     return STATUS(instance_evaluate(instance)); /* with parameters that were changed in the event */
 }
 
-/* Model exchange: no states, no event indicators */
+/* Model exchange: no event indicators, and states in systems only */
 
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance)
 {
@@ -422,69 +422,57 @@ fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)
     return STATUS(instance_set_time(instance, __func__, time));
 }
 
-/* Functions of arrays with as many elements as there are states or event indicators: none. */
-static fmi3Status none(fmi3Instance instance, const char *function, unsigned where, const char *what,
-                       size_t n)
-{
-    return instance_allows(instance, function, MODEL_EXCHANGE | where) &&
-                   instance_counts(instance, function, what, n, 0)
-               ? fmi3OK
-               : fmi3Error;
-}
-
 fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 continuousStates[],
                                    size_t nContinuousStates)
 {
-    (void)continuousStates;
-    return none(instance, __func__, CONTINUOUS_TIME, "continuous states", nContinuousStates);
+    return STATUS(instance_set_states(instance, __func__, continuousStates, nContinuousStates));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[],
                                              size_t nContinuousStates)
 {
-    (void)derivatives;
-    return none(instance, __func__, READABLE, "continuous states", nContinuousStates);
+    return STATUS(instance_get_rates(instance, __func__, derivatives, nContinuousStates));
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[],
                                   size_t nEventIndicators)
 {
     (void)eventIndicators;
-    return none(instance, __func__, READABLE, "event indicators", nEventIndicators);
+    return instance_allows(instance, __func__, MODEL_EXCHANGE | READABLE) &&
+                   instance_counts(instance, __func__, "event indicators", nEventIndicators, 0)
+               ? fmi3OK
+               : fmi3Error;
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 continuousStates[],
                                    size_t nContinuousStates)
 {
-    (void)continuousStates;
-    return none(instance, __func__, READABLE, "continuous states", nContinuousStates);
+    return STATUS(instance_get_states(instance, __func__, continuousStates, nContinuousStates));
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[],
                                              size_t nContinuousStates)
 {
-    (void)nominals;
-    return none(instance, __func__, READABLE, "continuous states", nContinuousStates);
+    return STATUS(instance_get_nominals(instance, __func__, READABLE, nominals, nContinuousStates));
 }
 
-/* The two numbers: zero. */
-static fmi3Status zero(fmi3Instance instance, const char *function, size_t *number)
+static fmi3Status count(fmi3Instance instance, const char *function, size_t *number, size_t value)
 {
     if (!instance_allows(instance, function, MODEL_EXCHANGE | ANY_MODE) ||
         !instance_has(instance, function, "the pointer to the number", number))
         return fmi3Error;
-    *number = 0;
+    *number = value;
     return fmi3OK;
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators)
 {
-    return zero(instance, __func__, nEventIndicators);
+    return count(instance, __func__, nEventIndicators, 0);
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates)
 {
-    return zero(instance, __func__, nContinuousStates);
+    return count(instance, __func__, nContinuousStates, N_STATES);
 }
 
 /* Co-simulation */

@@ -4,6 +4,8 @@
 
 #include "tables.h"
 
+static const double NOTHING = 1e-200; /* pressure [Pa] below which no spot touches, as in the package */
+
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
     Kind *kind = &joint->kind;
@@ -29,9 +31,9 @@ static bool look_up(const Joint *joint, double pressure, double *x, double *slop
     slopes[0] = compliance;
     slopes[1] = y[2] * compliance;
     x[2] = x[3] = slopes[2] = slopes[3] = 0.0;
-    if (!(pressure > 0.0))
+    if (!(pressure >= NOTHING))
         return true;
-    u = approach_guess(&kind->approach, &joint->curve, pressure);
+    u = approach_guess(&kind->approach, &joint->curve, delta);
     if (!spots_solve(&kind->spots, joint->c, pressure, &u, &rate, why))
         return false;
     law_state[spots_regime(&kind->spots, u)](&u, joint->c, state);

@@ -100,12 +100,10 @@ static void add_modes(Text *text, unsigned modes)
         }
 }
 
-bool instance_allows(const Instance *m, const char *function, unsigned where)
+bool instance_forbids(const Instance *m, const char *function, unsigned where)
 {
     if (!m)
         return false;
-    if ((m->now.mode & where) && (m->now.kind & where))
-        return true;
     Text text;
     text_clear(&text);
     const bool exchange = m->now.kind == MODEL_EXCHANGE;
@@ -206,6 +204,8 @@ void instance_reset(Instance *m)
     for (size_t i = 0; i < N_VALUES; i++)
         now->values[i] = variables[i].start;
     memset(now->slopes, 0, sizeof now->slopes);
+    memset(now->last_inputs, 0, sizeof now->last_inputs);
+    now->last_rate = now->last_size = 0.0;
     now->values[0] = now->start = 0.0;
     now->stop = INFINITY;
     now->warned = 0;
@@ -243,6 +243,7 @@ Status instance_set_experiment(Instance *m, const char *function, double start, 
         return instance_refuse(m, function, text.line);
     }
     m->now.values[0] = m->now.start = start;
+    m->dirty = true;
     m->now.stop = stop_defined ? stop : INFINITY;
     return OK;
 }
@@ -270,5 +271,6 @@ Status instance_set_time(Instance *m, const char *function, double time)
     if (!isfinite(time))
         return instance_refuse(m, function, "the time is not finite; expected a finite one");
     m->now.values[0] = time;
+    m->dirty |= MOVES;
     return OK;
 }

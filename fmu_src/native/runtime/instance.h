@@ -53,6 +53,7 @@ typedef struct {
     double values[N_VALUES]; /* by value reference; [0] is the time */
     double slopes[N_INPUTS]; /* derivatives of the inputs in the next step (FMI 2) */
     double start, stop;      /* times; stop is infinite where the host defines none */
+    double last_inputs[N_INPUTS], last_rate, last_size; /* of the last step, if there are states */
     unsigned kind, mode;
     unsigned warned; /* bits of joint_outside that were reported */
     unsigned logs;   /* categories that are delivered */
@@ -99,7 +100,11 @@ void instance_report(const Instance *m, Status status, unsigned category, const 
 Status instance_refuse(const Instance *m, const char *function, const char *what);
 
 /* Checks; each reports what is wrong and gives false. */
-bool instance_allows(const Instance *m, const char *function, unsigned where);
+bool instance_forbids(const Instance *m, const char *function, unsigned where);
+static inline bool instance_allows(const Instance *m, const char *function, unsigned where)
+{
+    return (m && (m->now.mode & where) && (m->now.kind & where)) || instance_forbids(m, function, where);
+}
 bool instance_lacks(const Instance *m, const char *function, const char *what);
 static inline bool instance_has(const Instance *m, const char *function, const char *what,
                                 const void *pointer)
@@ -114,7 +119,7 @@ bool instance_counts(const Instance *m, const char *function, const char *what, 
 Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
                     const double values[]);
 Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
-/* Booleans, one each, because FMI 2 and 3 hold them differently; `n` elements are checked with the first. */
+/* Booleans: FMI 2 and 3 hold them in different types; the caller moves them to or from now.values. */
 bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
                                const void *values);
 bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
@@ -139,7 +144,16 @@ Status instance_derivative(Instance *m, const char *function, const uint32_t unk
 Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                         const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
 
-/* state.c: states outside of an instance, and as bytes */
+/* states.c: continuous states */
+
+/* Move the states over a step of co-simulation; outputs are to be evaluated after it. */
+void instance_advance(Instance *m, double size);
+Status instance_set_states(Instance *m, const char *function, const double x[], size_t n);
+Status instance_get_states(Instance *m, const char *function, double x[], size_t n);
+Status instance_get_rates(Instance *m, const char *function, double x[], size_t n);
+Status instance_get_nominals(Instance *m, const char *function, unsigned where, double x[], size_t n);
+
+/* state.c: states of the FMU outside of an instance, and as bytes */
 
 Status state_save(const Instance *m, const char *function, void **saved);
 Status state_restore(Instance *m, const char *function, const void *saved);

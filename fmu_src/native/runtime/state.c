@@ -97,8 +97,13 @@ static void pass(Cursor *c, State *s)
     pass_doubles(c, &s->start, 1);
     pass_doubles(c, &s->stop, 1);
     pass_doubles(c, s->slopes, N_INPUTS);
-    pass_doubles(c, s->values, FIRST_OUTPUT);
+    pass_doubles(c, s->values, FIRST_OUTPUT + N_STATES);
     pass_doubles(c, s->values + FIRST_PARAMETER, N_PARAMETERS);
+    if (N_STATES) {
+        pass_doubles(c, s->last_inputs, N_INPUTS);
+        pass_doubles(c, &s->last_rate, 1);
+        pass_doubles(c, &s->last_size, 1);
+    }
     s->last_step = (Status)last_step;
 }
 

@@ -83,14 +83,12 @@ bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
 }
 
 /* Low and high end of every warning. */
-static void outside(const Joint *joint, const double *inputs, const double *outputs, double *ends)
+static void outside(const Joint *joint, const double *inputs, double *ends)
 {
-    double x[N_INPUTS + N_OUTPUTS + 2];
-    const Node end = curve_last(&joint->curve);
+    double x[N_INPUTS + 2];
     memcpy(x, inputs, N_INPUTS * sizeof(double));
-    memcpy(x + N_INPUTS, outputs, N_OUTPUTS * sizeof(double));
-    x[N_INPUTS + N_OUTPUTS] = end.x;
-    x[N_INPUTS + N_OUTPUTS + 1] = end.y;
+    x[N_INPUTS] = joint->curve.end.x;
+    x[N_INPUTS + 1] = joint->curve.end.y;
     outside_limits(x, joint->c, ends);
 }
 
@@ -103,7 +101,7 @@ unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs
 {
     double ends[2 * N_WARNINGS];
     unsigned bits = 0;
-    outside(joint, inputs, outputs, ends);
+    outside(joint, inputs, ends);
     for (unsigned i = 0; i < N_WARNINGS; i++) {
         const double value = watched(&warnings[i], inputs, outputs);
         if (value < ends[2 * i] || value > ends[2 * i + 1])
@@ -118,7 +116,7 @@ void joint_warning(Joint *joint, const double *inputs, const double *outputs, un
     unsigned i = 0;
     while (i + 1 < N_WARNINGS && bit != 1u << i)
         i++;
-    outside(joint, inputs, outputs, ends);
+    outside(joint, inputs, ends);
     const Variable *variable = &variables[FIRST_INPUT + warnings[i].variable];
     const double low = ends[2 * i], high = ends[2 * i + 1];
     text_add(text, variable->name);

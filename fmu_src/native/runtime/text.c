@@ -4,12 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-void text_clear(Text *text)
-{
-    text->line[0] = '\0';
-    text->length = 0;
-}
-
 void text_add(Text *text, const char *piece)
 {
     const size_t room = sizeof text->line - 1 - text->length;

@@ -9,7 +9,11 @@ typedef struct {
     size_t length;
 } Text;
 
-void text_clear(Text *text);
+static inline void text_clear(Text *text)
+{
+    text->line[0] = '\0';
+    text->length = 0;
+}
 void text_add(Text *text, const char *piece);
 /* A string of the host in quotation marks: its first 80 bytes, what is not printable ASCII as '?'. */
 void text_quote(Text *text, const char *piece);

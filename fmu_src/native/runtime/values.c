@@ -18,6 +18,11 @@ static bool is_input(uint32_t ref)
     return ref >= FIRST_INPUT && ref < FIRST_OUTPUT;
 }
 
+static bool is_state(uint32_t ref)
+{
+    return ref >= FIRST_OUTPUT && ref < FIRST_OUTPUT + N_STATES;
+}
+
 static bool is_output(uint32_t ref)
 {
     return ref >= FIRST_OUTPUT && ref < FIRST_PARAMETER;
@@ -76,7 +81,7 @@ static bool settable(const Instance *m, const char *function, uint32_t ref, bool
 {
     if (!known(m, function, ref) || !of_type(m, function, ref, boolean))
         return false;
-    if (is_input(ref))
+    if (is_input(ref) || (is_state(ref) && (m->now.mode & (INSTANTIATED | CONFIGURATION | INITIALIZATION))))
         return true;
     if (!is_parameter(ref))
         return refused(m, function, ref,
@@ -207,7 +212,7 @@ bool instance_can_differentiate(Instance *m, const char *function, const uint32_
     for (size_t i = 0; i < n_knowns; i++) {
         if (!known(m, function, knowns[i]))
             return false;
-        if (!is_input(knowns[i]))
+        if (!is_input(knowns[i]) && !is_state(knowns[i]))
             return refused(m, function, knowns[i], " is among the knowns; expected inputs");
     }
     return instance_evaluate(m) == OK;

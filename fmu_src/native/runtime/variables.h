@@ -6,6 +6,14 @@
 
 #include "model.h" /* generated: MODEL_NAME, MODEL_TOKEN, MODEL_VERSION, N_INPUTS, N_OUTPUTS, N_PARAMETERS */
 
+/* Systems define these two in model.h. */
+#ifndef N_STATES
+#define N_STATES 0 /* continuous states: the first outputs; the rate of each is the output after it */
+#endif
+#ifndef MOVES
+#define MOVES 0 /* 1: outputs change with time, while inputs rest */
+#endif
+
 typedef struct {
     const char *name;
     const char *unit; /* SI; "" for a number without unit */
@@ -27,7 +35,11 @@ enum {
 
 extern const Variable variables[N_VALUES]; /* by value reference; [0] is the time */
 
-/* Outputs that depend on an input, and all on parameters: 1 or 0. */
-extern const unsigned char depends[N_OUTPUTS][N_INPUTS];
+/* Outputs that depend on an input or state, and all on parameters: 1 or 0. */
+extern const unsigned char depends[N_OUTPUTS][N_INPUTS + N_STATES];
+
+#if N_STATES
+extern const double nominals[N_STATES];
+#endif
 
 #endif

@@ -1,0 +1,208 @@
+/* native_fmus LIBRARY 2|3 TOKEN N_INPUTS N_OUTPUTS REPEATS < inputs
+ *
+ * Times of the calls of an FMU, as a host in C makes them. `inputs` are two sets of ROWS rows of doubles:
+ * along a smooth trajectory, and at random. Prints lines "NAME VALUE": seconds, and bytes of memory. */
+#include "host.h"
+
+#include <malloc.h>
+#include <time.h>
+
+enum { ROWS = 4093 /* prime: no loop meets the same rows again and again */, MOST_REPEATS = 1000, INSTANCES = 32 };
+
+static const double LONG_ENOUGH = 2e-4; /* of a loop: far above the clock's resolution, below a time slice [s] */
+static const double STEP = 1e-3;        /* [s] */
+
+typedef struct {
+    double *rows;
+    size_t size, next; /* in doubles */
+} Inputs;
+
+static Library library;
+static Layout v;
+static double sum; /* of all that was read */
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Loops: `n` times the same calls; every set takes the next row of inputs. */
+
+static inline void set_next(Fmu *fmu, Inputs *inputs)
+{
+    MUST(fmu_set(fmu, input_refs(&v), v.inputs, inputs->rows + inputs->next), fmu);
+    inputs->next += v.inputs;
+    if (inputs->next == inputs->size)
+        inputs->next = 0;
+}
+
+static void set(Fmu *fmu, Inputs *inputs, long n)
+{
+    for (long i = 0; i < n; i++)
+        set_next(fmu, inputs);
+}
+
+static void set_step(Fmu *fmu, Inputs *inputs, long n)
+{
+    for (long i = 0; i < n; i++) {
+        set_next(fmu, inputs);
+        MUST(fmu_step(fmu, STEP), fmu);
+    }
+}
+
+static void set_step_get(Fmu *fmu, Inputs *inputs, long n)
+{
+    double outputs[MAX_VARIABLES];
+    for (long i = 0; i < n; i++) {
+        set_next(fmu, inputs);
+        MUST(fmu_step(fmu, STEP), fmu);
+        MUST(fmu_get(fmu, output_refs(&v), v.outputs, outputs), fmu);
+        sum += outputs[0];
+    }
+}
+
+static void step(Fmu *fmu, Inputs *inputs, long n)
+{
+    (void)inputs;
+    for (long i = 0; i < n; i++)
+        MUST(fmu_step(fmu, STEP), fmu);
+}
+
+/* Of all outputs along a seed in all inputs. */
+static void derivative(Fmu *fmu, Inputs *inputs, long n)
+{
+    const double *seed = inputs->rows;
+    double result[MAX_VARIABLES];
+    for (long i = 0; i < n; i++) {
+        MUST(CALL(GetDirectionalDerivative(fmu->instance, output_refs(&v), v.outputs, input_refs(&v), v.inputs,
+                                           seed, result),
+                  GetDirectionalDerivative(fmu->instance, output_refs(&v), v.outputs, input_refs(&v), v.inputs,
+                                           seed, v.inputs, result, v.outputs)),
+             fmu);
+        sum += result[0];
+    }
+}
+
+/* What is measured: seconds per call of a loop, less those of another. */
+typedef void Loop(Fmu *fmu, Inputs *inputs, long n);
+typedef struct {
+    const char *name;
+    Loop *loop, *less;
+    bool scattered;
+} Measure;
+
+static const Measure measures[] = {
+    {"cycle_smooth", set_step_get, NULL, false}, {"cycle_random", set_step_get, NULL, true},
+    {"step_smooth", set_step, set, false},       {"step_random", set_step, set, true},
+    {"unchanged", step, NULL, false},            {"derivative", derivative, NULL, false},
+};
+enum { MEASURES = sizeof measures / sizeof *measures };
+
+static double seconds(Loop *loop, Fmu *fmu, Inputs *inputs, long n)
+{
+    const double start = now();
+    loop(fmu, inputs, n);
+    return now() - start;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print_median(const char *name, double *x, int n)
+{
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    printf("%s %.9g\n", name, 0.5 * (x[(n - 1) / 2] + x[n / 2]));
+}
+
+static void start(Fmu *fmu, const char *token)
+{
+    CHECK(fmu_instantiate(fmu, &library, token, false, false), &fmu->log);
+    MUST(fmu_enter(fmu), fmu);
+    MUST(fmu_exit(fmu), fmu);
+}
+
+static void measure_calls(const char *token, Inputs inputs[2], int repeats)
+{
+    static double times[MEASURES][MOST_REPEATS];
+    long calls[MEASURES];
+    Fmu fmu;
+    start(&fmu, token);
+    for (int i = 0; i < MEASURES; i++) {
+        calls[i] = 1;
+        while (seconds(measures[i].loop, &fmu, &inputs[measures[i].scattered], calls[i]) < LONG_ENOUGH)
+            calls[i] *= 2;
+    }
+    for (int r = 0; r < repeats; r++)
+        for (int i = 0; i < MEASURES; i++) {
+            const Measure *m = &measures[i];
+            const double whole = seconds(m->loop, &fmu, &inputs[m->scattered], calls[i]);
+            const double less = m->less ? seconds(m->less, &fmu, &inputs[m->scattered], calls[i]) : 0.0;
+            times[i][r] = (whole - less) / (double)calls[i];
+        }
+    for (int i = 0; i < MEASURES; i++)
+        print_median(measures[i].name, times[i], repeats);
+    fmu_free(&fmu);
+}
+
+/* From instantiation to the end of initialization. */
+static void measure_start(const char *token, int repeats)
+{
+    static double times[MOST_REPEATS];
+    for (int r = 0; r < repeats; r++) {
+        Fmu fmu;
+        const double begin = now();
+        start(&fmu, token);
+        times[r] = now() - begin;
+        fmu_free(&fmu);
+    }
+    print_median("start", times, repeats);
+}
+
+static size_t allocated(void)
+{
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+static void measure_memory(const char *token)
+{
+    static Fmu fmus[INSTANCES];
+    const size_t before = allocated();
+    for (int i = 0; i < INSTANCES; i++)
+        start(&fmus[i], token);
+    printf("memory %zu\n", (allocated() - before) / INSTANCES);
+    for (int i = 0; i < INSTANCES; i++)
+        fmu_free(&fmus[i]);
+}
+
+static Inputs read_inputs(void)
+{
+    const size_t size = ROWS * v.inputs;
+    Inputs inputs = {malloc(size * sizeof(double)), size, 0};
+    if (!inputs.rows || fread(inputs.rows, sizeof(double), size, stdin) != size)
+        fail(__FILE__, __LINE__, "too few inputs", NULL);
+    return inputs;
+}
+
+int main(int argc, char **argv)
+{
+    const int repeats = argc == 7 ? atoi(argv[6]) : 0;
+    if (repeats < 1 || repeats > MOST_REPEATS) {
+        fprintf(stderr, "native_fmus LIBRARY 2|3 TOKEN N_INPUTS N_OUTPUTS REPEATS < inputs\n");
+        return 2;
+    }
+    library = load(argv[1], argv[2]);
+    v = layout(argv[4], argv[5], "0");
+    Inputs inputs[2];
+    for (int i = 0; i < 2; i++)
+        inputs[i] = read_inputs();
+    measure_calls(argv[3], inputs, repeats);
+    measure_start(argv[3], repeats);
+    measure_memory(argv[3]);
+    return sum != sum; /* everything that was read counts */
+}

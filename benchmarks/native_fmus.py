@@ -1,0 +1,209 @@
+"""Times of the FMUs' calls in a host written in C, beside the python flavour in a Python host.
+
+For Linux on x86_64. The FMUs are built as for users, the host (native_fmus.c) by the same compiler. One
+cycle sets all inputs, does one step and reads all outputs, with other inputs each time: along a smooth
+trajectory, and at random over the table. "x PassThrough" is the smooth cycle over that of an FMU that
+passes two inputs on to two outputs with the same runtime. "step" is doStep with changed inputs, "no
+change" with the inputs of the step before. "derivative" is one directional derivative of all outputs
+along all inputs, "start" goes from instantiation to the end of initialization. Medians.
+"""
+
+import platform
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from zipfile import ZipFile
+
+import fmpy
+import numpy as np
+from jointfmu_fmus.building import FLAVOURS, build
+from jointfmu_fmus.native import compiler, generate
+from jointfmu_fmus.variables import MODELS
+
+from jointfmu.host import Fmi2
+
+ROUNDS, REPEATS, PYTHON_CYCLES = 5, 101, 100
+ROWS = 4093  # as in native_fmus.c
+HERE = Path(__file__).resolve().parent
+HOSTS = HERE.parent / "tests" / "native"
+LIBRARIES = {"fmi2": "binaries/linux64", "fmi3": "binaries/x86_64-linux"}
+RANGES = {
+    "HarmonicDriveSpring": {
+        "phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5),
+    },
+    "HarmonicDriveCompliance": {"tau": (-30, 30)},
+    "BoltedJoint": {
+        "preload": (2e3, 3e4), "moment": (-1500, 1500),
+        "s_rel_x": (-2e-6, 2e-6), "s_rel_y": (-2e-6, 2e-6), "s_rel_z": (-1e-6, 3e-6),
+        "v_rel_x": (-1e-3, 1e-3), "v_rel_y": (-1e-3, 1e-3), "v_rel_z": (-1e-3, 1e-3),
+    },
+    "GearContact": {"f": (0, 6e4)},
+    "PassThrough": {"u1": (-1, 1), "u2": (-1, 1)},
+}  # fmt: skip
+"""Inputs over the range of the tables."""
+HELD = ("preload", "moment")
+"""Inputs that stay as they are along the trajectory: a joint is tightened once."""
+
+NS, US, KB = (1e9, "ns"), (1e6, "us"), (1e-3, "kB")
+COLUMNS = {
+    "cycle_smooth": ("cycle smooth", *NS),
+    "ratio": ("x PassThrough", 1.0, ""),
+    "cycle_random": ("cycle random", *NS),
+    "step_smooth": ("step smooth", *NS),
+    "step_random": ("step random", *NS),
+    "unchanged": ("no change", *NS),
+    "derivative": ("derivative", *NS),
+    "start": ("start", *US),
+    "memory": ("memory", *KB),
+}
+"""{what is measured: (heading, units per SI unit, unit)}."""
+
+Times = dict[str, float]
+
+
+def trajectories(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Inputs (ROWS, n) along a smooth trajectory, some 64 steps per oscillation, and at random."""
+    low, high = np.array(list(RANGES[name].values()), dtype=float).T
+    phase = 2.0 * np.pi / 64.0 * np.arange(ROWS)[:, None]
+    waves = np.sin(phase * (1.0 + 0.1 * np.arange(low.size)))
+    waves[:, [i for i, v in enumerate(RANGES[name]) if v in HELD]] = 0.5
+    scattered = np.random.default_rng(1).uniform(low, high, (ROWS, low.size))
+    return 0.5 * (low + high) + 0.5 * (high - low) * waves, scattered
+
+
+def pass_through(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
+    """Build the FMU that passes its inputs on; see `libraries`."""
+    files = {p.name: p.read_text(encoding="utf-8") for p in (HOSTS / "passthrough").iterdir()}
+    shared = ("text", "instance", "values", "evaluate", "state", "states", "joint", "variables")
+    for flavour in LIBRARIES:
+        chosen = [p for p in generate.RUNTIME.iterdir() if p.stem in (*shared, flavour)]
+        sources = files | {p.name: p.read_text(encoding="utf-8") for p in chosen}
+        units = [name for name in sources if name.endswith(".c")]
+        built = compiler.libraries("PassThrough", sources, units, ["x86_64-linux"])
+        file = folder / flavour / "PassThrough.so"
+        file.write_bytes(built["x86_64-linux"])
+        yield "PassThrough", flavour, file, generate.token(sources), 2
+
+
+def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
+    """Name, flavour, library, token and number of outputs of every native FMU in a folder."""
+    for name, model in MODELS.items():
+        for flavour, place in LIBRARIES.items():
+            with ZipFile(folder / flavour / f"{name}.fmu") as fmu:
+                file = Path(fmu.extract(f"{place}/{name}.so", folder / flavour / name))
+            description = fmpy.read_model_description(str(folder / flavour / f"{name}.fmu"))
+            yield name, flavour, file, description.guid, len(model.outputs)
+
+
+def build_host(folder: Path) -> Path:
+    """Compile native_fmus.c."""
+    file = folder / "host"
+    include = Path(fmpy.__file__).parent / "c-code"
+    options = ("-std=gnu11", "-O2", f"-I{HOSTS}", f"-I{include}", "-ldl", "-o", str(file))
+    subprocess.run(
+        [sys.executable, "-m", "ziglang", "cc", str(HERE / "native_fmus.c"), *options], check=True, cwd=folder
+    )
+    return file
+
+
+def native_times(host: Path, name: str, flavour: str, library: Path, token: str, outputs: int) -> Times:
+    """What the host in C measures."""
+    inputs = b"".join(rows.tobytes() for rows in trajectories(name))
+    counts = (str(len(RANGES[name])), str(outputs), str(REPEATS))
+    done = subprocess.run(
+        [host, library, flavour[-1], token, *counts], input=inputs, capture_output=True, check=True
+    )
+    return {key: float(value) for key, value in map(str.split, done.stdout.decode().splitlines())}
+
+
+def python_times(fmu: Path, unpacked: Path) -> Times:
+    """The same of the python flavour, in fmpy; all inputs and all outputs take one call each."""
+    description = fmpy.read_model_description(str(fmu))
+    slave = Fmi2(
+        guid=description.guid,
+        unzipDirectory=fmpy.extract(str(fmu), str(unpacked)),
+        modelIdentifier=description.coSimulation.modelIdentifier,
+        instanceName="benchmark",
+    )
+    refs = {
+        kind: [v.valueReference for v in description.modelVariables if v.causality == kind]
+        for kind in ("input", "output")
+    }
+    begin = perf_counter()
+    slave.start(lambda message: None)
+    slave.begin()
+    slave.fmu.exitInitializationMode()
+    times = {"start": perf_counter() - begin}
+    calls = slave.fmu
+    now = 0.0
+    for column, rows in zip(("smooth", "random"), trajectories(fmu.stem), strict=True):
+        each = []
+        for row in rows[:: ROWS // PYTHON_CYCLES][:PYTHON_CYCLES]:
+            start = perf_counter()
+            calls.setReal(refs["input"], row)
+            changed = perf_counter()
+            calls.doStep(currentCommunicationPoint=now, communicationStepSize=1.0)
+            stepped = perf_counter()
+            calls.getReal(refs["output"])
+            read = perf_counter()
+            calls.doStep(currentCommunicationPoint=now + 1.0, communicationStepSize=1.0)
+            each.append((read - start, stepped - changed, perf_counter() - read))
+            now += 2.0
+        cycle, step, unchanged = map(median, zip(*each, strict=True))
+        times |= {f"cycle_{column}": cycle, f"step_{column}": step, "unchanged": unchanged}
+    calls.terminate()
+    calls.freeInstance()
+    return times
+
+
+def measure(folder: Path) -> dict[tuple[str, str], Times]:
+    """{(name, flavour): times} of the FMUs in folder/FLAVOUR/NAME.fmu; rounds over all of them."""
+    host = build_host(folder)
+    native = [*libraries(folder), *pass_through(folder)]
+    rounds: dict[tuple[str, str], list[Times]] = {(name, flavour): [] for name, flavour, *_ in native}
+    for _ in range(ROUNDS):
+        for name, flavour, *rest in native:
+            rounds[name, flavour].append(native_times(host, name, flavour, *rest))
+    times = {key: {k: median(t[k] for t in found) for k in found[0]} for key, found in rounds.items()}
+    for name in MODELS:
+        fmu = folder / "python" / f"{name}.fmu"
+        times[name, "python"] = python_times(fmu, folder / "python" / name)
+    for (_, flavour), found in times.items():
+        base = times["PassThrough", "fmi3" if flavour == "fmi3" else "fmi2"]
+        found["ratio"] = found["cycle_smooth"] / base["cycle_smooth"]
+    return times
+
+
+def report(times: dict[tuple[str, str], Times]) -> None:
+    """Print the table."""
+    print(f"{'FMU':24} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
+    print(" " * 32 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
+    for name in (*MODELS, "PassThrough"):
+        for flavour in FLAVOURS:
+            if found := times.get((name, flavour)):
+                print(f"{name:24} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
+
+
+def cell(found: Times, key: str) -> str:
+    """A number in the column's unit; a dash if it was not measured."""
+    if key not in found:
+        return "-"
+    number = found[key] * COLUMNS[key][1]
+    return f"{number:.1f}" if number < 1000.0 else f"{number:,.0f}"
+
+
+def main() -> None:
+    """Build, measure, print."""
+    if (sys.platform, platform.machine()) != ("linux", "x86_64"):
+        raise SystemExit(f"this is {sys.platform} on {platform.machine()}, expected linux on x86_64")
+    with tempfile.TemporaryDirectory() as folder:
+        build([], list(FLAVOURS), None, Path(folder))
+        report(measure(Path(folder)))
+
+
+if __name__ == "__main__":
+    main()

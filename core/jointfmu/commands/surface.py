@@ -1,0 +1,180 @@
+"""`jointfmu surface`: D and G from measured heights; `jointfmu surface synthesize`: made heights."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from .. import plots
+from ..parameters import JOINTS, check_writable, default, dump, load, write_text
+from ..quantity import Number
+from ..topography.figure import draw
+from ..topography.form import FORMS
+from ..topography.fractal import zhao_roughness
+from ..topography.heights import Areal, Heights
+from ..topography.identify import METHODS, identify
+from ..topography.joint import changes, with_surface
+from ..topography.reading import read
+from ..topography.results import Estimate, Identification, Result
+from . import synthesize
+from .common import command
+
+
+def add(commands: Any) -> None:
+    """Declare the command; its first word `synthesize` leads to the other parser."""
+    find = command(commands, "surface", _identify, "identify D and G of a measured surface or of a pair")
+    find.epilog = "jointfmu surface synthesize --help: make a Weierstrass-Mandelbrot surface."
+    find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
+    find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
+    find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
+    find.add_argument(
+        "--range",
+        dest="span",
+        nargs=2,
+        type=float,
+        metavar=("LOW", "HIGH"),
+        help="scaling range: lags and wavelengths [m] (default: the longest straight one)",
+    )
+    find.add_argument("--method", choices=METHODS, help="method to take for the joint (default: the surer)")
+    find.add_argument(
+        "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
+    )
+    find.add_argument("--joint", choices=list(JOINTS), metavar="JOINT", help=f"one of {', '.join(JOINTS)}")
+    find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
+    find.add_argument("--write", type=Path, metavar="FILE", help="parameter file to write (TOML)")
+    find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
+    make = synthesize.parser(find.prog)
+    usual = find.parse_known_args
+
+    def parse(args: Sequence[str] | None = None, namespace: Any = None) -> Any:
+        if args and args[0] == "synthesize":
+            return make.parse_known_args(args[1:], namespace)
+        return usual(args, namespace)
+
+    setattr(find, "parse_known_args", parse)  # noqa: B010
+
+
+def _identify(args: argparse.Namespace) -> int:
+    base = _base(args)
+    for path, ready in ((args.write, check_writable), (args.plot, plots.check)):
+        if path:
+            ready(path)
+    if not 1.0 < args.gamma < float("inf"):
+        raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
+    if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):
+        raise ValueError(f"range {args.span[0]:g} {args.span[1]:g} m, expected 0 < LOW < HIGH")
+    heights = [read(path, args.unit) for path in args.files]
+    found = identify(heights, args.form, tuple(args.span) if args.span else None)
+    file = with_surface(base, found, args.method) if base else None
+    if args.write and file:
+        write_text(args.write, dump(file))
+    if args.plot:
+        draw(found, args.plot)
+    if args.json:
+        print(json.dumps(_as_dict(found, heights, args)))
+    else:
+        _print(found, heights, args)
+    return 0
+
+
+def _base(args: argparse.Namespace) -> Any:
+    """The parameter file to start from, if one is to be made."""
+    if args.params:
+        return load(args.params, args.joint)
+    if args.joint:
+        return default(args.joint)
+    if args.write:
+        raise ValueError(f"--write {args.write} needs --joint, one of {', '.join(JOINTS)}, or --params")
+    return None
+
+
+def _print(found: Identification, heights: Sequence[Heights], args: argparse.Namespace) -> None:
+    for one in heights:
+        print(f"{one.name}: {synthesize.size(one)}")
+    if len(heights) == 2:
+        print("equivalent surface of the pair: structure functions and spectra added")
+    for name, repair in found.repairs:
+        print(f"repaired in {name}: {repair}")
+    heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
+    rows = [heads, *(_row(result) for result in found.results)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
+    for row in rows:
+        print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    print("brackets: 95 % confidence intervals")
+    for joint in [args.joint] if args.joint else JOINTS:
+        values = changes(found, joint, args.method)
+        text = ", ".join(f"{name} = {value:.6g}" for name, (value, _) in values.items())
+        kind = "D_s of the surface" if joint == "harmonic_drive" else "D of the profile"
+        print(f"{joint} ({kind}, {next(iter(values.values()))[1].method}): {text}")
+    if args.write:
+        print(f"wrote {args.write}")
+    if args.plot:
+        print(f"wrote {args.plot}")
+    for warning in found.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+
+
+def _row(result: Result) -> tuple[str, ...]:
+    profile, areal = result.profile, result.areal
+    return (
+        result.method,
+        result.direction,
+        f"{result.fit.low:.2e} to {result.fit.high:.2e}",
+        _bracket(profile.D, ".3f"),
+        _bracket(profile.G, ".2e"),
+        *(
+            (_bracket(areal.D_s, ".3f"), _bracket(areal.G_s, ".2e"))
+            if result.direction in ("areal", "profile")
+            else ("", "")
+        ),
+    )
+
+
+def _bracket(one: Estimate, style: str) -> str:
+    return f"{one.value:{style}} [{one.low:{style}}, {one.high:{style}}]"
+
+
+def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.Namespace) -> dict[str, Any]:
+    return {
+        "files": list(found.names),
+        "kind": "areal" if isinstance(heights[0], Areal) else "profile",
+        "pair": len(heights) == 2,
+        "textured": found.textured,
+        "form": args.form,
+        "repairs": [
+            {"file": n, "repair": r.name, "count": r.count, "points": r.points} for n, r in found.repairs
+        ],
+        "results": [_result_dict(result, args.gamma) for result in found.results],
+        "joints": {
+            joint: {name: value for name, (value, _) in changes(found, joint, args.method).items()}
+            for joint in ([args.joint] if args.joint else JOINTS)
+        },
+        "written": str(args.write) if args.write else None,
+        "warnings": list(found.warnings),
+    }
+
+
+def _result_dict(result: Result, gamma: float) -> dict[str, Any]:
+    fit = result.fit
+    return {
+        "method": result.method,
+        "direction": result.direction,
+        "range": [fit.low, fit.high],
+        "decades": fit.decades,
+        "self_affine": fit.straight,
+        "drift_of_D": fit.drift,
+        "deviation": fit.deviation,
+        "profile": {"D": _interval(result.profile.D), "G": _interval(result.profile.G)},
+        "surface": {"D_s": _interval(result.areal.D_s), "G_s": _interval(result.areal.G_s)},
+        "G_eq30": _number(zhao_roughness(result.profile.G.value, fit.H, gamma)),
+    }
+
+
+def _interval(one: Estimate) -> dict[str, float]:
+    return {"value": one.value, "low": one.low, "high": one.high}
+
+
+def _number(value: Number) -> float:
+    return float(value)

@@ -1,0 +1,1 @@
+"""From measured curves and catalogue rows to parameters, by least squares in logarithms."""

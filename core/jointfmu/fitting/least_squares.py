@@ -1,0 +1,205 @@
+"""Least squares over the logarithms of positive parameters, with bounds and covariance.
+
+A thin layer over `scipy.optimize.least_squares` (trust region reflective): parameters move in
+logarithms, a parameter set that the model refuses is stepped back from, and the Jacobian at the
+solution gives the covariance.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Residuals = Callable[[Mapping[str, float]], Array]
+"""Residuals (n) [1] at {name: value}; ValueError or RuntimeError where the model refuses the values."""
+
+STEP = 1e-4
+"""Step of the central differences in a logarithm [1]: the tables' errors of 1e-8 give 1e-4 of slope."""
+TOLERANCE = 1e-8
+"""Relative change of cost or parameters at which a fit ends [1]."""
+MOST_STEPS = 100
+LEFT = 1e-4
+"""Part of the cost [1] that a further step may promise where a fit has not ended: it wanders along a
+combination that the data do not determine."""
+EDGE = 1e-6
+"""Distance from a bound, in logarithms [1], at which a parameter is said to sit on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A positive parameter to find, between open bounds in its SI unit."""
+
+    name: str
+    unit: str
+    start: float
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        if not self.low < self.start < self.high or self.start <= 0.0:
+            unit = "" if self.unit == "1" else f" {self.unit}"
+            raise ValueError(
+                f"{self.name} = {self.start:g}{unit} cannot be fitted from there: a fit in logarithms "
+                f"starts inside ({max(self.low, 0.0):g}, {self.high:g}){unit}"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """The best values and how well the data determine them.
+
+    values     : {name: value} [SI]
+    residuals  : (n) at the solution, on the scale of the residual function
+    noise      : standard deviation of one residual
+    jacobian   : (n, k) derivatives of the residuals in the logarithms
+    covariance : (k, k) [1] of the logarithms
+    at_bound   : names whose value sits on a bound
+    limit      : what the model refused beside the solution, if that is where the fit ended
+    """
+
+    unknowns: tuple[Unknown, ...]
+    values: Mapping[str, float]
+    residuals: Array
+    noise: float
+    jacobian: Array
+    covariance: Array
+    at_bound: tuple[str, ...]
+    limit: str | None
+
+    @property
+    def deviations(self) -> dict[str, float]:
+        """Relative standard deviation [1] of each parameter: that of its logarithm."""
+        root = np.sqrt(np.diag(self.covariance))
+        return {u.name: float(d) for u, d in zip(self.unknowns, root, strict=True)}
+
+    @property
+    def correlation(self) -> Array:
+        """Correlation (k, k) [1] of the logarithms."""
+        root = np.sqrt(np.diag(self.covariance))
+        return np.asarray(self.covariance / np.outer(root, root))
+
+
+def solve(
+    unknowns: Sequence[Unknown],
+    residuals: Residuals,
+    *,
+    noise: float | None = None,
+    nuisances: int = 0,
+    tolerance: float = TOLERANCE,
+    steps: int = MOST_STEPS,
+) -> Solution:
+    """The values with the least sum of squared residuals.
+
+    Parameters
+    ----------
+    residuals : model against data, all with the same standard deviation
+    noise     : standard deviation of a residual; estimated from the residuals if None
+    nuisances : parameters that the residual function itself eliminates (an offset, say)
+
+    Raises
+    ------
+    ValueError   : the model refuses the starting values, or there are too few data
+    RuntimeError : no solution after `steps` steps
+    """
+    model = _Model(tuple(unknowns), residuals)
+    first = np.log([u.start for u in unknowns])
+    start = residuals(model.named(first))
+    spare = start.size - first.size - nuisances
+    if spare < 1 and noise is None:
+        raise ValueError(
+            f"{start.size} data points are too few for {first.size + nuisances} unknowns "
+            f"({', '.join(u.name for u in unknowns)}): at least {first.size + nuisances + 1} are needed"
+        )
+    result = scipy.optimize.least_squares(
+        model,
+        first,
+        jac=model.jacobian,
+        bounds=(model.low, model.high),
+        x_scale="jac",
+        xtol=tolerance,
+        ftol=tolerance,
+        gtol=1e-15,
+        max_nfev=steps,
+    )
+    if result.status == 0 and _promise(result.jac, result.fun) > LEFT:
+        raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {steps} steps")
+    if noise is None:
+        noise = float(np.sqrt(2.0 * result.cost / spare))
+    edge = np.minimum(result.x - model.low, model.high - result.x) < EDGE
+    return Solution(
+        unknowns=tuple(unknowns),
+        values=model.named(result.x),
+        residuals=result.fun,
+        noise=noise,
+        jacobian=result.jac,
+        covariance=_covariance(result.jac, noise),
+        at_bound=tuple(name for name, there in zip(model.names, edge, strict=True) if there),
+        limit=model.refusal if model.retreated else None,
+    )
+
+
+class _Model:
+    """The residual function over an array of logarithms, infinite where the model refuses."""
+
+    def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
+        self.names = [u.name for u in unknowns]
+        with np.errstate(divide="ignore"):
+            self.low = np.log([max(u.low, 0.0) for u in unknowns]) + 1e-9
+            self.high = np.log([u.high for u in unknowns]) - 1e-9
+        self.residuals = residuals
+        self.size = 0
+        self.refusal: str | None = None
+        self.retreated = False
+
+    def named(self, logs: Array) -> dict[str, float]:
+        with np.errstate(over="ignore"):
+            return dict(zip(self.names, np.exp(logs).tolist(), strict=True))
+
+    def __call__(self, logs: Array) -> Array:
+        try:
+            value = self.residuals(self.named(logs))
+        except (ValueError, RuntimeError) as error:
+            if not self.size:
+                raise
+            self.refusal = str(error)
+            return np.full(self.size, np.inf)
+        self.size = value.size
+        return value
+
+    def jacobian(self, logs: Array) -> Array:
+        """Central differences; one-sided where a side is refused or out of bounds."""
+        middle = self(logs)
+        self.retreated = False
+        columns = []
+        for k in range(logs.size):
+            ends = np.clip(logs[k] + np.array([-STEP, STEP]), self.low[k], self.high[k])
+            sides = []
+            for end in ends:
+                there = logs.copy()
+                there[k] = end
+                sides.append(self(there) if end != logs[k] else middle)
+            fine = [bool(np.all(np.isfinite(side))) for side in sides]
+            self.retreated |= not all(fine)
+            places = [end if good else logs[k] for end, good in zip(ends, fine, strict=True)]
+            low, high = (side if good else middle for side, good in zip(sides, fine, strict=True))
+            width = places[1] - places[0]
+            columns.append((high - low) / width if width > 0.0 else np.zeros_like(middle))
+        return np.stack(columns, axis=1)
+
+
+def _promise(jacobian: Array, residuals: Array) -> float:
+    """Part of the cost [1] that a Gauss-Newton step along the determined combinations would take off."""
+    basis, s, _ = np.linalg.svd(jacobian, full_matrices=False)
+    along = basis[:, s > STEP * s[0]].T @ residuals
+    return float(along @ along / (residuals @ residuals))
+
+
+def _covariance(jacobian: Array, noise: float) -> Array:
+    """noise^2 (J^T J)^-1 by singular values; directions without any effect get a huge variance."""
+    _, s, rows = np.linalg.svd(jacobian, full_matrices=False)
+    s = np.maximum(s, 1e-12 * max(float(s[0]), 1e-300))
+    half = rows.T / s
+    return np.asarray(noise**2 * (half @ half.T))

@@ -1,0 +1,102 @@
+"""What a joint meets in a system: inertia, mass and load; the equations of their FMUs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .quantity import Number, check, quantity
+
+GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s2]."""
+
+
+def smooth_step(x: Number) -> Number:
+    """From 0 at x <= 0 to 1 at x >= 1 with continuous first and second derivative."""
+    r = np.fmin(np.fmax(x, 0.0), 1.0)
+    return r * r * r * (10.0 + r * (6.0 * r - 15.0))
+
+
+def _lag(flange: str) -> Any:
+    doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
+    return quantity("1", doc, ge=0.0, le=1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RotationalInertia:
+    """An inertia under two torques, and under its weight."""
+
+    J: float = quantity("kg.m2", "moment of inertia about the axis", gt=0.0)
+    m: float = quantity("kg", "mass on which the weight acts", ge=0.0)
+    l: float = quantity("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
+    lag_a: float = _lag("a")
+    lag_b: float = _lag("b")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Angle [rad] from hanging down, speed [rad/s], acceleration [rad/s2]."""
+        weight = self.m * GRAVITY * self.l * np.sin(v["phi"])
+        return {"phi": v["phi"], "w": v["w"], "a": (v["tau_a"] + v["tau_b"] - weight) / self.J}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TranslationalMass:
+    """A mass under two forces."""
+
+    m: float = quantity("kg", "mass", gt=0.0)
+    lag_a: float = _lag("a")
+    lag_b: float = _lag("b")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Position [m], speed [m/s], acceleration [m/s2]."""
+        return {"s": v["s"], "v": v["v"], "a": (v["f_a"] + v["f_b"]) / self.m}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Load:
+    """A ramp that stays and a pulse, over time; subclasses give both heights a unit."""
+
+    ramp_start: float = quantity("s", "begin of the ramp")
+    ramp_duration: float = quantity("s", "from the ramp's begin to its end", gt=0.0)
+    pulse_start: float = quantity("s", "begin of the pulse")
+    pulse_rise: float = quantity("s", "rise time of the pulse, and of its fall", gt=0.0)
+    pulse_hold: float = quantity("s", "time at the pulse's height", ge=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def at(self, time: Number, ramp: Number, pulse: Number) -> Number:
+        """Ramp and pulse of these heights at a time [s]."""
+        rise = smooth_step((time - self.pulse_start) / self.pulse_rise)
+        fall = smooth_step((time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise)
+        return ramp * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse * (rise - fall)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueProfile(_Load):
+    """A torque over time."""
+
+    ramp_height: float = quantity("N.m", "torque of the ramp")
+    pulse_height: float = quantity("N.m", "torque of the pulse")
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Torque [N.m], with that of the input."""
+        return {"tau": v["tau_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceProfile(_Load):
+    """A force over time."""
+
+    ramp_height: float = quantity("N", "force of the ramp")
+    pulse_height: float = quantity("N", "force of the pulse")
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Force [N], with that of the input."""
+        return {"f": v["f_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}

@@ -1,0 +1,72 @@
+"""Pictures for the command line: one style, one way to save (matplotlib, loaded only when drawing)."""
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .parameters import check_writable, write_bytes
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+BLUE, RED, GREEN, GREY = "#1f5fa8", "#c1442e", "#2f7d4f", "#777777"
+FORMATS = (".png", ".svg")
+STYLE: Any = {
+    "svg.hashsalt": "jointfmu",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e4e4e4",
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+}
+RESOLUTION = 150
+"""Dots per inch of a PNG."""
+
+
+def check(path: str | Path) -> None:
+    """Raise ValueError if a picture could not be saved there: suffix, place, or matplotlib missing.
+
+    To be called before long work.
+    """
+    if Path(path).suffix.lower() not in FORMATS:
+        raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
+    check_writable(path)
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        raise ValueError(
+            "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
+        ) from None
+
+
+@contextmanager
+def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterator["Figure"]:
+    """A figure of a size [inch] in the common style, saved at the end of the `with` block.
+
+    with plots.drawing("ramp.png") as figure:
+        axes = figure.subplots()
+    """
+    check(path)
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=size, layout="constrained")
+        yield figure
+        save(figure, path)
+
+
+def save(figure: "Figure", path: str | Path) -> None:
+    """Save a figure as .png or .svg; a failure leaves nothing behind."""
+    check(path)
+    suffix = Path(path).suffix.lower()
+    data = io.BytesIO()
+    metadata = {"Date": None} if suffix == ".svg" else None
+    figure.savefig(data, format=suffix[1:], dpi=RESOLUTION, metadata=metadata)
+    write_bytes(path, data.getvalue())

@@ -1,0 +1,1 @@
+"""Measured and made surfaces: reading, repair, fractal parameters, synthesis (docs/surfaces.md)."""

@@ -1,0 +1,173 @@
+"""Fit of the self-affine law to a series: generalised least squares, range search, test of straightness."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import least_squares
+
+from .heights import Array
+from .series import Series
+
+FLOOR = 0.03
+"""Least standard deviation of ln(value) from the law at every scale [1]."""
+CORRELATION = 0.5
+"""Length in ln(scale) over which deviations from the law hang together [1]."""
+DRIFT = 0.1
+"""Largest drift of D over a range that counts as straight, unless within its own two standard errors."""
+ROUGHEST = 0.25
+"""Largest standard deviation of ln(value) from the law that counts as self-affine."""
+SHORTEST = 0.5
+"""Least length of a range that the search considers, in decades."""
+INFLATION = 1.15
+"""Factor on the covariance of the result, from simulation (benchmarks/surface_round_trip.py: coverage)."""
+OFFSET = 2.0
+"""Standard deviation of the offset before it is fitted [1]: it may hardly exceed the shortest value."""
+UNSURE = 0.3
+"""Values with a larger variance of ln(value) are left out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """Self-affine law of a series.
+
+    H, level  : Hurst exponent, ln Phi [m2] at the wavelength `reference` [m]
+    covariance : (2, 2) of (H, level)
+    offset    : constant share of the shortest value: noise above 0, missing short waves below
+    deviation : standard deviation of ln(value) from the law beyond chance
+    drift, drift_error : change of D over the range, its standard error
+    low, high : range [m]; straight : whether the law holds there
+    """
+
+    H: float
+    level: float
+    reference: float
+    covariance: Array
+    offset: float
+    deviation: float
+    drift: float
+    drift_error: float
+    low: float
+    high: float
+
+    @property
+    def straight(self) -> bool:
+        """Whether drift and deviation stay within what counts as self-affine."""
+        return abs(self.drift) <= max(DRIFT, 2.0 * self.drift_error) and self.deviation <= ROUGHEST
+
+    @property
+    def decades(self) -> float:
+        """Length of the range."""
+        return float(np.log10(self.high / self.low))
+
+
+def fit(series: Series, low: float | None = None, high: float | None = None) -> Fit:
+    """Fit over the given range of scales [m], or over the longest straight one.
+
+    Raises ValueError if fewer than four values lie in the range.
+    """
+    sure = np.diag(series.covariance(0.5)) < UNSURE
+    if low is not None and high is not None:
+        inside = (series.scale >= low * (1 - 1e-9)) & (series.scale <= high * (1 + 1e-9))
+        if (inside & sure).sum() < 4:
+            raise ValueError(
+                f"range {low:g} {high:g} m holds {int((inside & sure).sum())} values of the {series.method} "
+                f"method, at least 4 are needed; allowed is within {series.scale[sure][0]:.3g} "
+                f"{series.scale[sure][-1]:.3g} m"
+            )
+        return _fit(series.within(inside & sure))
+    return _search(series.within(sure))
+
+
+def _search(series: Series) -> Fit:
+    """The longest straight range; if there is none, the straightest."""
+    n = series.scale.size
+    step = max(1, n // 10)
+    starts, ends = range(0, n - 3, step), range(n, 3, -step)
+    windows = sorted(
+        (
+            (np.log10(series.scale[j - 1] / series.scale[i]), -i, j)
+            for i in starts
+            for j in ends
+            if j - i >= 4
+        ),
+        reverse=True,
+    )
+    tried: list[Fit] = []
+    for length, negative, j in windows:
+        if length < SHORTEST and tried:
+            break
+        found = _fit(series.within(np.arange(-negative, j)))
+        if found.straight:
+            return found
+        tried.append(found)
+    return min(tried, key=lambda one: abs(one.drift) + one.deviation)
+
+
+def _fit(series: Series) -> Fit:
+    x, y = np.log(series.scale), np.log(series.value)
+    reference = float(np.exp(x.mean()))
+    offset = series.method == "structure"
+    start = np.array([0.5, 0.0, 0.0][: 3 if offset else 2])
+    chance = series.covariance(0.5)
+
+    def law(p: Array) -> Array:
+        expected = series.expected(p[0]) * reference ** (-2.0 * p[0])
+        return np.asarray(np.log(expected + (p[2] * expected[0] if offset else 0.0)) + p[1])
+
+    start[1] = np.mean(y - law(start))
+    deviation, p = FLOOR, start
+    for _ in range(3):
+        root = np.asarray(np.linalg.cholesky(chance + deviation**2 * _hang(x)), dtype=np.float64)
+        known = y + 0.5 * np.diag(chance)
+
+        def residual(p: Array, root: Array = root, known: Array = known) -> Array:
+            white = solve_triangular(root, known - law(p), lower=True)
+            return np.append(white, p[2] / OFFSET) if offset else np.asarray(white)
+
+        bounds = ([0.02, -np.inf, -0.9][: p.size], [0.98, np.inf, np.inf][: p.size])
+        result = least_squares(residual, p, bounds=bounds, x_scale=np.array([0.1, 0.1, 0.1])[: p.size])
+        p = result.x
+        chance = series.covariance(float(np.clip(p[0], 0.05, 0.95)))
+        deviation = _excess(known - law(p), chance, x, p.size)
+    drift, drift_error = _drift(x, known - law(p), chance)
+    covariance = INFLATION * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
+    return Fit(
+        H=float(p[0]),
+        level=float(p[1]),
+        reference=reference,
+        covariance=covariance,
+        offset=float(p[2]) if offset else 0.0,
+        deviation=deviation,
+        drift=drift,
+        drift_error=drift_error,
+        low=float(series.scale[0]),
+        high=float(series.scale[-1]),
+    )
+
+
+def _hang(x: Array) -> Array:
+    return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION))
+
+
+def _excess(residual: Array, chance: Array, x: Array, parameters: int) -> float:
+    """Standard deviation beyond chance that makes the weighted residual as large as expected."""
+    freedom = max(x.size - parameters, 1)
+    hang = _hang(x)
+    for deviation in np.geomspace(FLOOR, 3.0, 60):
+        white = np.linalg.solve(chance + deviation**2 * hang, residual)
+        if residual @ white <= freedom:
+            return float(deviation)
+    return 3.0
+
+
+def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
+    """Change of D over the range and its standard error, from one further, quadratic term."""
+    root = np.linalg.cholesky(chance + FLOOR**2 * _hang(x))
+    t = x - x.mean()
+    columns = [np.ones_like(t), t, t**2]
+    white = solve_triangular(root, np.stack(columns, axis=1), lower=True)
+    inverse = np.linalg.inv(white.T @ white)
+    found = inverse @ white.T @ solve_triangular(root, residual, lower=True)
+    length = float(x[-1] - x[0])
+    return float(-found[2] * length), float(np.sqrt(inverse[2, 2]) * length)

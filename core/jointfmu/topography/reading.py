@@ -1,0 +1,112 @@
+"""Height data from files: our CSV, and what instruments write (SurfaceTopography, extra `surface`)."""
+
+import contextlib
+import io
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import csvfile
+from .heights import Areal, Heights, Profile
+
+TEXT = (".csv", ".txt", ".dat", ".xy", ".prf")
+"""Suffixes of files that may hold bare columns of numbers."""
+
+
+def read(path: str | Path, unit: str | None = None) -> Heights:
+    """Heights in metres of a profile or an areal map.
+
+    unit : length unit of a file that states none (x, y and z alike); refused for a file that states its own
+
+    Raises ValueError with one line: no file, no surface, unit missing or stated twice, too few points,
+    constant, all missing.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise ValueError(f"{path}: is no file; expected height data")
+    if unit is not None:
+        csvfile.unit(unit, "--unit")
+    if path.stat().st_size == 0:
+        raise ValueError(f"{path}: is no surface: the file is empty")
+    if line := csvfile.header(path):
+        if unit is not None:
+            raise ValueError(f"{path}: states its units itself; leave --unit {unit} out")
+        return csvfile.read(path, line)
+    if path.suffix.lower() in TEXT and _bare(path):
+        return _bare_columns(path, unit)
+    return _instrument(path, unit)
+
+
+def _bare(path: Path) -> bool:
+    """Whether a text file begins with a line of two or three numbers, or holds nothing readable."""
+    with path.open("rb") as file:
+        first = file.readline(10000).decode("utf-8", errors="replace")
+    cells = first.replace(",", " ").replace(";", " ").split()
+    try:
+        return len([float(cell) for cell in cells]) in (2, 3)
+    except ValueError:
+        return False
+
+
+def _bare_columns(path: Path, unit: str | None) -> Heights:
+    if unit is None:
+        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+    values = csvfile.table(path)
+    return csvfile.columns(path, values, [csvfile.UNITS[unit]] * values.shape[1])
+
+
+def _instrument(path: Path, unit: str | None) -> Heights:
+    """Any format of SurfaceTopography, the default channel."""
+    try:
+        import SurfaceTopography
+        import SurfaceTopography.Exceptions
+    except ImportError:
+        raise ValueError(
+            f"{path}: the package SurfaceTopography is missing, needed to read instrument files; "
+            "install it with: pip install 'jointfmu[surface]'"
+        ) from None
+    try:
+        quiet = io.StringIO()
+        with warnings.catch_warnings(), contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
+            warnings.simplefilter("ignore")
+            found = SurfaceTopography.read_topography(str(path))
+            size, heights = found.physical_sizes, found.heights()
+    except SurfaceTopography.Exceptions.CannotDetectFileFormat:
+        raise ValueError(
+            f"{path}: is no surface: neither our CSV nor a format of SurfaceTopography"
+        ) from None
+    except Exception as error:  # the readers raise what they like
+        reason = " ".join(str(error).split())[:120] or type(error).__name__
+        raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
+    return _heights(path, found, size, heights, _factor(path, found.unit, unit))
+
+
+def _factor(path: Path, stated: str | None, given: str | None) -> float:
+    if stated is None and given is None:
+        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+    if stated is not None and given is not None:
+        raise ValueError(f"{path}: states its unit {stated} itself; leave --unit {given} out")
+    if given is not None:
+        return csvfile.UNITS[given]
+    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
+
+    factor = get_unit_conversion_factor(stated, "m")
+    if factor is None:
+        raise ValueError(f"{path}: its unit {stated!r} is no length")
+    return float(factor)
+
+
+def _heights(path: Path, found: Any, size: Any, heights: Any, factor: float) -> Heights:
+    """Heights on our axes (y, x), missing points as NaN."""
+    z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * factor
+    if size is None or any(length is None for length in size):
+        raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")
+    if z.ndim == 1 and not found.is_uniform:
+        x = np.asarray(found.positions(), dtype=np.float64) * factor
+        return csvfile.columns(path, np.stack([x, z], axis=1), [1.0, 1.0])
+    spacing = [float(length) * factor / n for length, n in zip(size, z.shape, strict=True)]
+    if z.ndim == 1:
+        return Profile(z=z, dx=spacing[0], name=str(path))
+    return Areal(z=np.ascontiguousarray(z.T), dx=spacing[0], dy=spacing[1], name=str(path))

@@ -1,0 +1,138 @@
+"""The bolted joint for many samples at once: stiffness, damping and approach along a ramp of preload.
+
+Without a moment and tightened only, a node's pressure is the mean pressure times a fixed number
+`equal`. Sums over the nodes are sums over a few Gauss points of its distribution, taken from a table
+over the log of the pressure whose places relative to the end of the ramp are the same for all samples:
+one matrix for all of them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ..asperity import mindlin
+from ..footprint.bolts import BoltPattern, pressure_shape
+from ..joints.bolted_joint import BoltedJoint, shear_ratio
+from ..quantity import flatten
+from .approach import held, tabulate
+from .chebyshev import discrete_gauss
+from .samples import columns
+
+Array = NDArray[np.float64]
+
+EQUAL = 6
+"""Gauss points of the distribution of the pressure over the nodes [1]."""
+CELL = 0.15
+"""Places per unit of log-pressure of the table on which all samples share their matrices [1]."""
+_POWER = 0.8
+"""The stiffness grows about like this power of the pressure; what is left is interpolated."""
+_BELOW = 1e-6
+"""Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
+
+
+@lru_cache(maxsize=64)
+def equal_pressures(pattern: BoltPattern) -> tuple[Array, Array]:
+    """Pressure over mean pressure (q) [1], ascending, and shares of the area (q) that stand for all nodes."""
+    shape = pressure_shape(pattern)
+    logs, shares = discrete_gauss(np.log(shape.equal), shape.share, EQUAL)
+    return np.exp(logs), shares
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Places on the log-pressure relative to the mean pressure at the end of the ramp, for all samples.
+
+    table : (t) where the rows are read
+    force : (f) log of the force over its end, for the integral of dF/K
+    """
+
+    table: Array
+    force: Array
+
+    @classmethod
+    def of(cls, start: float, equal: Array) -> "Places":
+        """From the log of the force over its end, `start`."""
+        force = np.arange(start, 0.5 * CELL, CELL)
+        table = np.arange(start + np.log(equal[0]) - CELL, np.log(equal[-1]) + 2.0 * CELL, CELL)
+        return cls(table, force)
+
+    def sums(self, equal: Array, shares: Array, force: Array) -> Array:
+        """(t, force) from values over p^POWER at the table's places to sums over the nodes at forces."""
+        spline = CubicSpline(self.table, np.eye(self.table.size))
+        total = np.zeros((self.table.size, force.size))
+        for e, share in zip(equal, shares, strict=True):
+            total += share * np.exp(_POWER * (force + np.log(e))) * spline(force + np.log(e)).T
+        return total
+
+    def integral(self, force: Array) -> Array:
+        """(f, force) from an integrand over the log of the force to its integral from the first place."""
+        return np.asarray(CubicSpline(self.force, np.eye(self.force.size)).antiderivative()(force).T)
+
+
+def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
+    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m).
+
+    The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
+    values : by structured name, numbers or samples (n); samples of the pattern go one by one
+    """
+    names = [name for name, value in values.items() if name.startswith("pattern.") and np.ndim(value)]
+    if not names:
+        return _evaluate(values, loads, factor)
+    parts = []
+    for i in range(factor.size):
+        one = {k: v[i : i + 1] if isinstance(v, np.ndarray) else v for k, v in values.items()}
+        one |= {name: float(values[name][i]) for name in names}
+        parts.append(_evaluate(one, loads, factor[i : i + 1]))
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@lru_cache(maxsize=8)
+def _matrices(pattern: BoltPattern, start: float, ramp: bytes) -> tuple[Places, Array, Array, Array]:
+    equal, shares = equal_pressures(pattern)
+    places, force = Places.of(start, equal), np.frombuffer(ramp)
+    ends = (places.force, force)
+    to_force, to_ramp = (places.sums(equal, shares, end) for end in ends)
+    return places, to_force, to_ramp, places.integral(force)
+
+
+def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
+    joint = columns(BoltedJoint, values, 1)
+    pattern = BoltPattern(**flatten(joint.pattern))
+    equal, shares = equal_pressures(pattern)
+    touching = loads > 0.0
+    ramp = np.log(loads[touching] / loads[-1])
+    mean = np.broadcast_to(factor * loads[-1] * joint.n_bolts / joint.A_0, factor.shape)
+    works = ("plastic_work", "elastic_work")
+    rows, closed = tabulate(joint, 0.0 * mean, mean * equal[-1] * np.exp(2.0 * CELL), works)
+    first = float(np.min(np.log(_BELOW * closed / mean))) - np.log(equal[-1])
+    start = CELL * np.floor(min(first, ramp[0] - 1.0) / CELL / 10.0) * 10.0
+    places, to_force, to_ramp, integral = _matrices(pattern, start, ramp.tobytes())
+    end = np.log(joint.hardness)
+    table = held(rows, places.table, np.log(mean), end)
+    scaled = {name: np.exp(value - _POWER * places.table) for name, value in table.items()}
+    direct = ramp < np.max(np.log(closed / mean)) - np.log(equal[0]) + 4.0 * CELL
+    near = [held(rows, ramp[direct], np.log(mean * e), end) for e in equal] if np.any(direct) else []
+
+    def total(name: str) -> Array:
+        sums = scaled[name] @ to_ramp
+        if near:
+            sums[:, direct] = sum(share * np.exp(n[name]) for share, n in zip(shares, near, strict=True))
+        return np.asarray(sums)
+
+    force = joint.A_0 * mean * np.exp(places.force)
+    compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
+    K = joint.A_0 * total("k")
+    rho = shear_ratio(joint)
+    C = total(works[0]) / total(works[1]) * np.sqrt(joint.mass * K)
+    tangential = mindlin.loss_factor(joint.traction_ratio) * np.sqrt(joint.mass * rho * K)
+    approach = 3.0 * compliance[:, :1] + compliance @ integral
+    found = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
+    if np.all(touching):
+        return found
+    zero = np.zeros((factor.size, int(np.sum(~touching))))
+    return {name: np.concatenate([zero, value], axis=1) for name, value in found.items()}

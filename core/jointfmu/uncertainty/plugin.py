@@ -1,0 +1,31 @@
+"""How an FMU gets to the workers of a sweep (needs dask.distributed)."""
+
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from distributed import WorkerPlugin
+
+from .worker import FILES, slim
+
+
+class Bring(WorkerPlugin):  # type: ignore[misc]
+    """Gives an FMU to every worker, also to one that is started later, and takes it away in the end.
+
+    Only what the machine runs is kept of it, so that it unpacks faster for every run.
+    """
+
+    def __init__(self, key: str, file_name: str, data: bytes) -> None:
+        self.key, self.file_name, self.data = key, file_name, data
+
+    def setup(self, worker: Any) -> None:
+        """Write the file into the worker's folder."""
+        folder = Path(tempfile.mkdtemp(prefix="fmu-", dir=worker.local_directory))
+        (folder / self.file_name).write_bytes(slim(self.data))
+        FILES[self.key] = folder / self.file_name
+
+    def teardown(self, worker: Any) -> None:
+        """Remove it."""
+        if path := FILES.pop(self.key, None):
+            shutil.rmtree(path.parent, ignore_errors=True)

@@ -1,0 +1,108 @@
+"""What a user wants to know, as a problem: parameters, distributions and a ramp of load, all checked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..parameters import JOINTS, ParameterFile
+from ..quantity import flat_fields, flatten, problem
+from .distributions import Uncertain, is_relative
+from .models import MODELS, Model
+from .study import samples_of, split
+
+Array = NDArray[np.float64]
+
+LOAD_END = "up to the end of the tabulated law"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is propagated.
+
+    values    : the parameter file's, with the plain settings
+    uncertain : parameters with a distribution, the load's last if it has one
+    loads     : (m) ramp of the load, ascending; one point if the load itself was set
+    relative  : whether the load's distribution is a factor on the ramp; None if it has none
+    """
+
+    joint: str
+    values: Mapping[str, Any]
+    uncertain: tuple[Uncertain, ...]
+    loads: Array
+    relative: bool | None = None
+
+    @property
+    def model(self) -> Model:
+        """The joint's model."""
+        return MODELS[self.joint]
+
+    def sampled(self, points: Array) -> tuple[dict[str, Any], Array]:
+        """Values with samples (n) among them, and factors (n) on the load, from points of the unit cube."""
+        drawn = samples_of(self.uncertain, points)
+        load = drawn.pop(self.model.load, None)
+        factor = np.ones(len(points)) if load is None else load if self.relative else load / self.loads[-1]
+        return {**self.values, **drawn}, factor
+
+
+def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points: int) -> Problem:
+    """The problem of a parameter file and settings (values and distributions by name).
+
+    Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
+    """
+    model, declared = MODELS[file.joint], dict(flat_fields(JOINTS[file.joint]))
+    base = flatten(file.values)
+    if unknown := [name for name in given if name not in declared and name != model.load]:
+        allowed = ", ".join([*declared, model.load])
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+    load_text = given.get(model.load)
+    relative = isinstance(load_text, str) and is_relative(load_text)
+    plain, uncertain = split(given, base | ({model.load: 1.0} if relative else {}))
+    fixed = plain.pop(model.load, None)
+    values = file.with_values(plain, "user", "--set").values
+    for one in uncertain:
+        if one.name != model.load:
+            _check(one, declared[one.name])
+    order = tuple(sorted(uncertain, key=lambda one: one.name == model.load))
+    if not order:
+        raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
+    load = next((one for one in order if one.name == model.load), None)
+    at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
+    loads = _ramp(model, values, at, to, points, load)
+    return Problem(file.joint, flatten(values), order, loads, relative if load else None)
+
+
+def _check(one: Uncertain, item: Any) -> None:
+    """Raise ValueError if a parameter cannot be uncertain or its distribution leaves the interval."""
+    if "allowed" in item.metadata:
+        raise ValueError(f"{one.name} = {one.text}: is a named choice and cannot be uncertain")
+    if item.metadata["whole"]:
+        raise ValueError(f"{one.name} = {one.text}: is a whole number and cannot be uncertain")
+    for value in (*(end for end in one.support if np.isfinite(end)), float(one.law.median())):
+        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["gt"] == 0.0
+        if not tolerated and (text := problem(one.name, value, item)):
+            raise ValueError(f"{one.name} = {one.text}: {text}")
+
+
+def _ramp(model: Model, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None) -> Array:
+    """The loads: a ramp from 0 to `to`, or the one load that was set."""
+    most = model.most(values)
+    if at is not None:
+        if to is not None:
+            raise ValueError(f"{model.load} is set and cannot be ramped as well; drop to = {to:g}")
+        if not isinstance(at, int | float) or isinstance(at, bool):
+            raise ValueError(f"{model.load} = {at!r} is not a number in {model.unit}")
+        ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
+        for value in (float(at), *ends):
+            if not 0.0 < value <= most:
+                allowed = f"(0, {most:.6g}]: {LOAD_END}"
+                raise ValueError(f"{model.load} = {value:g} {model.unit} is outside {allowed}")
+        return np.array([float(at)])
+    end = model.to(values) if to is None else to
+    if not 0.0 < end <= most:
+        raise ValueError(f"to = {end:g} {model.unit} is outside (0, {most:.6g}]: {LOAD_END}")
+    if not 2 <= points <= 10_000:
+        raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
+    return np.linspace(0.0, end, points)

@@ -1,0 +1,119 @@
+"""Bands and indices as table, CSV and JSON."""
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from .problem import Problem
+from .propagate import QUANTILES, Bands
+from .sensitivity import Sensitivity
+
+SHOWN = 6
+"""Loads that the table on the screen shows."""
+
+
+def bands_csv(task: Problem, bands: Bands) -> str:
+    """One row per load: nominal, mean, standard deviation and quantiles of every output, exact numbers."""
+    head, columns = [f"{task.model.load} [{task.model.unit}]"], [bands.loads]
+    for name, unit in bands.units.items():
+        plain = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
+        for kind, values in plain:
+            head.append(f"{name} {kind} [{unit}]")
+            columns.append(values[name])
+        for q, values in zip(QUANTILES, bands.quantiles[name], strict=True):
+            head.append(f"{name} {100 * q:g} % [{unit}]")
+            columns.append(values)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows([repr(float(x)) for x in row] for row in zip(*columns, strict=True))
+    return text.getvalue()
+
+
+def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str, Any]:
+    """Everything as one JSON object."""
+    outputs = {
+        name: {
+            "unit": unit,
+            "nominal": bands.nominal[name].tolist(),
+            "mean": bands.mean[name].tolist(),
+            "sd": bands.sd[name].tolist(),
+            "quantiles": {
+                f"{q:g}": row.tolist() for q, row in zip(QUANTILES, bands.quantiles[name], strict=True)
+            },
+        }
+        for name, unit in bands.units.items()
+    }
+    refused = bands.refused
+    return {
+        "joint": task.joint,
+        "parameters": {one.name: one.text for one in task.uncertain},
+        "load": {"name": task.model.load, "unit": task.model.unit, "values": bands.loads.tolist()},
+        "samples": bands.samples,
+        "refused": {
+            "count": refused.count,
+            "example": dict(refused.example),
+            "reason": refused.reason,
+        },
+        "reduction_error": bands.error,
+        "outputs": outputs,
+        "indices": None if found is None else _indices_json(found),
+    }
+
+
+def _indices_json(found: Sensitivity) -> dict[str, Any]:
+    kinds = ("first", "first_half", "total", "total_half")
+    return {
+        "rows": found.rows,
+        "loads": found.loads.tolist(),
+        "outputs": {
+            output: {
+                parameter: {kind: getattr(one, kind)[:, i].tolist() for kind in kinds}
+                for i, parameter in enumerate(found.names)
+            }
+            for output, one in found.outputs.items()
+        },
+    }
+
+
+def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
+    """Bands at a few loads, and the indices at the end of the ramp."""
+    lines = []
+    picked = np.unique(np.linspace(0, bands.loads.size - 1, SHOWN).astype(int))
+    at = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
+    for name, unit in bands.units.items():
+        head = f"{task.model.load} [{task.model.unit}]"
+        lines.append(f"{name} [{unit}]")
+        lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
+        for j in picked:
+            row = [bands.loads[j], bands.nominal[name][j]]
+            row += [bands.quantiles[name][i, j] for i in at.values()]
+            lines.append("".join(f"{x:16.5g}" for x in row))
+        lines.append("")
+    if found is not None:
+        lines += _indices_table(task, found)
+    lines.append(f"{bands.samples} samples, {bands.refused.count} refused by the law")
+    if bands.refused.count:
+        example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refused.example.items())
+        lines.append(f"the first refused: {example}: {bands.refused.reason}")
+    lines.append(
+        f"reduced evaluation beside the exported spring: largest relative difference {bands.error:.1e}"
+    )
+    return "\n".join(lines)
+
+
+def _indices_table(task: Problem, found: Sensitivity) -> list[str]:
+    load = f"{task.model.load} = {found.loads[-1]:g} {task.model.unit}"
+    lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
+    width = max(len(name) for name in found.names) + 2
+    lines.append(" " * width + "".join(f"{name:>32}" for name in found.outputs))
+    for i, parameter in enumerate(found.names):
+        cells = []
+        for one in found.outputs.values():
+            first = f"{one.first[-1, i]:.3f} +- {one.first_half[-1, i]:.3f}"
+            total = f"{one.total[-1, i]:.3f} +- {one.total_half[-1, i]:.3f}"
+            cells.append(f"{first} / {total}")
+        lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
+    return [*lines, ""]

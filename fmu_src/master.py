@@ -1,0 +1,110 @@
+"""A small master: an inertia or mass on a joint to the ground, as co-simulation of two FMUs (FMI 2.0)."""
+
+import ctypes
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Slave:
+    """An instance of an FMU with the inputs and outputs that are wired; to be used with `with`."""
+
+    def __init__(
+        self, path: Path, start: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+    ) -> None:
+        self._folder = extract(str(path))
+        description = read_model_description(str(path))
+        self._refs = {v.name: v.valueReference for v in description.modelVariables}
+        name = description.coSimulation.modelIdentifier
+        self._fmu = FMU2Slave(
+            guid=description.guid, unzipDirectory=self._folder, modelIdentifier=name, instanceName=name
+        )
+        self._fmu.instantiate()
+        self._fmu.setupExperiment(startTime=0.0)
+        self._fmu.enterInitializationMode()
+        self._fmu.setReal([self._refs[n] for n in start], list(start.values()))
+        self._fmu.exitInitializationMode()
+        self._in, self._out = self._wires(inputs), self._wires(outputs)
+
+    def _wires(self, names: Sequence[str]) -> tuple[Any, int, Any]:
+        n = len(names)
+        return (ctypes.c_uint * n)(*(self._refs[name] for name in names)), n, (ctypes.c_double * n)()
+
+    def set(self, *values: float) -> None:
+        """Give the inputs their values."""
+        refs, n, room = self._in
+        room[:] = values
+        self._fmu.fmi2SetReal(self._fmu.component, refs, n, room)
+
+    def get(self) -> list[float]:
+        """The outputs at the present inputs."""
+        refs, n, room = self._out
+        self._fmu.fmi2GetReal(self._fmu.component, refs, n, room)
+        return list(room)
+
+    def step(self, time: float, size: float) -> None:
+        """One step."""
+        self._fmu.fmi2DoStep(self._fmu.component, time, size, 1)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._fmu.freeInstance()
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late: bool = False) -> Array:
+    """Position and speed (count + 1, 2) of a body on a joint under a constant load [N or N.m].
+
+    joint : inputs position and speed, output the force on the body
+    body  : inputs load and force, outputs position and speed
+    late  : the body gets the force of the communication point before, as in masters that step all
+            FMUs side by side; else the present one
+    """
+    found = np.empty((count + 1, 2))
+    found[0] = body.get()
+    joint.set(*found[0])
+    (force,) = joint.get()
+    for k in range(count):
+        body.set(load, force)
+        body.step(k * step, step)
+        if late:
+            (force,) = joint.get()
+        found[k + 1] = body.get()
+        joint.set(*found[k + 1])
+        if not late:
+            (force,) = joint.get()
+    return found
+
+
+def peak(signal: Array, step: float) -> float:
+    """Frequency [rad/s] of the highest peak of a signal's spectrum besides its mean."""
+    n = signal.size
+    windowed = (signal - signal.mean()) * np.hanning(n)
+    size = 16 * (1 << (n - 1).bit_length())
+    spectrum = np.log(np.abs(np.fft.rfft(windowed, size)) + np.finfo(float).tiny)
+    k = int(np.argmax(spectrum[1:-1])) + 1
+    left, top, right = spectrum[k - 1 : k + 2]
+    return float(2.0 * np.pi * (k + 0.5 * (left - right) / (left - 2.0 * top + right)) / (size * step))
+
+
+def damping_ratio(signal: Array) -> float:
+    """Damping ratio [1] of a free decay about zero, from the logarithmic decrement of its maxima."""
+    middle = signal[1:-1]
+    tops = np.flatnonzero((middle > signal[:-2]) & (middle >= signal[2:]) & (middle > 0.0)) + 1
+    left, top, right = signal[tops - 1], signal[tops], signal[tops + 1]
+    heights = top + (left - right) ** 2 / (8.0 * (2.0 * top - left - right))
+    slope = -np.polyfit(np.arange(heights.size), np.log(heights), 1)[0]
+    return float(slope / np.hypot(2.0 * np.pi, slope))

@@ -1,0 +1,57 @@
+within JointStiffness.Components;
+model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive between two flanges"
+  parameter JointStiffness.Data.HarmonicDrive data = JointStiffness.Data.<< records.harmonic_drive >>() "The drive"
+    annotation (choicesAllMatching=true);
+  parameter Real ratio(min=Modelica.Constants.small) = data.ratio "<< meta.ratio >>";
+  parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "<< meta.d >>";
+  parameter StateSelect stateSelect=StateSelect.prefer "Priority to use phi_rel and w_rel as states"
+    annotation (HideResult=true, Dialog(tab="Advanced"));
+  Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Wave generator (motor)"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Output"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Modelica.Units.SI.Angle phi_rel(start=0, nominal=1e-3, stateSelect=stateSelect)
+    "<< docs.phi_rel >> (= flange_b.phi - flange_a.phi/ratio)";
+  Modelica.Units.SI.AngularVelocity w_rel(start=0, nominal=1, stateSelect=stateSelect) "Rate of the wind-up";
+  Modelica.Units.SI.Torque tau_c(nominal=5) "Torque of the spring";
+  Modelica.Units.SI.Torque tau(nominal=5) "Torque at the output (= flange_b.tau)";
+  Modelica.Units.SI.RotationalSpringConstant K_WTS(nominal=5e3) "<< docs.K_WTS >>";
+  Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "<< docs.K_TS >>";
+  Modelica.Units.SI.Power lossPower "Power dissipated by the damper";
+protected
+  Real windUp "Absolute value of the wind-up";
+equation
+  phi_rel = flange_b.phi - flange_a.phi/ratio;
+  w_rel = der(phi_rel);
+  windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
+  tau_c = noEvent(if phi_rel < 0 then -1 else 1)*JointStiffness.Functions.load(windUp, data.table);
+  tau = tau_c + d*w_rel;
+  K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
+  K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
+  flange_b.tau = tau;
+  flange_a.tau = -tau/ratio;
+  lossPower = d*w_rel^2;
+  annotation (
+    defaultComponentName="harmonicDrive",
+    Icon(graphics={
+      Rectangle(extent={{-100,10},{-64,-10}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.HorizontalCylinder),
+      Rectangle(extent={{64,10},{100,-10}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.HorizontalCylinder),
+      Ellipse(extent={{-70,70},{70,-70}}, lineColor={43,58,74}, fillColor={174,189,203}, fillPattern=FillPattern.Solid),
+      Ellipse(extent={{-56,48},{56,-48}}, lineColor={31,95,168}, fillColor={255,255,255}, fillPattern=FillPattern.Solid, lineThickness=1.0),
+      Ellipse(extent={{-42,32},{42,-32}}, lineColor={43,58,74}, fillColor={211,222,230}, fillPattern=FillPattern.Solid),
+      Line(points={{-30,0},{-20,0},{-16,12},{-8,-12},{0,12},{8,-12},{16,12},{20,0},{30,0}}, color={209,67,43}, thickness=0.5),
+      Text(extent={{-150,115},{150,75}}, textColor={0,0,255}, textString="%name"),
+      Text(extent={{-150,-80},{150,-110}}, textString="ratio=%ratio")}),
+    Documentation(info="<html>
+<< html.what >>
+<h4>Flanges</h4>
+<p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange.</p>
+<h4>Law</h4>
+<< html.law >>
+<h4>Not in this table</h4>
+<p>The parameters of the law are those of the record <code>data</code>, fixed. Damping is the viscous <code>d</code> alone. The table is odd in the wind-up and ends at << ends.harmonic_drive >>; beyond, the last tangent continues without a warning.</p>
+<h4>How far to trust it</h4>
+<< html.trust >>
+<< html.paper >>
+</html>"));
+end HarmonicDriveSpring;

@@ -1,0 +1,43 @@
+within JointStiffness.Examples;
+model RobotJoint "Motor, harmonic drive and a link in gravity"
+  extends Modelica.Icons.Example;
+  Modelica.Blocks.Sources.Ramp ramp(height=<< v["torque.ramp_height"] >>, duration=<< v["torque.ramp_duration"] >>, startTime=<< v["torque.ramp_start"] >>)
+    annotation (Placement(transformation(extent={{-100,10},{-80,30}})));
+  Modelica.Blocks.Sources.Trapezoid pulse(
+    amplitude=<< v["torque.pulse_height"] >>, rising=<< v["torque.pulse_rise"] >>, width=<< v["torque.pulse_hold"] >>, falling=<< v["torque.pulse_rise"] >>,
+    period=<< v["experiment.stop_time"] >>, nperiod=1, startTime=<< v["torque.pulse_start"] >>)
+    annotation (Placement(transformation(extent={{-100,-30},{-80,-10}})));
+  Modelica.Blocks.Math.Add add
+    annotation (Placement(transformation(extent={{-70,-10},{-50,10}})));
+  Modelica.Mechanics.Rotational.Sources.Torque torque
+    annotation (Placement(transformation(extent={{-42,-10},{-22,10}})));
+  Modelica.Mechanics.Rotational.Components.Inertia motor(J=<< v["motor.J"] >>, phi(fixed=true, start=0), w(fixed=true, start=0))
+    annotation (Placement(transformation(extent={{-14,-10},{6,10}})));
+  JointStiffness.Components.HarmonicDriveSpring drive(stateSelect=StateSelect.default)
+    annotation (Placement(transformation(extent={{14,-10},{34,10}})));
+  Modelica.Mechanics.Rotational.Components.Inertia link(J=<< v["link.J"] >>, phi(fixed=true, start=0), w(fixed=true, start=0))
+    annotation (Placement(transformation(extent={{42,-10},{62,10}})));
+  JointStiffness.Components.LinkWeight weight(m=<< v["link.m"] >>, l=<< v["link.l"] >>)
+    annotation (Placement(transformation(extent={{72,-10},{92,10}})));
+equation
+  connect(ramp.y, add.u1)
+    annotation (Line(points={{-79,20},{-76,20},{-76,6},{-72,6}}, color={0,0,127}));
+  connect(pulse.y, add.u2)
+    annotation (Line(points={{-79,-20},{-76,-20},{-76,-6},{-72,-6}}, color={0,0,127}));
+  connect(add.y, torque.tau)
+    annotation (Line(points={{-49,0},{-44,0}}, color={0,0,127}));
+  connect(torque.flange, motor.flange_a)
+    annotation (Line(points={{-22,0},{-14,0}}));
+  connect(motor.flange_b, drive.flange_a)
+    annotation (Line(points={{6,0},{14,0}}));
+  connect(drive.flange_b, link.flange_a)
+    annotation (Line(points={{34,0},{42,0}}));
+  connect(link.flange_b, weight.flange)
+    annotation (Line(points={{62,0},{72,0}}));
+  annotation (
+    experiment(StopTime=<< v["experiment.stop_time"] >>, Interval=<< v["experiment.interval"] >>, Tolerance=1e-8),
+    Documentation(info="<html>
+<p>A motor torque rises and lifts the link against its weight; then a short pulse makes the joint ring. Look at <code>drive.tau</code>, <code>drive.phi_rel</code> and <code>drive.K_WTS</code>: the joint is stiffer under torque.</p>
+<< sources >>
+</html>"));
+end RobotJoint;

@@ -1,0 +1,103 @@
+"""The partners' FMUs: inertia, mass and loads that a system model needs beside a joint."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from jointfmu.parameters import ParameterFile
+from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
+from jointfmu.quantity import flatten
+
+from .variables import Model, Ramp, Variable
+
+_SOURCE = "typical of the example systems"
+_LOAD = {"ramp_start": 0.0, "ramp_duration": 1.0, "pulse_start": 0.0, "pulse_rise": 1e-3, "pulse_hold": 1e-3}
+_DEFAULTS: dict[str, Any] = {
+    "RotationalInertia": RotationalInertia(J=0.05, m=0.0, l=0.0, lag_a=0.0, lag_b=0.0),
+    "TranslationalMass": TranslationalMass(m=100.0, lag_a=0.0, lag_b=0.0),
+    "TorqueProfile": TorqueProfile(ramp_height=0.0, pulse_height=1.0, **_LOAD),
+    "ForceProfile": ForceProfile(ramp_height=0.0, pulse_height=1e3, **_LOAD),
+}
+
+
+def _model(
+    name: str, doc: str, inputs: Sequence[Variable], outputs: Sequence[Variable], states: int, ramp: Ramp
+) -> Model:
+    return Model(
+        name=name,
+        joint="partner",
+        doc=doc,
+        parameters=type(_DEFAULTS[name]),
+        spring=lambda parameters: parameters,
+        inputs=inputs,
+        outputs=outputs,
+        evaluate=lambda parameters, values: parameters.outputs(values),
+        outside=(),
+        ramp=ramp,
+        # states depend on no input, the rate of the speed on the inputs and the position
+        dependencies={v.name: (v.name,) for v in outputs[:states]}
+        | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
+        states=states,
+        moves=True,
+    )
+
+
+PARTNERS: dict[str, Model] = {
+    model.name: model
+    for model in (
+        _model(
+            "RotationalInertia",
+            "Rotational inertia with its weight: torques in, motion out",
+            (
+                Variable("tau_a", "N.m", "torque on the inertia"),
+                Variable("tau_b", "N.m", "further torque on the inertia"),
+            ),
+            (
+                Variable("phi", "rad", "angle, zero where the centre of mass hangs down", 1e-3),
+                Variable("w", "rad/s", "speed", 1e-1),
+                Variable("a", "rad/s2", "acceleration", 1e2),
+            ),
+            2,
+            Ramp("tau_a", 1.0, 1e-3, 1e-3),
+        ),
+        _model(
+            "TranslationalMass",
+            "Mass: forces in, motion out",
+            (
+                Variable("f_a", "N", "force on the mass", 1e3),
+                Variable("f_b", "N", "further force on the mass", 1e3),
+            ),
+            (
+                Variable("s", "m", "displacement", 1e-6),
+                Variable("v", "m/s", "speed", 1e-3),
+                Variable("a", "m/s2", "acceleration", 1e2),
+            ),
+            2,
+            Ramp("f_a", 1e3, 1.0, 1e-5),
+        ),
+        _model(
+            "TorqueProfile",
+            "Torque over time: a ramp that stays and a pulse, without corners",
+            (Variable("tau_in", "N.m", "torque that is added"),),
+            (Variable("tau", "N.m", "torque"),),
+            0,
+            Ramp("tau_in", 1.0, 1e-3, 1e-3),
+        ),
+        _model(
+            "ForceProfile",
+            "Force over time: a ramp that stays and a pulse, without corners",
+            (Variable("f_in", "N", "force that is added", 1e3),),
+            (Variable("f", "N", "force", 1e3),),
+            0,
+            Ramp("f_in", 1e3, 1.0, 1e-3),
+        ),
+    )
+}
+
+
+def parameters(name: str) -> ParameterFile:
+    """The parameters of a partner, in the form of a joint's."""
+    values = _DEFAULTS[name]
+    names = flatten(values)
+    return ParameterFile(
+        "partner", name, values, dict.fromkeys(names, "estimate"), dict.fromkeys(names, _SOURCE)
+    )

@@ -1,0 +1,127 @@
+"""`jointfmu build --systems`: the partners' FMUs, and `models/ssp/*.ssd` packed with all that they need."""
+
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element, SubElement, fromstring
+
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.progress import track
+from jointfmu.quantity import flatten
+
+from .archive import pack, workshop
+from .native.build import build
+from .native.description import serialized
+from .partners import PARTNERS
+from .partners import parameters as partner_parameters
+from .systems import SYSTEMS, System, system
+from .units import UNITS
+from .variables import MODELS
+
+_SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
+_NAMESPACES = {
+    "xmlns:ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
+    "xmlns:ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
+}
+_LOADS = ("torque", "pulse")
+"""Groups of a system's file that describe its load."""
+
+
+def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = True) -> list[Path]:
+    """Write the partners as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` and `out/ssp/SYSTEM.ssp`.
+
+    parameters : of a joint, instead of its defaults: then only its systems are packed
+    joints     : build the systems' joints too; else they are in `out/fmi2`
+
+    The archives hold FMUs of FMI 2.0. Raises what `native.build.build` raises, and ValueError if no
+    system has the joint.
+    """
+    kinds = {name: system(name).joint for name in SYSTEMS}
+    names = [name for name in SYSTEMS if parameters is None or kinds[name] == parameters.joint]
+    if parameters and not names:
+        allowed = ", ".join(sorted(set(kinds.values())))
+        raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
+    jobs = [(name, version) for version in "23" for name in PARTNERS]
+    built = []
+    for name, version in track(jobs, "build partners", len(jobs)):
+        built.append(build(name, partner_parameters(name), out / f"fmi{version}", version))
+    for name in track(names, "pack systems", len(names)):
+        joint = parameters or default(kinds[name])
+        if joints:
+            used = [fmu for fmu in components(structure(name)).values() if fmu in MODELS]
+            built += [build(fmu, joint, out / "fmi2", "2") for fmu in used]
+        built.append(pack_system(name, out, joint))
+    return built
+
+
+def pack_system(name: str, out: Path, joint: ParameterFile) -> Path:
+    """Write `out/ssp/name.ssp` of FMUs in `out/fmi2`, with the parameters of its joint."""
+    ssd = structure(name)
+    found = system(name)
+    members = {"SystemStructure.ssd": ssd}
+    every: dict[str, tuple[Any, str]] = {}
+    for component, fmu in components(ssd).items():
+        own = values(found, component, fmu, joint)
+        every |= {f"{component}.{variable}": value for variable, value in own.items()}
+        members[f"resources/{fmu}.fmu"] = (out / "fmi2" / f"{fmu}.fmu").read_bytes()
+        members[f"parameters/{component}.ssv"] = parameter_set(name, own)
+    members[f"parameters/{name}.ssv"] = parameter_set(name, every)
+    target = out / "ssp" / f"{name}.ssp"
+    with workshop(target) as work:
+        pack(members, work / target.name)
+    return target
+
+
+def structure(name: str) -> bytes:
+    """The system structure description of a system."""
+    return (files("jointfmu_models") / "ssp" / f"{name}.ssd").read_bytes()
+
+
+def components(ssd: bytes) -> dict[str, str]:
+    """{component: FMU} of a system structure description."""
+    nodes = fromstring(ssd).iter(f"{_SSD}Component")
+    return {node.get("name", ""): Path(node.get("source", "")).stem for node in nodes}
+
+
+def values(found: System, component: str, fmu: str, joint: ParameterFile) -> dict[str, tuple[Any, str]]:
+    """{variable: (value, unit)} of a component: of the joint's file, and of the system's.
+
+    In a system the loads of joints come late, as in every master that steps its FMUs side by side.
+    """
+    if fmu in MODELS:
+        model = MODELS[fmu]
+        fields = model.parameter_fields()
+        given = {n: v for n, v in flatten(joint.values).items() if n in fields}
+        own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
+        inputs = {v.name: v.unit for v in model.inputs}
+        state = {n.split(".", 1)[1]: v for n, v in found.values.items() if n.startswith("joint_state.")}
+        return own | {n: (v, inputs[n]) for n, v in state.items()}
+    fields = PARTNERS[fmu].parameter_fields()
+    named: dict[str, float] = {}
+    for name, value in found.values.items():
+        group, _, variable = name.partition(".")
+        if group == component:
+            named[variable] = value
+        elif component == "load" and group in _LOADS:
+            named[variable if variable in fields else f"pulse_{variable}"] = value
+    if "lag_b" in fields:
+        named["lag_b"] = 1.0
+    return {n: (v, fields[n].metadata["unit"]) for n, v in named.items()}
+
+
+def parameter_set(name: str, entries: Mapping[str, tuple[Any, str]]) -> bytes:
+    """An SSV file of {variable: (value, unit)}."""
+    root = Element("ssv:ParameterSet", {**_NAMESPACES, "version": "1.0", "name": name})
+    parameters = SubElement(root, "ssv:Parameters")
+    for variable, (value, unit) in entries.items():
+        node = SubElement(parameters, "ssv:Parameter", name=variable)
+        if isinstance(value, bool):
+            SubElement(node, "ssv:Boolean", value=str(value).lower())
+        else:
+            SubElement(node, "ssv:Real", value=repr(float(value)), unit=unit)
+    units = SubElement(root, "ssv:Units")
+    for unit in sorted({unit for _, unit in entries.values() if unit}):
+        node = SubElement(units, "ssc:Unit", name=unit)
+        SubElement(node, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[unit].base.items()})
+    return serialized(root)

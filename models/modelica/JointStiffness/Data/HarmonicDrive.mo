@@ -1,0 +1,9 @@
+within JointStiffness.Data;
+record HarmonicDrive "A harmonic drive"
+  extends Modelica.Icons.Record;
+  parameter Real ratio(min=Modelica.Constants.small) "speed ratio of wave generator and output";
+  parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) "viscous damping at the output";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_FTS0(min=0) "stiffness K_FTS of circular spline and flexspline";
+  parameter Real table[:, 5]
+    "Wind-up at the output [rad], torque [N.m], stiffness [N.m/rad], its derivative before and after [N.m/rad2]";
+end HarmonicDrive;

@@ -1,0 +1,99 @@
+"""What the tests of native FMUs share: the package beside them, and how to drive them in both interfaces."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Fmu
+from jointfmu_fmus.variables import MODELS
+from test_fmu_values import STATE, law, parameters
+
+Host = Callable[..., Fmu]
+Inputs = dict[str, float]
+
+SAME = 1e-9
+"""Flavours and package may differ by this [1]: the same law, with another mathematical library, sums in
+another order and each its own inversion to round-off. Measured over random parameters: 4e-12 for K_TS and
+K_zz, which cancel most, below 1e-12 for all others."""
+NAMES = list(MODELS)
+VERSIONS = ("fmi2", "fmi3")
+TUNED: dict[str, dict[str, Any]] = {
+    "HarmonicDriveSpring": {"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},
+    "HarmonicDriveCompliance": {"surface.D": 2.55, "K_FTS0": 2e4, "radial_deformation": 1.9e-4},
+    "BoltedJoint": {"surface.D": 1.45, "n_bolts": 10.0, "mass": 20.0, "side1.nu": 0.25},
+    "GearContact": {"surface1.D": 1.5, "e": 0.4, "rigid_flat": False, "sigma_y": 3e8},
+}
+"""Other parameters, each of which changes an output."""
+
+
+def close(expected: Any, tolerance: float = SAME) -> Any:
+    """Equal to a relative tolerance, without pytest's absolute one: outputs may be small numbers."""
+    return pytest.approx(expected, rel=tolerance, abs=0.0)
+
+
+def package(name: str, changes: dict[str, Any] | None = None) -> Callable[[Inputs], dict[str, float]]:
+    """The outputs of the package as a function of the inputs."""
+    return law(name, parameters(name, changes))
+
+
+def attempt(call: Callable[..., Any], *args: Any) -> tuple[Any, str]:
+    """What a call into the package gives, or the reason for its refusal."""
+    try:
+        with np.errstate(all="ignore"):
+            return call(*args), ""
+    except (ValueError, RuntimeError) as error:
+        return None, str(error)
+
+
+def numbers(instance: Fmu) -> dict[str, float]:
+    """All variables but the Boolean ones, in FMI 3.0 with the time."""
+    return instance.get(*(v.name for v in instance.variables.values() if v.type != "Boolean"))
+
+
+def settle(instance: Fmu) -> None:
+    """Let the simulation go on: a step, or on to continuous time and back to the next event."""
+    if instance.exchange:
+        instance.fmu.enterContinuousTimeMode()
+        instance.time += 1.0
+        instance.fmu.setTime(instance.time)
+        instance.fmu.enterEventMode()
+    else:
+        instance.step()
+
+
+def slope(instance: Fmu, **slopes: float) -> None:
+    """Give derivatives of inputs for the next step (FMI 2.0)."""
+    references = [instance.variables[n].valueReference for n in slopes]
+    instance.fmu.setRealInputDerivatives(references, [1] * len(slopes), list(slopes.values()))
+
+
+def jacobian(instance: Fmu) -> dict[tuple[str, str], float]:
+    """{(output, input): derivative}, an input at a time."""
+    inputs = [v.name for v in instance.variables.values() if v.causality == "input"]
+    unknowns = [instance.variables[o].valueReference for o in instance.outputs]
+    found = {}
+    for name in inputs:
+        column = instance.fmu.getDirectionalDerivative(
+            unknowns, [instance.variables[name].valueReference], [1.0]
+        )
+        found |= {(o, name): value for o, value in zip(instance.outputs, column, strict=True)}
+    return found
+
+
+def differences(
+    name: str, state: Inputs, moved: str, changes: dict[str, Any] | None = None
+) -> tuple[dict[str, float], float]:
+    """Derivatives by central differences of fourth order of the package, and the size of the input."""
+    expected, size = package(name, changes), abs(STATE[name][moved])
+    h = 1e-3 * size
+    up, down, far, back = (expected(state | {moved: state[moved] + k * h}) for k in (1, -1, 2, -2))
+    return {o: (8.0 * (up[o] - down[o]) - (far[o] - back[o])) / (12.0 * h) for o in up}, size
+
+
+DIFFERENCE = 1e-6
+"""Derivative times the size of its input, relative to the output or to itself: truncation h^4 and round-off
+1e-16/h of the differences at h = 1e-3 are below 1e-11, but the third derivative of the tables jumps at their
+nodes, which are about as far apart as the differences reach. Measured: 8e-9."""
+JUMPS = 1e-4
+"""The same for K_zz, which holds the third derivative itself. Measured: 2e-6."""

@@ -1,0 +1,236 @@
+"""The C sources of every native FMU: under two compilers, with sanitizers, in and out of order, fuzzed.
+
+The programs in tests/native drive both FMI versions of a joint. Two joints of their own there test the
+runtime alone: `dummy` has everything a joint can have, `passthrough` the least.
+"""
+
+import math
+import shutil
+import subprocess
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import fmpy
+import pytest
+from jointfmu_fmus.native.generate import RUNTIME, sources, token
+from jointfmu_fmus.partners import PARTNERS
+from jointfmu_fmus.partners import parameters as partner_parameters
+from jointfmu_fmus.variables import MODELS
+
+from jointfmu.parameters import default
+
+HOSTS = Path(__file__).parent / "native"
+FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
+SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+COMPILERS = ("gcc", "clang")
+VERSIONS = ("2", "3")
+FUZZ_CALLS = 1_000_000 // (len(MODELS) * len(COMPILERS) * len(VERSIONS))
+
+RUNTIME_ALONE = (
+    "text", "instance", "values", "evaluate", "state", "states", "joint", "variables", "fmi2", "fmi3",
+)  # fmt: skip
+SCALED = {  # a parameter that each thread scales a little
+    "harmonic_drive": "surface.G",
+    "bolted_joint": "surface.G",
+    "gear_contact": "surface1.G",
+}
+C_LIBRARY = {
+    "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
+    "exp", "expm1", "log", "log1p", "log10", "pow", "sqrt", "cbrt", "hypot", "sin", "cos", "sincos", "tan",
+    "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "erf", "fabs", "fmin",
+    "fmax", "floor", "ceil", "copysign",
+}  # fmt: skip
+"""All that an FMU may need: no files, no environment, no locale, no time, no way to end the host."""
+
+
+class Sources(NamedTuple):
+    """C sources of one joint, and what a host must know."""
+
+    files: Mapping[str, str]
+    inputs: int
+    outputs: int
+    parameters: int
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """Token and layout on the command line of a host."""
+        return (token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
+
+
+@cache
+def c_of(name: str) -> Sources:
+    """The sources of an FMU, or of the joint in a folder of tests/native."""
+    if model := (MODELS | PARTNERS).get(name):
+        files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
+        return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
+    own = [p for p in RUNTIME.iterdir() if p.stem in RUNTIME_ALONE and p.suffix in (".c", ".h")]
+    files = {p.name: p.read_text() for p in [*own, *(HOSTS / name).iterdir()]}
+    return Sources(files, 2, 3 if name == "dummy" else 2, 4 if name == "dummy" else 1)
+
+
+class Builder:
+    """Compiles sources and hosts, each once."""
+
+    def __init__(self, work: Path) -> None:
+        self.work = work
+        self.objects, self.host, self.program = map(cache, (self._objects, self._host, self._program))
+
+    def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
+        """Object files of a joint, warnings being errors."""
+        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
+        folder.mkdir()
+        files = c_of(name).files
+        for file, text in files.items():
+            (folder / file).write_text(text)
+        units = [file for file in files if file.endswith(".c")]
+        self.call(folder, compiler, *STRICT, *options, "-isystem", str(FMI_HEADERS), "-c", *units)
+        return [folder / f"{Path(unit).stem}.o" for unit in units]
+
+    def _host(self, compiler: str, program: str) -> Path:
+        """Object file of a host that has the FMU in it, with sanitizers."""
+        out = self.work / f"{compiler}-{program}.o"
+        source = str(HOSTS / f"{program}.c")
+        options = (*STRICT, *SANITIZED, "-D_GNU_SOURCE", "-DLINKED", "-isystem", str(FMI_HEADERS))
+        self.call(self.work, compiler, *options, "-c", source, "-o", str(out))
+        return out
+
+    def _program(self, compiler: str, program: str, name: str) -> Path:
+        """A host and a joint in one, with sanitizers."""
+        objects = [self.host(compiler, program), *self.objects(compiler, name, *SANITIZED)]
+        out = self.work / f"{compiler}-{program}-{name}"
+        self.call(self.work, compiler, *SANITIZED, *map(str, objects), "-lm", "-lpthread", "-o", str(out))
+        return out
+
+    @staticmethod
+    def call(folder: Path, *command: str) -> str:
+        """What a program prints; fails with what it complains about."""
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
+        return done.stdout
+
+
+@pytest.fixture(scope="module")
+def builder(tmp_path_factory: pytest.TempPathFactory) -> Builder:
+    return Builder(tmp_path_factory.mktemp("c"))
+
+
+@pytest.fixture(params=COMPILERS)
+def compiler(request: pytest.FixtureRequest) -> str:
+    if shutil.which(request.param) is None:
+        pytest.skip(f"{request.param} is not installed")
+    return str(request.param)
+
+
+@pytest.fixture
+def sanitizing(compiler: str, builder: Builder) -> str:
+    """A compiler that has its sanitizers."""
+    probe = builder.work / f"{compiler}-probe.c"
+    if not probe.exists():
+        probe.write_text("int main(void) { return 0; }\n")
+    command = [compiler, *SANITIZED, str(probe), "-o", str(probe.with_suffix(""))]
+    if subprocess.run(command, capture_output=True).returncode != 0:
+        pytest.skip(f"{compiler} is installed without its sanitizers")
+    return compiler
+
+
+def ramp_points(name: str, count: int = 40) -> str:
+    """Points along the joint's load ramp, the other inputs near zero."""
+    if name not in MODELS:
+        return "\n".join(f"{0.1 * i} {0.2 * i}" for i in range(1, count))
+    model = MODELS[name]
+    rows = []
+    for i in range(1, count):
+        other = 1e-7 * math.sin(i)
+        row = (model.ramp.end * i / count if v.name == model.ramp.input else other for v in model.inputs)
+        rows.append(" ".join(repr(x) for x in row))
+    return "\n".join(rows)
+
+
+every_joint = pytest.mark.parametrize("name", [*MODELS, "dummy", "passthrough"])
+every_version = pytest.mark.parametrize("version", VERSIONS)
+
+
+@pytest.mark.parametrize("name", [*MODELS, *PARTNERS, "dummy", "passthrough"])
+def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
+    assert builder.objects(compiler, name, "-O2", "-fPIC")
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
+    if shutil.which("gcc") is None:
+        pytest.skip("gcc is not installed")
+    objects = builder.objects("gcc", name, "-O2", "-fPIC")
+    needed, defined = {}, set()
+    for o in objects:
+        sizes = builder.call(builder.work, "size", "-A", str(o)).splitlines()
+        found = {line.split()[0]: int(line.split()[1]) for line in sizes if line.startswith(".")}
+        assert found.get(".data", 0) == found.get(".bss", 0) == 0, o.name
+        symbols = [line.split()[:2] for line in builder.call(builder.work, "nm", "-P", str(o)).splitlines()]
+        needed[o.name] = {symbol for symbol, kind in symbols if kind == "U"}
+        defined |= {symbol for symbol, kind in symbols if kind != "U"}
+    outside = set().union(*needed.values()) - defined
+    assert outside - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= C_LIBRARY
+    assert {file for file, symbols in needed.items() if "calloc" in symbols} == {"instance.o", "state.o"}
+
+
+@every_joint
+@every_version
+@pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
+def test_in_order_and_out_of_order(
+    sanitizing: str, builder: Builder, program: str, name: str, version: str
+) -> None:
+    run = builder.program(sanitizing, program, name)
+    builder.call(builder.work, str(run), "", version, *c_of(name).arguments)
+
+
+@every_version
+def test_behaviour(sanitizing: str, builder: Builder, version: str) -> None:
+    run = builder.program(sanitizing, "behaviour", "dummy")
+    builder.call(builder.work, str(run), "", version, c_of("dummy").arguments[0])
+
+
+@every_version
+@pytest.mark.parametrize("name", [*MODELS, "passthrough"])
+def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> None:
+    c, reference = c_of(name), 1 + c_of(name).inputs + c_of(name).outputs
+    if model := MODELS.get(name):
+        reference += list(model.parameter_fields()).index(SCALED[model.joint])
+    command = [
+        str(builder.program(sanitizing, "threads", name)),
+        "",
+        version,
+        *c.arguments[:3],
+        str(reference),
+    ]
+    done = subprocess.run(command, input=ramp_points(name), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"8 threads, {39 * c.outputs} numbers each\n"
+
+
+@every_version
+@pytest.mark.parametrize("name", [*MODELS, "RotationalInertia", "TorqueProfile"])
+def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> None:
+    run = builder.program(sanitizing, "fuzz", name)
+    seed = 1 + COMPILERS.index(sanitizing)
+    counts = builder.call(
+        builder.work, str(run), "", version, *c_of(name).arguments, str(seed), str(FUZZ_CALLS)
+    )
+    ok, *_, errors = (int(word) for word in counts.replace(",", "").split() if word.isdigit())
+    assert min(ok, errors) > FUZZ_CALLS / 4  # neither all refused nor nothing
+
+
+@every_joint
+@every_version
+def test_a_library_exports_all_and_leaves_nothing_behind(builder: Builder, name: str, version: str) -> None:
+    """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth."""
+    if shutil.which("gcc") is None:
+        pytest.skip("gcc is not installed")
+    library, host = builder.work / f"{name}.so", builder.work / "lifecycle"
+    objects = map(str, builder.objects("gcc", name, "-O2", "-fPIC"))
+    builder.call(builder.work, "gcc", "-shared", *objects, "-lm", "-o", str(library))
+    options = (*STRICT, "-O1", "-D_GNU_SOURCE", "-isystem", str(FMI_HEADERS), "-ldl", "-lm")
+    builder.call(builder.work, "gcc", str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
+    builder.call(builder.work, str(host), str(library), version, *c_of(name).arguments)

@@ -1,0 +1,569 @@
+"""Joints in systems: their partners, SSP archives in two simulators, and proof of the coupling."""
+
+import ctypes
+import math
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Fmu, refused_line
+from fmpy import read_model_description, simulate_fmu
+from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import read_ssd, read_ssv
+from fmpy.validation import validate_fmu
+from jointfmu_fmus import ringing, ssp
+from jointfmu_fmus.building import build
+from jointfmu_fmus.checks import check_ringing
+from jointfmu_fmus.master import Slave, motion
+from jointfmu_fmus.partners import PARTNERS
+from jointfmu_fmus.systems import SYSTEMS, system
+from jointfmu_fmus.variables import MODELS
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_simpson, solve_ivp
+
+from jointfmu import cli
+from jointfmu.joints.bolted_joint import BoltedJointSpring
+from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
+from jointfmu.parameters import default, dump
+from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
+from jointfmu.quantity import flatten
+
+Array = NDArray[np.float64]
+Values = dict[str, float]
+
+DRIVE = HarmonicDriveSpring.of(default("harmonic_drive").values)
+BOLTED = BoltedJointSpring.of(default("bolted_joint").values)
+LINK = system("robot_joint").values["link.J"]
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `jointfmu build --systems` makes, and the drive with torque in."""
+    out = tmp_path_factory.mktemp("systems")
+    build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+    assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture
+def make(built: Path) -> Any:
+    made: list[Fmu] = []
+
+    def instance(name: str, version: str = "2", exchange: bool = False) -> Fmu:
+        made.append(Fmu(built / f"fmi{version}" / f"{name}.fmu", exchange=exchange))
+        return made[-1]
+
+    yield instance
+    for one in made:
+        one.free()
+
+
+Make = Callable[..., Fmu]
+BOTH = pytest.mark.parametrize("version", ["2", "3"])
+ALL = pytest.mark.parametrize("name", list(PARTNERS))
+
+
+# Partners
+
+
+@BOTH
+@ALL
+def test_a_partner_is_a_valid_fmu_for_every_platform(built: Path, name: str, version: str) -> None:
+    path = built / f"fmi{version}" / f"{name}.fmu"
+    assert validate_fmu(str(path)) == []
+    with zipfile.ZipFile(path) as archive:
+        assert sum(n.startswith("binaries/") and not n.endswith("/") for n in archive.namelist()) >= 4
+    description = read_model_description(str(path))
+    assert [v.name for v in description.modelVariables if v.causality == "output"] == [
+        v.name for v in PARTNERS[name].outputs
+    ]
+    assert description.numberOfContinuousStates == PARTNERS[name].states
+
+
+@BOTH
+@ALL
+def test_a_partner_computes_the_packages_equations(make: Make, name: str, version: str) -> None:
+    model, rng = PARTNERS[name], np.random.default_rng(1)
+    fmu = make(name, version)
+    lags = {"lag_a", "lag_b"} & set(model.parameter_fields())
+    given = {n: float(rng.uniform(0.1, 2.0)) for n in model.parameter_fields()} | dict.fromkeys(lags, 0.0)
+    values = {v.name: float(rng.normal()) for v in (*model.inputs, *model.outputs[: model.states])}
+    fmu.begin(0.7)
+    fmu.set(given | values)
+    expected = model.evaluate(model.parameters(**given), values | {"time": 0.7})
+    assert fmu.get() == pytest.approx(dict(expected), rel=1e-14)  # at once, without a step
+    assert not fmu.messages or not fmu.warnings
+
+
+@BOTH
+def test_a_source_follows_time_in_both_interfaces(make: Make, version: str) -> None:
+    given = {
+        "ramp_height": 2.0,
+        "ramp_duration": 1.0,
+        "pulse_height": 3.0,
+        "pulse_start": 1.5,
+        "pulse_rise": 0.5,
+    }
+    parameters = TorqueProfile(**(flatten(ssp.partner_parameters("TorqueProfile").values) | given))
+
+    def expected(time: float) -> float:
+        return float(parameters.outputs({"time": time, "tau_in": 0.25})["tau"])
+
+    slave = make("TorqueProfile", version).start(given | {"tau_in": 0.25})
+    for k in range(30):
+        assert slave.get("tau")["tau"] == pytest.approx(expected(0.1 * k), rel=1e-12, abs=1e-12)
+        slave.step(0.1)
+    model = make("TorqueProfile", version, True).start(given | {"tau_in": 0.25})
+    for time in (2.0, 0.3, 1.8):
+        model.fmu.setTime(time)
+        assert model.get("tau")["tau"] == pytest.approx(expected(time), rel=1e-12)
+
+
+def test_loads_have_no_corner() -> None:
+    load = TorqueProfile(
+        ramp_height=1.0, ramp_start=0.1, ramp_duration=0.3, pulse_height=0.0, pulse_start=9.0, pulse_rise=1.0,
+        pulse_hold=0.0,
+    )  # fmt: skip
+    t = np.linspace(0.0, 0.5, 5001)
+    y = np.array([float(load.outputs({"time": x, "tau_in": 0.0})["tau"]) for x in t])
+    assert (y[0], y[-1]) == (0.0, 1.0)
+    second = np.diff(y, 2) / (t[1] - t[0]) ** 2
+    assert np.max(np.abs(np.diff(second))) < 1e-2 * np.max(np.abs(second))
+
+
+@BOTH
+def test_states_are_set_before_they_move_and_not_after(make: Make, version: str) -> None:
+    fmu = make("RotationalInertia", version)
+    fmu.begin()
+    fmu.set({"phi": 0.3, "w": -2.0, "J": 2.0, "m": 1.0, "l": 0.5, "tau_a": 1.0, "tau_b": 3.0})
+    expected = (4.0 - GRAVITY * 0.5 * math.sin(0.3)) / 2.0
+    assert fmu.get() == pytest.approx({"phi": 0.3, "w": -2.0, "a": expected}, rel=1e-14)
+    fmu.fmu.exitInitializationMode()
+    assert "is an output" in fmu.refused(fmu.set, {"phi": 0.0})
+
+
+@BOTH
+def test_a_constant_force_moves_a_mass_exactly(make: Make, version: str) -> None:
+    fmu = make("TranslationalMass", version).start({"m": 2.0, "f_a": 3.0, "f_b": 1.0, "s": 1.0, "v": -1.0})
+    for size in (0.1, 0.3, 0.05, 0.05):
+        fmu.step(size)
+    assert fmu.get() == pytest.approx({"s": 1.0 - 0.5 + 0.25, "v": -1.0 + 1.0, "a": 2.0}, rel=1e-14)
+
+
+@BOTH
+def test_derivatives_take_states_as_knowns(make: Make, version: str) -> None:
+    fmu = make("RotationalInertia", version, True).start({"J": 0.5, "m": 2.0, "l": 0.1, "phi": 0.4, "w": 1.0})
+    ref = {n: v.valueReference for n, v in fmu.variables.items()}
+    unknowns, knowns = [ref[n] for n in ("phi", "w", "a")], [ref[n] for n in ("tau_a", "phi", "w")]
+    if version == "2":
+        found = [fmu.fmu.getDirectionalDerivative(unknowns, [k], [1.0]) for k in knowns]
+    else:
+        found = [fmu.fmu.getDirectionalDerivative(unknowns, [k], [1.0], 3) for k in knowns]
+    stiffness = -2.0 * GRAVITY * 0.1 * math.cos(0.4) / 0.5
+    np.testing.assert_allclose(found, [[0, 0, 2.0], [1, 0, stiffness], [0, 1, 0]], rtol=1e-13)
+
+
+@BOTH
+def test_a_refused_step_changes_nothing(make: Make, version: str) -> None:
+    fmu = make("TranslationalMass", version).start({"m": 1.0, "f_a": 1.0})
+    fmu.step(0.1)
+    before = fmu.get()
+    fmu.set({"f_a": 1e308, "f_b": 1e308})
+    assert "too large, a is not finite" in fmu.refused(fmu.fmu.doStep, 0.1, 0.1)
+    fmu.set({"f_a": 1.0, "f_b": 0.0})
+    assert fmu.get() == before
+    fmu.step(0.1)
+    assert fmu.get()["s"] == pytest.approx(0.5 * 0.2**2, rel=1e-13)
+
+
+def test_a_saved_state_goes_on_bit_by_bit(make: Make) -> None:
+    fmu = make("RotationalInertia").start({"m": 1.0, "l": 0.3, "phi": 0.5, "lag_b": 1.0})
+    rest = [(0.01, 0.3), (0.02, -0.5), (0.01, 0.2)]
+
+    def run() -> list[Values]:
+        found = []
+        for size, torque in rest:
+            fmu.set({"tau_b": torque})
+            fmu.step(size)
+            found.append(fmu.get())
+        return found
+
+    run()
+    time, state = fmu.time, fmu.fmu.getFMUstate()
+    saved = fmu.fmu.serializeFMUstate(state)
+    first = run()
+    fmu.fmu.setFMUstate(fmu.fmu.deSerializeFMUstate(saved))
+    fmu.time = time
+    assert run() == first
+
+
+@BOTH
+@pytest.mark.parametrize(("kind", "error"), [("ModelExchange", 1e-6), ("CoSimulation", 3e-5)])
+def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -> None:
+    """Under CVode, and by its own steps."""
+    start = {"J": 0.05, "m": 1.0, "l": 0.2, "phi": 1.0, "w": 0.0}
+    found = simulate_fmu(
+        str(built / f"fmi{version}" / "RotationalInertia.fmu"),
+        fmi_type=kind,
+        stop_time=2.0,
+        start_values=start,
+        relative_tolerance=1e-8,
+        output_interval=1e-3,
+        output=["phi", "w"],
+    )[-1]
+
+    def rates(time: float, x: Array) -> list[float]:
+        return [x[1], -GRAVITY * 0.2 / 0.05 * math.sin(x[0])]
+
+    exact = solve_ivp(rates, (0.0, 2.0), [1.0, 0.0], rtol=1e-11, atol=1e-12).y[:, -1]
+    assert [found["phi"], found["w"]] == pytest.approx(exact, rel=error)
+
+
+# Archives
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) -> None:
+    path = built / "ssp" / f"{name}.ssp"
+    found = read_ssd(str(path))  # checked against the schema of SSP
+    fmus = ssp.components(ssp.structure(name))
+    models = MODELS | PARTNERS
+    units = {}
+    root = ssp.fromstring(ssp.structure(name))
+    ssc = "{http://ssp-standard.org/SSP1/SystemStructureCommon}"
+    for component in root.iter(f"{ssp._SSD}Component"):
+        model = models[fmus[component.get("name", "")]]
+        listed = {v.name: (kind, v.unit) for kind in ("input", "output") for v in getattr(model, f"{kind}s")}
+        for connector in component.iter(f"{ssp._SSD}Connector"):
+            key, unit = connector.get("name", ""), connector.find(f"{ssc}Real").get("unit")  # type: ignore[union-attr]
+            assert listed[key] == (connector.get("kind"), unit)
+            units[f"{component.get('name')}.{key}"] = unit
+    ends = []
+    for c in found.system.connections:
+        start, end = f"{c.startElement}.{c.startConnector}", f"{c.endElement}.{c.endConnector}"
+        assert units[start] == units[end]
+        ends.append(end)
+    assert len(ends) == len(set(ends))
+    assert {u.name for u in found.units} == set(units.values())
+    with zipfile.ZipFile(path) as archive:
+        assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} < set(archive.namelist())
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_parameters_come_from_the_files(built: Path, name: str) -> None:
+    path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
+    every = {p.name: float(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
+    fmus = ssp.components(ssp.structure(name))
+    joint = next(c for c, fmu in fmus.items() if fmu in MODELS)
+    for key, value in flatten(default(found.joint).values).items():
+        if key in MODELS[fmus[joint]].parameter_fields():
+            assert every[f"{joint}.{key}"] == value
+    given = {k: v for k, v in found.values.items() if not k.startswith("experiment.")}
+    assert set(given.values()) <= set(every.values())
+    for component in fmus:
+        own = read_ssv(path, f"parameters/{component}.ssv").parameters
+        prefix = f"{component}."
+        assert {prefix + p.name: float(p.value) for p in own} == {
+            k: v for k, v in every.items() if k.startswith(prefix)
+        }
+
+
+def test_another_joint_goes_into_the_archive(built: Path, tmp_path: Path) -> None:
+    changed = default("bolted_joint").with_values({"mu": 0.11}, "user", "test")
+    for fmu in ("ForceProfile", "TranslationalMass", "BoltedJoint"):
+        (tmp_path / "fmi2").mkdir(exist_ok=True)
+        (tmp_path / "fmi2" / f"{fmu}.fmu").write_bytes((built / "fmi2" / f"{fmu}.fmu").read_bytes())
+    path = ssp.pack_system("bolted_column", tmp_path, changed)
+    every = {p.name: p.value for p in read_ssv(str(path), "parameters/bolted_column.ssv").parameters}
+    assert float(every["joint.mu"]) == 0.11
+    first = path.read_bytes()
+    assert ssp.pack_system("bolted_column", tmp_path, changed).read_bytes() == first
+
+
+def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "gear.toml"
+    file.write_text(dump(default("gear_contact")))
+    line = refused_line(capsys, "build", "--systems", "--params", file, "--out", tmp_path)
+    assert "no system has a joint 'gear_contact', allowed are bolted_joint, harmonic_drive" in line
+
+
+# Simulators
+
+
+def simulated(built: Path, name: str, step: float, stop: float, **changes: float) -> Any:
+    path = str(built / "ssp" / f"{name}.ssp")
+    parameters = read_ssv(path, f"parameters/{name}.ssv")
+    for p in parameters.parameters:
+        p.value = changes.get(p.name.replace(".", "_"), p.value)
+    return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
+
+
+ECOS = """
+import sys, numpy as np
+from ecospy import EcosSimulation
+path, name, step, count, out, *wanted = sys.argv[1:]
+rows = []
+with EcosSimulation(ssp_path=path, step_size=float(step)) as sim:
+    sim.init(parameter_set=name)
+    for _ in range(int(count)):
+        sim.step()
+        rows.append([sim.get_real(v) for v in wanted])
+    sim.terminate()
+np.save(out, np.array(rows))
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "step", "count", "wanted"),
+    [
+        ("robot_joint", 2e-4, 7500, ["link::phi", "motor::phi", "load::tau"]),
+        ("bolted_column", 5e-6, 1000, ["column::s", "load::f"]),
+    ],
+)
+def test_fmpy_and_ecos_run_the_same_archive(
+    built: Path, tmp_path: Path, name: str, step: float, count: int, wanted: list[str]
+) -> None:
+    pytest.importorskip("ecospy")
+    out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
+    arguments = [path, name, step, count, out, *wanted]
+    subprocess.run([sys.executable, "-c", ECOS, *map(str, arguments)], check=True, timeout=100)
+    rows = np.load(out)
+    other = simulated(built, name, step, (count - 0.5) * step)
+    for k, column in enumerate(wanted):
+        expected = other[column.replace("::", ".")]
+        np.testing.assert_allclose(rows[:, k], expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
+
+
+def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:
+    """Rates of motor and link by the package alone."""
+    drive = DRIVE.motion(x[0], x[1], x[2], x[3])
+    tau = float(load.outputs({"time": time, "tau_in": 0.0})["tau"])
+    motor = RotationalInertia(J=found["motor.J"], m=0.0, l=0.0, lag_a=0.0, lag_b=0.0)
+    link = RotationalInertia(J=found["link.J"], m=found["link.m"], l=found["link.l"], lag_a=0.0, lag_b=0.0)
+    a1 = motor.outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
+    a2 = link.outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
+    return [x[1], float(a1), x[3], float(a2)]
+
+
+def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
+    found, stop = system("robot_joint").values, 0.4
+    load = TorqueProfile(
+        **{k.removeprefix("torque."): v for k, v in found.items() if k.startswith("torque.")}
+    )
+    exact = solve_ivp(
+        robot, (0.0, stop), [0.0] * 4, "DOP853", rtol=1e-9, atol=1e-12, max_step=0.02, args=(found, load)
+    ).y[2, -1]
+    steps = (4e-4, 2e-4, 1e-4)
+    errors = [abs(simulated(built, "robot_joint", h, stop - 0.5 * h)["link.phi"][-1] - exact) for h in steps]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert errors[-1] < 1e-5 * exact
+    assert np.all(np.abs(orders - 2.0) < 0.15), (errors, orders)
+
+
+def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
+    found, stop = system("bolted_column").values, 1.6e-3
+    defaults = flatten(ssp.partner_parameters("ForceProfile").values)
+    pulse = {f"pulse_{k.removeprefix('pulse.')}": v for k, v in found.items() if k.startswith("pulse.")}
+    load, mass = (
+        ForceProfile(**(defaults | pulse)),
+        TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0),
+    )
+    preload = found["joint_state.preload"]
+
+    def rates(time: float, x: Array) -> list[float]:
+        force = BOLTED.motion(preload, 0.0, (0.0, 0.0, x[0]), (0.0, 0.0, x[1]))["f_z"]
+        f = load.outputs({"time": time, "f_in": 0.0})["f"]
+        return [x[1], float(mass.outputs({"s": x[0], "v": x[1], "f_a": float(f), "f_b": float(force)})["a"])]
+
+    exact = solve_ivp(rates, (0.95e-3, stop), [0.0, 0.0], "DOP853", rtol=1e-8, atol=1e-15).y[0, -1]
+    steps = (2e-6, 1e-6, 5e-7)
+    errors = [
+        abs(simulated(built, "bolted_column", h, stop - 0.5 * h)["column.s"][-1] - exact) for h in steps
+    ]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert errors[-1] < 1e-3 * 1.15e-6
+    assert np.all(np.abs(orders - 2.0) < 0.2), (errors, orders)
+
+
+# The coupling itself: a link on the drive, motor held
+
+
+def ring(
+    built: Path, step: float, count: int, angle: float, damping: float, late: bool = False, **more: float
+) -> Array:
+    """Free motion of the link; `late` as in masters that step all side by side."""
+    start = {"J": LINK, "phi": angle, "lag_b": float(late)} | more
+    drive, inertia = built / "fmi2" / "HarmonicDriveSpring.fmu", built / "fmi2" / "RotationalInertia.fmu"
+    with (
+        Slave(drive, {"d": damping}, ("phi2", "w2"), ("tau2",)) as joint,
+        Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
+    ):
+        return motion(joint, body, 0.0, step, count, late)
+
+
+def released(angle: float, damping: bool, stop: float) -> Array:
+    def rates(time: float, x: Array) -> list[float]:
+        return [x[1], float(DRIVE.motion(0.0, 0.0, x[0], x[1] if damping else 0.0)["tau2"]) / LINK]
+
+    return solve_ivp(rates, (0.0, stop), [angle, 0.0], "DOP853", rtol=1e-11, atol=1e-15).y[:, -1]
+
+
+@pytest.mark.parametrize(
+    ("late", "lag", "order"), [(False, 0.0, 2.0), (True, 1.0, 2.0), (True, 0.0, 1.0)], ids=str
+)
+def test_the_order_of_a_step(built: Path, late: bool, lag: float, order: float) -> None:
+    stop, angle, d = 0.05, 1.3e-3, DRIVE.joint.d
+    exact = released(angle, True, stop)
+    errors = []
+    for count in (1000, 2000, 4000):
+        found = ring(built, stop / count, count, angle, d, late, lag_b=lag)[-1]
+        errors.append(np.hypot(*((found - exact) / [angle, 300.0 * angle])))
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert np.all(np.abs(orders - order) < 0.15), (errors, orders)
+
+
+def energy(x: Array) -> Array:
+    angle = np.linspace(0.0, 2e-3, 801)
+    torque = [float(DRIVE.motion(0.0, 0.0, a, 0.0)["tau"]) for a in angle]
+    potential = cumulative_simpson(torque, x=angle, initial=0.0)
+    return np.asarray(0.5 * LINK * x[:, 1] ** 2 + np.interp(np.abs(x[:, 0]), angle, potential))
+
+
+def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
+    angle = 1.3e-3
+    period = 2.0 * math.pi * math.sqrt(LINK / float(DRIVE.windup(3.0)["K_WTS"]))
+    largest = float(DRIVE.motion(0.0, 0.0, angle, 0.0)["K_WTS"])
+    for steps in (20, 40):
+        band = 0.5 * largest / LINK * (period / steps) ** 2
+        e = energy(ring(built, period / steps, 1000 * steps, angle, 0.0))
+        assert np.max(np.abs(e / e[0] - 1.0)) < band  # within a period; no drift over them:
+        assert abs(e[-100 * steps :].mean() / e[: 100 * steps].mean() - 1.0) < 1e-4
+    late = energy(ring(built, period / 300, 300_000, angle, 0.0, True))
+    omega = 2.0 * math.pi / 300  # a late force adds energy, as if damping were -omega^3/2
+    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 1000 * 1.5
+
+
+def working_point(torque: float) -> tuple[float, float]:
+    found = DRIVE.windup(torque)
+    return float(found["phi_rel"]), float(found["K_WTS"])
+
+
+def test_the_largest_stable_step_is_the_formulas(built: Path) -> None:
+    angle, stiffness = working_point(5.0)  # the largest torque of the motion: there K is largest
+    largest = 2.0 * math.sqrt(LINK / stiffness)
+
+    def swing(factor: float) -> float:
+        drive, inertia = built / "fmi2" / "HarmonicDriveSpring.fmu", built / "fmi2" / "RotationalInertia.fmu"
+        start = {"J": LINK, "phi": angle * (1.0 - 1e-7)}
+        with (
+            Slave(drive, {"d": 0.0}, ("phi2", "w2"), ("tau2",)) as joint,
+            Slave(inertia, start, ("tau_a", "tau_b"), ("phi", "w")) as body,
+        ):
+            found = motion(joint, body, 5.0, factor * largest, 400)[:, 0]
+        return float(np.max(np.abs(found - angle)) / (1e-7 * angle))
+
+    assert swing(0.995) < 30.0
+    assert swing(1.01) > 1e3
+
+
+def test_the_largest_stable_step_with_late_forces(built: Path) -> None:
+    """h < (2 zeta)^(1/3) sqrt(J/K) where the lag is carried on, d/K where it is not."""
+    _, stiffness = working_point(0.0)
+    frequency, zeta = math.sqrt(stiffness / LINK), 0.02
+    d = 2.0 * zeta * math.sqrt(stiffness * LINK)
+
+    def grows(step: float, lag: float) -> bool:
+        count = 1000 if lag else 4000
+        found = np.abs(ring(built, step, count, 1e-8, d, True, lag_b=lag)[:, 0])
+        return bool(found[-200:].max() > found[:200].max())
+
+    carried, plain = (2.0 * zeta) ** (1.0 / 3.0) / frequency, d / stiffness
+    assert [grows(factor * carried, 1.0) for factor in (0.9, 1.15)] == [False, True]
+    assert [grows(factor * plain, 0.0) for factor in (0.9, 1.15)] == [False, True]
+
+
+@BOTH
+def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
+    """Drive and link as model-exchange FMUs, one system for CVode."""
+    from fmpy.sundials import CVodeSolver
+
+    stop, angle = 0.03, 1.3e-3
+    if version == "2":
+        build(["HarmonicDriveSpring"], ["fmi2"], None, built)
+    else:
+        build(["HarmonicDriveSpring"], ["fmi3"], None, built)
+    joint = make("HarmonicDriveSpring", version, True).start()
+    link = make("RotationalInertia", version, True).start({"J": LINK, "phi": angle})
+    for fmu in (joint, link):
+        fmu.fmu.enterContinuousTimeMode()
+    states = (ctypes.c_double * 2)()
+
+    def array(pointer: Any) -> Array:
+        return np.ctypeslib.as_array(pointer, (2,))
+
+    def get(pointer: Any, n: int) -> None:
+        (link.fmu.getContinuousStates)(states, 2)
+        array(pointer)[:] = states
+
+    def put(pointer: Any, n: int) -> None:
+        states[:] = array(pointer)
+        link.fmu.setContinuousStates(states, 2)
+
+    def rates(pointer: Any, n: int) -> None:
+        at = link.get("phi", "w")
+        joint.set({"phi2": at["phi"], "w2": at["w"]})
+        link.set({"tau_b": joint.get("tau2")["tau2"]})
+        getter = link.fmu.getDerivatives if version == "2" else link.fmu.getContinuousStateDerivatives
+        getter(states, 2)
+        array(pointer)[:] = states
+
+    def nominals(pointer: Any, n: int) -> None:
+        link.fmu.getNominalsOfContinuousStates(states, 2)
+        array(pointer)[:] = states
+
+    class Inputs:
+        def apply(self, time: float) -> None: ...
+
+    solver = CVodeSolver(
+        2, 0, get, put, rates, lambda pointer, n: None, nominals, link.fmu.setTime, Inputs(), 0.0,
+        relativeTolerance=1e-10, maxNumSteps=100_000,
+    )  # fmt: skip
+    time = 0.0
+    while time < stop - 1e-12:
+        _, _, time = solver.step(time, stop)
+    exchange = np.array(list(link.get("phi", "w").values()))
+    count = 24_000
+    tight = ring(built, stop / count, count, angle, DRIVE.joint.d)[-1]
+    scale = np.array([angle, 300.0 * angle])
+    assert np.max(np.abs(exchange - tight) / scale) < 1e-6
+    assert np.max(np.abs(exchange - released(angle, True, stop)) / scale) < 1e-6
+
+
+# What the nonlinear joint does
+
+
+def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None:
+    found = ringing.examples(built / "fmi2")
+    assert [c for c in check_ringing(found) if not c.passed] == []
+    for name, most in (("robot_joint", 1.59), ("bolted_column", 2.79)):
+        frequencies = [r.frequency for r in found[name]]
+        assert frequencies == sorted(frequencies)
+        assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+
+
+# The page
+
+
+def test_the_examples_of_the_page_run(built: Path, tmp_path: Path) -> None:
+    page = (Path(__file__).parent.parent / "docs" / "systems.md").read_text(encoding="utf-8")
+    (tmp_path / "dist").symlink_to(built)
+    for block in page.split("```python\n")[1:]:
+        code = block.partition("```")[0]
+        if "ecospy" in code:
+            pytest.importorskip("ecospy")
+        subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=100)

@@ -1,0 +1,294 @@
+"""Reading, repair and the command `jointfmu surface`: what is read, repaired, refused, written."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import refused_line
+
+from jointfmu import cli
+from jointfmu.parameters import default, load
+from jointfmu.topography import csvfile, synthesis
+from jointfmu.topography.form import filled, without_form, without_spikes
+from jointfmu.topography.heights import Areal, Profile
+from jointfmu.topography.reading import read
+
+SurfaceTopography = pytest.importorskip("SurfaceTopography")
+
+
+@pytest.fixture(scope="module")
+def area():
+    return synthesis.isotropic(synthesis.Waves(size=1e-3, points=128, gamma=1.5), 2.5, 1e-9, 20, 1)
+
+
+@pytest.fixture(scope="module")
+def line():
+    return synthesis.profile(synthesis.Waves(size=1e-3, points=1024, gamma=1.5), 1.42, 1.21e-8, 1)
+
+
+@pytest.fixture
+def folder(tmp_path, area, line, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "area.csv").write_text(csvfile.text(area))
+    (tmp_path / "line.csv").write_text(csvfile.text(line))
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    assert cli.main([str(a) for a in arguments]) == 0
+    return capsys.readouterr()
+
+
+def test_our_csv_is_read_back(folder, area, line):
+    again, profile = read("area.csv"), read("line.csv")
+    assert isinstance(again, Areal)
+    assert isinstance(profile, Profile)
+    np.testing.assert_allclose(again.z, area.z, rtol=1e-6, atol=1e-6 * np.ptp(area.z))
+    np.testing.assert_allclose(profile.z, line.z, rtol=1e-6, atol=1e-6 * np.ptp(line.z))
+    assert (again.dx, again.dy) == (area.dx, area.dy)
+    assert profile.dx == pytest.approx(line.dx, rel=1e-9)
+
+
+def test_points_with_units_and_gaps(folder, area):
+    y, x = np.mgrid[:128, :128]
+    rows = [
+        f"{0.5 * a:g}; {2 * b:g}; {c * 1e9:.9g}"
+        for a, b, c in zip(x.ravel(), y.ravel(), area.z.ravel(), strict=True)
+    ]
+    del rows[1000]
+    rows[2000] = rows[2000].rpartition(";")[0] + ";"
+    (folder / "p.csv").write_text("# points: x [um], y [mm], z [nm]\n" + "\n".join(rows) + "\n")
+    found = read("p.csv")
+    assert (found.dx, found.dy) == (pytest.approx(0.5e-6), pytest.approx(2e-3))
+    assert np.isnan(found.z).sum() == 2
+    good = np.isfinite(found.z)
+    np.testing.assert_allclose(found.z[good], area.z[good], rtol=1e-7, atol=1e-15)
+
+
+@pytest.mark.parametrize("suffix", ["x3p", "nc", "gwy"])
+def test_instrument_files_keep_axes_and_units(folder, suffix):
+    z = np.add.outer(np.arange(70.0), 10.0 * np.arange(90.0)) ** 1.1  # (nx, ny), in um
+    made = SurfaceTopography.Topography(z, (140.0, 45.0), unit="um")
+    {"x3p": made.to_x3p, "nc": made.to_netcdf, "gwy": made.to_gwy}[suffix](str(folder / f"t.{suffix}"))
+    found = read(f"t.{suffix}")
+    assert found.z.shape == (90, 70)
+    assert (found.dx, found.dy) == (pytest.approx(2e-6), pytest.approx(0.5e-6))
+    np.testing.assert_allclose(found.z - found.z[0, 0], (z.T - z[0, 0]) * 1e-6, rtol=1e-6, atol=1e-12)
+    with pytest.raises(ValueError, match=r"states its unit .* itself; leave --unit um out"):
+        read(f"t.{suffix}", "um")
+
+
+def test_missing_points_and_spikes_are_repaired_and_counted(folder, area, capsys):
+    z = area.z.copy()
+    rng = np.random.default_rng(0)
+    at = rng.choice(z.size, 300, replace=False)
+    z.flat[at[:200]] = np.nan
+    z.flat[at[200:]] += 20.0 * area.z.std()
+    (folder / "bad.csv").write_text(csvfile.text(area.with_heights(z)))
+    out = json.loads(run(capsys, "surface", "bad.csv", "--json").out)
+    repairs = {one["repair"]: one["count"] for one in out["repairs"]}
+    assert repairs == {"spikes taken as missing": 100, "missing points filled harmonically": 300}
+    good = json.loads(run(capsys, "surface", "area.csv", "--json").out)
+    assert good["repairs"] == []
+    for bad, fine in zip(out["results"], good["results"], strict=True):
+        if bad["direction"] == "areal" and bad["method"] == "structure":
+            assert bad["surface"]["D_s"]["value"] == pytest.approx(fine["surface"]["D_s"]["value"], abs=0.03)
+    text = run(capsys, "surface", "bad.csv").out
+    assert "repaired in bad.csv: spikes taken as missing: 100 of 16384 points (0.61 %)" in text
+
+
+def test_clean_surfaces_have_no_spikes():
+    for D in (1.1, 1.5, 1.9):
+        waves = synthesis.Waves(size=1e-3, points=256, gamma=1.5)
+        for made in (synthesis.isotropic(waves, D + 1, 1e-9, 20, 1), synthesis.profile(waves, D, 1e-9, 1)):
+            assert without_spikes(made)[1] == []
+
+
+def test_too_many_gaps_are_refused(area):
+    z = area.z.copy()
+    z[:40] = np.nan
+    with pytest.raises(ValueError, match="5120 of 16384 points are missing or spikes, at most 20 %"):
+        filled(area.with_heights(z))
+
+
+@pytest.mark.parametrize(("form", "order"), [("mean", 0), ("tilt", 1), ("curvature", 2)])
+def test_form_is_removed(area, form, order):
+    y, x = np.mgrid[-1:1:128j, -1:1:128j]
+    shape = [3.0 + 0 * x, 3.0 + 2 * x - y, 3.0 + 2 * x - y + x * y - 4 * x**2 + y**2][order]
+    flat = without_form(area, form).z
+    both = without_form(area.with_heights(area.z + shape), form).z
+    np.testing.assert_allclose(both, flat, atol=1e-13)
+    assert abs(flat.mean()) < 1e-18 + 1e-12 * flat.std()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("none.csv", None, "none.csv: is no file"),
+        ("empty.csv", "", "empty.csv: is no surface: the file is empty"),
+        ("words.csv", "hello\n", "words.csv: is no surface"),
+        ("junk.vk4", "\x00\x01junk", "junk.vk4: is no surface"),
+        ("bare.csv", "0,1\n1,2\n" * 99, "bare.csv: states no length unit; give it with --unit um"),
+        (
+            "unit.csv",
+            "# profile: x, z\n0,1\n",
+            "unit.csv: the header states no unit of x, z; write it as x [um]",
+        ),
+        ("inch.csv", "# profile: x [in], z [in]\n0,1\n", "unit 'in' is not one of m, mm, um, nm"),
+        ("step.csv", "# grid: dy = 1 um, z [um]\n0,1\n", "step.csv: the header states no dx"),
+        (
+            "few.csv",
+            "# profile: x [m], z [m]\n" + "".join(f"{i},{i % 7}\n" for i in range(99)),
+            "at least 128",
+        ),
+        ("patch.csv", "# grid: dx = 1 um, dy = 1 um, z [m]\n" + "1,2,3\n" * 99, "at least 64 x 64"),
+        (
+            "flat.csv",
+            "# profile: x [m], z [m]\n" + "".join(f"{i},5\n" for i in range(200)),
+            "constant surface",
+        ),
+        (
+            "nan.csv",
+            "# profile: x [m], z [m]\n" + "".join(f"{i},nan\n" for i in range(200)),
+            "all 200 heights",
+        ),
+        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "text.csv: is no surface"),
+        ("cols.csv", "# profile: x [m], z [m]\n1,2,3\n", "has 3 columns, its header declares 2"),
+        ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x repeats values"),
+        (
+            "uneven.csv",
+            "# profile: x [m], z [m]\n" + "".join(f"{i**1.1},{i % 7}\n" for i in range(200)),
+            "spacing of x varies",
+        ),
+    ],
+)
+def test_what_is_refused_by_name(folder, capsys, name, content, says):
+    if content is not None:
+        (folder / name).write_text(content)
+    assert says in refused_line(capsys, "surface", name)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--unit", "in"], "--unit: unit 'in' is not one of"),
+        (["--unit", "um"], "states its units itself"),
+        (["--range", "2", "1"], "expected 0 < LOW < HIGH"),
+        (["--range", "1", "2"], "holds 0 values"),
+        (["--write", "x.toml"], "needs --joint"),
+        (["--joint", "glue"], "invalid choice: 'glue'"),
+        (["--plot", "x.pdf"], "suffix '.pdf' is no picture, allowed are .png, .svg"),
+        (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
+        (["--form", "cone"], "invalid choice: 'cone'"),
+        (["line.csv", "line.csv"], "3 files given"),
+        (["area.csv"], "two of the same kind"),
+    ],
+)
+def test_options_are_refused_by_name(folder, capsys, options, says):
+    assert says in refused_line(capsys, "surface", "line.csv", *options)
+    assert not (folder / "x.toml").exists()
+
+
+def test_bare_columns_take_the_unit(folder, line, capsys):
+    rows = "".join(f"{i * line.dx * 1e6:.9g} {z * 1e6:.9g}\n" for i, z in enumerate(line.z))
+    (folder / "bare.txt").write_text(rows)
+    bare = json.loads(run(capsys, "surface", "bare.txt", "--unit", "um", "--json").out)
+    ours = json.loads(run(capsys, "surface", "line.csv", "--json").out)
+    assert bare["kind"] == "profile"
+    for one, other in zip(bare["results"], ours["results"], strict=True):
+        # both files hold rounded heights
+        assert one["profile"]["D"]["value"] == pytest.approx(other["profile"]["D"]["value"], abs=1e-4)
+
+
+def test_table_names_both_dimensions(folder, capsys):
+    text = run(capsys, "surface", "line.csv").out
+    assert "D, profile" in text
+    assert "D_s, surface" in text
+    assert "harmonic_drive (D_s of the surface, " in text
+    assert "bolted_joint (D of the profile, " in text
+    assert "gear_contact (D of the profile, " in text
+
+
+def test_json_is_one_object(folder, capsys):
+    captured = run(capsys, "surface", "line.csv", "line.csv", "--json")
+    out = json.loads(captured.out)
+    assert captured.err == ""
+    assert out["pair"] is True
+    assert {(one["method"], one["direction"]) for one in out["results"]} == {
+        ("structure", "profile"),
+        ("psd", "profile"),
+    }
+    for one in out["results"]:
+        assert one["surface"]["D_s"]["value"] == pytest.approx(one["profile"]["D"]["value"] + 1.0, rel=1e-12)
+        assert one["G_eq30"] < one["profile"]["G"]["value"]  # ln 1.5 < 1
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg"])
+def test_plot(folder, capsys, suffix):
+    run(capsys, "surface", "line.csv", "--plot", f"p.{suffix}")
+    start = (folder / f"p.{suffix}").read_bytes()[:200]
+    assert (b"PNG" in start) if suffix == "png" else (b"<?xml" in start)
+
+
+def test_written_parameters_build(folder, capsys):
+    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--write", "gear.toml")
+    file = load("gear.toml", "gear_contact")
+    assert file.sources["surface1.D"].startswith("identified from line.csv by ")
+    assert file.values.e == default("gear_contact").values.e
+    run(capsys, "build", "GearContact", "--flavour", "python", "--params", "gear.toml", "--out", "dist")
+    assert (folder / "dist" / "python" / "GearContact.fmu").is_file()
+
+
+def test_params_choose_the_start(folder, capsys):
+    run(capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml")
+    changed = (folder / "a.toml").read_text().replace("H = { value = 1960000000.0", "H = { value = 2.5e9")
+    (folder / "a.toml").write_text(changed)
+    run(capsys, "surface", "area.csv", "--params", "a.toml", "--write", "b.toml")
+    file = load("b.toml", "bolted_joint")
+    assert file.values.H == 2.5e9
+    assert "area.csv" in file.sources["surface.G"]
+    assert "joint = 'bolted_joint'" in refused_line(
+        capsys, "surface", "area.csv", "--params", "a.toml", "--joint", "gear_contact"
+    )
+
+
+@pytest.mark.parametrize(
+    ("shape", "D", "G"),
+    [
+        ("isotropic", ["2.5"], ["1e-9"]),
+        ("textured", ["1.3", "1.6"], ["1e-9", "1e-10"]),
+        ("profile", ["1.4"], ["1e-9"]),
+    ],
+)
+def test_synthesize(folder, capsys, shape, D, G):
+    command = ["surface", "synthesize", "--shape", shape, "--size", "1e-3", "--points", "128"]
+    out = json.loads(run(capsys, *command, "--D", *D, "--G", *G, "--seed", 7, "--out", "s.csv", "--json").out)
+    first = (folder / "s.csv").read_text()
+    assert read("s.csv").z.std() == pytest.approx(out["rms"], rel=1e-5)
+    run(capsys, *command, "--D", *D, "--G", *G, "--seed", 7, "--out", "s.csv")
+    assert (folder / "s.csv").read_text() == first
+    run(capsys, *command, "--D", *D, "--G", *G, "--seed", 8, "--out", "s.csv")
+    assert (folder / "s.csv").read_text() != first
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (["--D", "1.5"], "D = 1.5 is outside (2, 3): fractal dimension of the surface"),
+        (["--D", "2.5", "2.5"], "--D has 2 values, a surface of shape isotropic takes 1"),
+        (["--G", "0"], "G = 0 m is outside (0, inf)"),
+        (["--G", "nan"], "G = nan m is outside (0, inf)"),
+        (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
+        (["--size", "-1"], "size = -1 m is outside (0, inf)"),
+        (["--points", "10"], "10 x 10 points, an areal map needs at least 64 x 64"),
+        (["--points", "0"], "points = 0 is outside"),
+        (["--seed", "-1"], "seed = -1 is negative"),
+        (["--ridges", "0"], "ridges = 0"),
+        (["--out", "s.png"], "suffix '.png', allowed is .csv"),
+        (["--shape", "cone"], "invalid choice: 'cone'"),
+    ],
+)
+def test_synthesize_refuses_by_name(folder, capsys, change, says):
+    command = ["--size", "1e-3", "--points", "128", "--D", "2.5", "--G", "1e-9", "--out", "s.csv", *change]
+    assert says in refused_line(capsys, "surface", "synthesize", *command)
+    assert not (folder / "s.csv").exists()

@@ -1,0 +1,202 @@
+"""`jointfmu sweep`: many runs of an FMU that may be killed at any time and resumed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from conftest import refused_line
+
+from jointfmu import cli, ramp
+from jointfmu.parameters import default
+from jointfmu.uncertainty import journal
+from jointfmu.uncertainty.problem import pose
+from jointfmu.uncertainty.sweep import plan, sweep
+from jointfmu.uncertainty.worker import Drive
+
+RAMP = ("--input", "tau", "--to", "5", "--step", "1")
+DRIVE = Drive("tau", 5.0, 1.0)
+GIVEN = {"surface.D": "2.45..2.6", "eccentricity": "normal(5e-6, 5e-6)"}
+SETTINGS = ("--set", *(f"{name}={text}" for name, text in GIVEN.items()))
+
+
+@pytest.fixture(scope="module")
+def fmu(native):
+    return native / "fmi3" / "HarmonicDriveCompliance.fmu"
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one:
+        yield one.scheduler_address
+
+
+def indices(out):
+    return [entry["run"] for entry in journal.entries(out)]
+
+
+def test_killed_and_resumed(fmu, tmp_path, capsys):
+    """kill -9 in the middle: no run is lost or done twice, and the unfinished last line is cut off."""
+    out = tmp_path / "out"
+    arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "128", "--workers", "1", "--out", str(out)]
+    process = subprocess.Popen([sys.executable, "-m", "jointfmu", *arguments], stderr=subprocess.DEVNULL)
+    runs = out / journal.RUNS
+    deadline = time.monotonic() + 60.0
+    while not (runs.exists() and runs.read_bytes().count(b"\n") >= 10):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    before = indices(out)
+    assert 10 <= len(before) < 128
+    kept = runs.read_bytes()
+    kept = kept[: kept.rindex(b"\n") + 1]
+    runs.write_bytes(kept + b'{"run": 127, "parameters": {"surf')
+    assert indices(out) == before
+    assert cli.main([*arguments, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["runs"], found["now"]) == (128, 128 - len(before))
+    assert runs.read_bytes().startswith(kept)
+    assert sorted(indices(out)) == list(range(128))
+    # a normal distribution of mean and deviation 5e-6 has 15.87 % below zero, which the FMU refuses
+    assert found["failed"] == pytest.approx(0.158655 * 128, abs=1.5)
+    assert found["first_failure"]["parameters"]["eccentricity"] < 0.0
+    assert "is outside [0, 0.001)" in found["first_failure"]["error"]
+    assert cli.main([*arguments, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert (again["now"], again["failed"]) == (0, found["failed"])
+    assert "holds another study (samples = 128, now 512)" in refused_line(
+        capsys, *arguments[:-1], out, "--samples", "512"
+    )
+
+
+def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
+    """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
+    given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
+    record, runs = plan(fmu, DRIVE, given, 8, 0)
+    journal.claim(tmp_path, record)
+    done = sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
+    assert (done.runs, done.now, done.failed) == (8, 8, 0)
+    found = {entry["run"]: entry for entry in journal.entries(tmp_path)}
+    for i, settings in enumerate(runs):
+        assert (
+            found[i]["parameters"] == settings == {"eccentricity": 5e-6, "surface.D": settings["surface.D"]}
+        )
+        alone = ramp.run(fmu, "tau", 5.0, 1.0, settings)
+        assert found[i]["columns"] == {name: column.tolist() for name, column in alone.columns.items()}
+
+
+@pytest.mark.parametrize(
+    ("flavour", "name", "load", "to", "given"),
+    [
+        ("fmi2", "BoltedJoint", "preload", 30e3, {"surface.D": "1.38..1.46", "H": "+-5%"}),
+        ("fmi3", "GearContact", "f", 3e3, {"surface1.D": "1.4..1.5", "A_0": "+-5%"}),
+        ("fmi2", "HarmonicDriveCompliance", "tau", 5.0, {"surface.D": "2.45..2.6", "K_FTS0": "+-5%"}),
+    ],
+)
+def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, native, cluster, tmp_path):
+    """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
+    path, drive = native / flavour / f"{name}.fmu", Drive(load, to, to / 6.0)
+    record, runs = plan(path, drive, given, 16, 3)
+    journal.claim(tmp_path, record)
+    assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed == 0
+    joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
+    task = pose(default(joint), given, to, 7)
+    for entry in journal.entries(tmp_path):
+        values = {**task.values, **entry["parameters"]}
+        found = task.model.evaluate(values, task.loads, np.ones((1, 1)))
+        for output in set(found) & set(entry["columns"]):
+            fmu_values = np.array(entry["columns"][output])
+            assert found[output][0, 1:] == pytest.approx(fmu_values[1:], rel=1e-4)  # as stated
+
+
+def test_every_run_fails(fmu, cluster, tmp_path, capsys):
+    arguments = ["--set", "eccentricity=0.9e-3..0.99e-3", "--samples", "4", "--scheduler", cluster]
+    assert cli.main(["sweep", str(fmu), *RAMP, *arguments, "--out", str(tmp_path / "out")]) == 1
+    text = capsys.readouterr().out
+    assert "4 runs in" in text
+    assert "4 failed" in text
+    assert "the first failed, run " in text
+    assert not (tmp_path / "out" / journal.BANDS).exists()
+
+
+def dies_once_in_a_while(key, drive, index, settings):
+    if index == 5:
+        os._exit(11)
+    return {"run": index, "parameters": dict(settings), "columns": {"tau": [0.0], "K_WTS": [1.0]}}
+
+
+def test_a_run_that_kills_its_process(fmu, cluster, tmp_path, monkeypatch):
+    """It is recorded with its parameters; those whose results went down with it are done again."""
+    import jointfmu.uncertainty.sweep as module
+
+    monkeypatch.setattr(module, "one_run", dies_once_in_a_while)
+    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
+    assert (done.runs, done.now, done.failed) == (24, 24, 1)
+    assert sorted(indices(tmp_path)) == list(range(24))
+    assert done.first_failure == {
+        "run": 5,
+        "parameters": {"surface.D": 2.5},
+        "error": "the process of the run died",
+    }
+
+
+def test_bands_of_the_runs(fmu, cluster, tmp_path):
+    record, runs = plan(fmu, DRIVE, GIVEN, 32, 0)
+    journal.claim(tmp_path, record)
+    sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
+    head, *rows = (tmp_path / journal.BANDS).read_text().splitlines()
+    column = head.split(",").index("K_WTS 50 %")
+    good = [entry["columns"]["K_WTS"] for entry in journal.entries(tmp_path) if "columns" in entry]
+    median = [float(row.split(",")[column]) for row in rows]
+    assert median == pytest.approx(np.median(good, axis=0), rel=1e-15)
+    assert [float(row.split(",")[0]) for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+def test_one_sweep_per_folder(tmp_path):
+    with journal.Journal(tmp_path), pytest.raises(ValueError, match="another sweep is writing here"):
+        journal.Journal(tmp_path).__enter__()
+
+
+def test_a_run_is_written_once(tmp_path):
+    with journal.Journal(tmp_path) as held:
+        held.add({"run": 3, "error": "x"})
+        held.add({"run": 3, "error": "y"})
+    with journal.Journal(tmp_path) as held:
+        assert held.finished == {3}
+        assert held.first_failure == {"run": 3, "error": "x"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
+        (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
+        (["--input", "tau", "--set", "tau=1..2"], "tau is driven by the ramp"),
+        (["--input", "tau", "--set", "surface.D=2.4"], "no parameter has a distribution"),
+        (["--input", "tau", "--set", "surface.D=2.6..2.4"], "low = 2.6 is not below high = 2.4"),
+        (["--input", "tau", "--set", "surface.D=+-1%", "--workers", "0"], "workers = 0 is outside [1, inf)"),
+    ],
+)
+def test_refused_arguments(arguments, words, fmu, tmp_path, capsys):
+    line = refused_line(
+        capsys, "sweep", fmu, *arguments, "--to", "5", "--step", "1", "--out", tmp_path / "out"
+    )
+    assert words in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_refused_folders_and_schedulers(fmu, tmp_path, capsys):
+    arguments = ["sweep", fmu, *SETTINGS, *RAMP, "--samples", "4", "--out"]
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.tex").write_text("x")
+    assert "holds something else than a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
+    line = refused_line(capsys, *arguments, tmp_path / "new", "--scheduler", "nowhere")
+    assert "scheduler = nowhere: cannot be reached" in line
