@@ -6,6 +6,7 @@ its own standard deviations, and the middle relative error of each parameter.
 """
 
 import tempfile
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ def loops(rng, values=DRIVE, amplitude=25.0, noise=0.03 * ARCMIN, gap=1.0 * ARCM
     The branches lie `gap` [rad] apart at zero torque and meet at the ends; 0.5 mN.m of noise in T.
     """
     ends = amplitude * np.array([0.0, 1.0, -1.0, 1.0, -1.0, 1.0])
-    pairs = list(zip(ends[:-1], ends[1:], strict=True))
+    pairs = list(pairwise(ends))
     torque = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairs])
     way = np.concatenate([np.full(200, np.sign(b - a)) for a, b in pairs])
     drive = default("harmonic_drive").with_values(values, "user", "synthetic").values

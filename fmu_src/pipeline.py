@@ -95,7 +95,8 @@ def main(out: Path) -> int:
     folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")
     print(f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out / 'ssp'}")
-    print(f"validated with fmpy: {len(outcome.built)}; ramps run: {len(outcome.ramps)}")
+    partners = [path for path in outcome.systems if path.suffix == ".fmu"]
+    print(f"validated with fmpy: {len(outcome.built) + len(partners)}; ramps run: {len(outcome.ramps)}")
     print(
         f"compared: {validation.summary(outcome.rows)}; "
         f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"

@@ -47,7 +47,16 @@ def test_commands_run(line, folder, monkeypatch, capsys):
 
 
 def test_every_kind_of_command_is_shown():
-    assert {line.split()[1] for line in commands} == {"law", "build", "ramp", "validate"}
+    assert {line.split()[1] for line in commands} == {
+        "law",
+        "build",
+        "ramp",
+        "validate",
+        "surface",
+        "uncertainty",
+        "sweep",
+        "modelica",
+    }
 
 
 def test_figures_are_those_of_the_comparison():

@@ -21,9 +21,9 @@ STEP = 1e-4
 TOLERANCE = 1e-8
 """Relative change of cost or parameters at which a fit ends [1]."""
 MOST_STEPS = 100
-LEFT = 1e-4
-"""Part of the cost [1] that a further step may promise where a fit has not ended: it wanders along a
-combination that the data do not determine."""
+RIDGE = 0.01
+"""Pull towards the start, in residuals' standard deviations per unit of a logarithm [1]: too weak to
+move what the data determine, enough to hold what they do not."""
 EDGE = 1e-6
 """Distance from a bound, in logarithms [1], at which a parameter is said to sit on it."""
 
@@ -105,51 +105,63 @@ def solve(
     RuntimeError : no solution after `steps` steps
     """
     model = _Model(tuple(unknowns), residuals)
-    first = np.log([u.start for u in unknowns])
-    start = residuals(model.named(first))
-    spare = start.size - first.size - nuisances
+    place = model.start
+    first = residuals(model.named(place))
+    spare = first.size - place.size - nuisances
     if spare < 1 and noise is None:
         raise ValueError(
-            f"{start.size} data points are too few for {first.size + nuisances} unknowns "
-            f"({', '.join(u.name for u in unknowns)}): at least {first.size + nuisances + 1} are needed"
+            f"{first.size} data points are too few for {place.size + nuisances} unknowns "
+            f"({', '.join(model.names)}): at least {place.size + nuisances + 1} are needed"
         )
-    result = scipy.optimize.least_squares(
-        model,
-        first,
-        jac=model.jacobian,
-        bounds=(model.low, model.high),
-        x_scale="jac",
-        xtol=tolerance,
-        ftol=tolerance,
-        gtol=1e-15,
-        max_nfev=steps,
-    )
-    if result.status == 0 and _promise(result.jac, result.fun) > LEFT:
-        raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {steps} steps")
+    rest = first
+    for _ in range(2 if noise is None else 1):  # the noise is known after the first
+        model.ridge = RIDGE * (_spread(rest) if noise is None else noise)
+        result = scipy.optimize.least_squares(
+            model,
+            place,
+            jac=model.jacobian,
+            bounds=(model.low, model.high),
+            x_scale="jac",
+            xtol=tolerance,
+            ftol=tolerance,
+            gtol=1e-15,
+            max_nfev=steps,
+        )
+        if result.status == 0:
+            raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {steps} steps")
+        place, rest = result.x, result.fun[: first.size]
+    jacobian = result.jac[: first.size]
     if noise is None:
-        noise = float(np.sqrt(2.0 * result.cost / spare))
-    edge = np.minimum(result.x - model.low, model.high - result.x) < EDGE
+        noise = float(np.sqrt(rest @ rest / spare))
+    edge = np.minimum(place - model.low, model.high - place) < EDGE
     return Solution(
         unknowns=tuple(unknowns),
-        values=model.named(result.x),
-        residuals=result.fun,
+        values=model.named(place),
+        residuals=rest,
         noise=noise,
-        jacobian=result.jac,
-        covariance=_covariance(result.jac, noise),
+        jacobian=jacobian,
+        covariance=_covariance(jacobian, noise),
         at_bound=tuple(name for name, there in zip(model.names, edge, strict=True) if there),
         limit=model.refusal if model.retreated else None,
     )
 
 
+def _spread(residuals: Array) -> float:
+    """Root mean square [1]."""
+    return float(np.sqrt(np.mean(residuals**2)))
+
+
 class _Model:
-    """The residual function over an array of logarithms, infinite where the model refuses."""
+    """Residuals and ridge over an array of logarithms, infinite where the model refuses."""
 
     def __init__(self, unknowns: tuple[Unknown, ...], residuals: Residuals) -> None:
         self.names = [u.name for u in unknowns]
+        self.start = np.log([u.start for u in unknowns])
         with np.errstate(divide="ignore"):
             self.low = np.log([max(u.low, 0.0) for u in unknowns]) + 1e-9
             self.high = np.log([u.high for u in unknowns]) - 1e-9
         self.residuals = residuals
+        self.ridge = 0.0
         self.size = 0
         self.refusal: str | None = None
         self.retreated = False
@@ -166,6 +178,7 @@ class _Model:
                 raise
             self.refusal = str(error)
             return np.full(self.size, np.inf)
+        value = np.concatenate([value, self.ridge * (logs - self.start)])
         self.size = value.size
         return value
 
@@ -188,13 +201,6 @@ class _Model:
             width = places[1] - places[0]
             columns.append((high - low) / width if width > 0.0 else np.zeros_like(middle))
         return np.stack(columns, axis=1)
-
-
-def _promise(jacobian: Array, residuals: Array) -> float:
-    """Part of the cost [1] that a Gauss-Newton step along the determined combinations would take off."""
-    basis, s, _ = np.linalg.svd(jacobian, full_matrices=False)
-    along = basis[:, s > STEP * s[0]].T @ residuals
-    return float(along @ along / (residuals @ residuals))
 
 
 def _covariance(jacobian: Array, noise: float) -> Array:

@@ -5,9 +5,10 @@ The joint is the spring of one degree of freedom, in series with the structure w
     1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
 
 K_joint grows nearly as a power of the preload, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above,
-so that a curve gives an exponent (D, below about 1.5) and a level. The level is that of G^(1-D), of
-the modulus and of the area together: G is fitted, H, E and A_0 are taken from the start. A resonance
-gives K/mass; without a stated mass the level goes into `mass` and G stays as it is.
+so that a curve gives an exponent (D, below about 1.5) and a level. The level is that of G, of the moduli
+and, weakly, of H together: G is fitted, the others are taken from the start; A_0 has no effect, the law
+knows loads, no pressures. A resonance gives K/mass; without a stated mass the level goes into `mass`
+and G stays as it is.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,6 +21,7 @@ import numpy as np
 
 from ..curve import approach_curve
 from ..footprint.bolts import BoltPattern, PressureShape, pressure_shape
+from ..interface import stiffness_curve
 from ..joints.bolted_joint import BoltedJoint, pressures, shear_ratio
 from ..parameters import ParameterFile, default
 from . import columns
@@ -45,9 +47,12 @@ STARTS: Mapping[str, tuple[float, ...]] = {
 
 def joint_stiffness(joint: BoltedJoint, preload: Array, direction: str = "normal") -> Array:
     """K_zz or K_xx (...) [N/m] of the tightened joint at preloads (...) [N]: exactly the exported ones."""
-    shape, curve = _shape(joint.pattern), approach_curve(joint)
-    approach = curve.inverse(pressures(joint, shape, preload, np.zeros_like(preload)))
-    normal = joint.A_0 * np.sum(shape.share * curve.derivatives(approach, 1)[1], axis=-1)
+    p = pressures(joint, _shape(joint.pattern), preload, np.zeros_like(preload))
+    curve = approach_curve(joint)
+    k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
+    closing = p < curve.closed  # what the curve continues to zero pressure
+    k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
+    normal = joint.A_0 * np.sum(_shape(joint.pattern).share * k, axis=-1)
     return np.asarray(normal if direction == "normal" else shear_ratio(joint) * normal)
 
 
