@@ -363,7 +363,7 @@ def parts(drive: HarmonicDrive, load: Number, stiffness: Number) -> dict[str, Nu
 
     K_TS_pair is K_TS on the scale of the paper's Fig. 11.
     """
-    K_TS = 1.0 / (1.0 / stiffness - 1.0 / drive.K_FTS0)
+    K_TS = stiffness * drive.K_FTS0 / (drive.K_FTS0 - stiffness)
     return {
         "K_WTS": stiffness,
         "K_TS": K_TS,
