@@ -73,6 +73,15 @@ def test_all_flavours_and_interfaces_give_the_numbers_of_the_package(
     assert not [m for one in natives for m in one.messages if m.status]
 
 
+def test_each_input_counts_when_it_moves_alone(host: Host, name: str, version: str) -> None:
+    instance, expected = host(name, version).start(), package(name)
+    for moved, value in STATE[name].items():
+        for factor in (0.0, 0.5, 1.5):
+            instance.at(STATE[name])
+            found = instance.at({moved: factor * value})
+            assert found == close(expected(STATE[name] | {moved: factor * value})), moved
+
+
 def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
     """Parameters around the defaults, some of them so far that the law or another parameter forbids it."""
     changes: dict[str, Any] = {}

@@ -44,6 +44,7 @@ def _catalogue(kinds: Any) -> None:
     ):
         one.add_argument(f"--{name}", type=float, required=True, metavar="VALUE", help=text)
     one.add_argument("--rated-torque", type=float, metavar="VALUE", help="rated torque [N.m] (default: T2)")
+    one.add_argument("--source", default="catalogue", metavar="TEXT", help="where the row is printed")
     one.add_argument("--ratio", type=float, metavar="VALUE", help="speed ratio (default: that of the start)")
 
 
@@ -94,7 +95,7 @@ def _fit_catalogue(args: argparse.Namespace) -> int:
     start = _start(args, "harmonic_drive")
     rated, kind = (args.T2, "estimate") if args.rated_torque is None else (args.rated_torque, "catalogue")
     row = catalogue.Row(K1=args.K1, K2=args.K2, K3=args.K3, T1=args.T1, T2=args.T2, rated=rated)
-    return _finish(args, catalogue.fit(row, start, args.free, kind, args.ratio))
+    return _finish(args, catalogue.fit(row, start, args.free, kind, args.ratio, args.source))
 
 
 def _fit_preload(args: argparse.Namespace) -> int:

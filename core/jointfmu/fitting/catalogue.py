@@ -12,7 +12,7 @@ stiffness starts to rise; it becomes a fourth unknown if three do not keep the a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise, product
 
 import numpy as np
@@ -73,7 +73,7 @@ class Row:
 
     def __str__(self) -> str:
         return (
-            f"catalogue K1 = {self.K1:g}, K2 = {self.K2:g}, K3 = {self.K3:g} N.m/rad, "
+            f"K1 = {self.K1:g}, K2 = {self.K2:g}, K3 = {self.K3:g} N.m/rad, "
             f"T1 = {self.T1:g}, T2 = {self.T2:g} N.m"
         )
 
@@ -84,22 +84,25 @@ def fit(
     free: Sequence[str] | None = None,
     rated_kind: str = "catalogue",
     ratio: float | None = None,
+    source: str = "catalogue",
 ) -> Outcome:
-    """The smooth law of a row; `free` None: FREE, and FURTHER if need be.
+    """The smooth law of a row; `free` None: FREE, and FURTHER if need be; `source`: where it is printed.
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law keeps the angles.
     """
     file = start or default("harmonic_drive")
-    source = str(row) if rated_kind == "catalogue" else "not given; T2 of the catalogue"
-    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated_kind, source)
+    origin = f"{source} ({row})"
+    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
+    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated_kind, rated)
     if ratio is not None:
-        file = file.with_values({"ratio": ratio}, "catalogue", str(row))
-    file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of the {row}")
+        file = file.with_values({"ratio": ratio}, "catalogue", origin)
+    file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
     torque, most = _torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
     file = drive.scaled(file, choices[0], torque, row.angle(torque))
     found, tight = _solved(row, file, choices, torque)
-    result = fitted(file, found.values, "catalogue", str(row), f"torque 0 to {most:g} N.m")
+    result = fitted(file, found.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
+    result = replace(result, name=f"fitted to {source}")
     miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
     facts = {
         f"angle_error_{name}": (
@@ -156,7 +159,7 @@ def _solved(
             {n: v for n, v in found.values.items() if n not in found.at_bound}, "catalogue", "start"
         )
     raise RuntimeError(
-        f"no law with {', '.join(choices[-1])} free keeps the angle of the {row} at T1, T2 and rated torque "
+        f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
         f"{row.rated:g} N.m within {100 * AIMED:g} %: the best misses it by {100 * best:.2g} %"
     )
 

@@ -20,7 +20,7 @@ STEP = 1e-4
 """Step of the central differences in a logarithm [1]: the tables' errors of 1e-8 give 1e-4 of slope."""
 TOLERANCE = 1e-8
 """Relative change of cost or parameters at which a fit ends [1]."""
-MOST_STEPS = 100
+MOST_STEPS = 300
 RIDGE = 0.01
 """Pull towards the start, in residuals' standard deviations per unit of a logarithm [1]: too weak to
 move what the data determine, enough to hold what they do not."""

@@ -139,7 +139,7 @@ def fitted(
 ) -> ParameterFile:
     """The file with fitted values; their source says from what, when and over which range."""
     file = start.with_values(values, kind, f"fitted to {origin}, {today()}, {span}")
-    return replace(file, name=f"{start.name}, fitted to {origin}")
+    return replace(file, name=f"fitted to {origin}")
 
 
 def today() -> str:

@@ -4,8 +4,6 @@
 
 #include "tables.h"
 
-static const double NOTHING = 1e-200; /* a number beside which no stiffness counts, but whose root has a slope */
-
 enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3 }; /* places of the inputs */
 
 static bool tabulate(Joint *joint, int steps, Text *why)
@@ -167,8 +165,5 @@ void joint_derivative(Joint *joint, const double *inputs, const double *seed, do
     }
     x[N_PARTS + 6] = largest;
     x[N + N_PARTS + 6] = largest_rate;
-    for (int k = 0; k < N_PARTS; k++)
-        if (x[k] == 0.0)
-            x[k] = NOTHING; /* the damping is a root of the stiffness; an open joint stays without both */
     outputs_seed(x, joint->c, result);
 }
