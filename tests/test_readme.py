@@ -53,6 +53,7 @@ def test_every_kind_of_command_is_shown():
         "ramp",
         "validate",
         "surface",
+        "fit",
         "uncertainty",
         "sweep",
         "modelica",
