@@ -117,7 +117,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         try:
             with np.errstate(all="ignore"):
                 found = self.model.evaluate(self.spring(), inputs)
-        except (ValueError, RuntimeError) as error:
+        except (ValueError, RuntimeError, OverflowError) as error:
             self.refuse(str(error))
         outputs = {name: float(value) for name, value in found.items()}
         if bad := [name for name, value in outputs.items() if not math.isfinite(value)]:

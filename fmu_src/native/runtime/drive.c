@@ -261,7 +261,7 @@ static void look_up(const Joint *joint, const double *inputs, int order, double 
     *x = copysign(phi, at);
     y[0] = copysign(y[0], at);
     if (order == 2)
-        y[2] = copysign(y[2], at);
+        y[2] = at < 0.0 ? -y[2] : y[2];
 }
 
 bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
