@@ -67,7 +67,7 @@ def _uncertainty(args: argparse.Namespace) -> int:
     task = problem.pose(file, given, args.to, args.points)
     A, B = propagate.design(task, count, args.seed)
     bands = propagate.bands(task, A)
-    rows = min(count, max(1024, count // 8))
+    rows = min(count, max(1024, count // 32))
     found = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 else None
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
