@@ -68,16 +68,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     value of the wrong type or outside its interval.
     """
     path = Path(path)
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a parameter file") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected a parameter file (TOML, UTF-8)") from None
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: is no valid TOML ({error})") from None
-    if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
-        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
+    document = read_document(path, "a parameter file")
     kind = document.get("joint")
     if not isinstance(kind, str) or kind not in JOINTS:
         raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(JOINTS)}")
@@ -90,6 +81,24 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     return ParameterFile(kind, str(document.get("name", path.stem)), parameters, kinds, sources)
+
+
+def read_document(path: Path, expected: str) -> dict[str, Any]:
+    """A TOML document of our schema; `expected` names what it should be.
+
+    Raises ValueError with one line if the file cannot be read, is no TOML or of another schema.
+    """
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {expected}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is no text file; expected {expected} (TOML, UTF-8)") from None
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path}: is no valid TOML ({error})") from None
+    if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
+        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
+    return document
 
 
 def _entries(

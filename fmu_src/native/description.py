@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu import __version__
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flatten
+from jointfmu.stamp import fixed_time
 
-from ..stamp import fixed_time
 from ..units import UNITS
 from ..variables import Model
 from ..xml_parts import (

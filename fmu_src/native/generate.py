@@ -146,15 +146,7 @@ def _row(
 
 def _equations(g: Graph) -> tuple[str, str]:
     """law.h and law.c of a partner: functions of time, inputs and states."""
-    theta = ca.vertcat(*g.theta.values())
-    bodies = [
-        function("law_constants", "parameters -> further constants", theta, ca.SX.sym("none", 1), g.constants)
-    ]
-    bodies += [
-        function(f.name, f.doc, ca.vertcat(*f.x), g.c, f.y, derivative=f.name.endswith("_seed"))
-        for f in g.functions
-    ]
-    names = ("law_constants", *(f.name for f in g.functions))
+    texts = _functions(g)
     header = [
         "#ifndef JOINTFMU_LAW_H",
         "#define JOINTFMU_LAW_H",
@@ -163,13 +155,27 @@ def _equations(g: Graph) -> tuple[str, str]:
         "",
         f"enum {{ N_CONSTANTS = {len(g.theta) + len(g.constants)} }};",
         "",
-        *(f"void {name}(const double *x, const double *c, double *y);" for name in names),
+        *(f"void {name}(const double *x, const double *c, double *y);" for name in texts),
         "",
         HELPERS,
         "#endif",
         "",
     ]
-    return "\n".join(header), '#include "law.h"\n\n' + "\n".join(bodies)
+    return "\n".join(header), '#include "law.h"\n\n' + "\n".join(texts.values())
+
+
+def _functions(g: Graph) -> dict[str, str]:
+    """C of all functions by name, `law_constants` first."""
+    theta, none = ca.vertcat(*g.theta.values()), ca.SX.sym("none", 1)
+    texts = {
+        "law_constants": function(
+            "law_constants", "parameters -> further constants", theta, none, g.constants
+        )
+    }
+    for f in g.functions:
+        derivative = f.name.endswith("_seed")
+        texts[f.name] = function(f.name, f.doc, ca.vertcat(*f.x), g.c, f.y, derivative=derivative)
+    return texts
 
 
 def _law(g: Graph, model: Model) -> tuple[str, str]:
@@ -191,20 +197,15 @@ def _law(g: Graph, model: Model) -> tuple[str, str]:
     series = ["law_load", "law_table", *(["law_state"] if state else [])]
     variables = [v.name for v in (*model.inputs, *model.outputs)]
     watched = [f"{{{variables.index(o.variable)}, {_string(o.doc)}}}" for o in model.outside]
-    theta = ca.vertcat(*g.theta.values())
-    bodies = [
-        function("law_constants", "parameters -> further constants", theta, ca.SX.sym("none", 1), g.constants)
-    ]
-    prototypes, inline = ["law_constants"], []
-    for f in g.functions:
-        text = function(f.name, f.doc, ca.vertcat(*f.x), g.c, f.y, derivative=f.name.endswith("_seed"))
-        if f.name.rsplit("_", 1)[0] in series:
+    bodies, prototypes, inline = [], [], []
+    for name, text in _functions(g).items():
+        if name.rsplit("_", 1)[0] in series:
             bodies.append(text.replace("\nvoid ", "\nstatic void ", 1))
-        elif text.count("\n") <= _SHORT:
+        elif name != "law_constants" and text.count("\n") <= _SHORT:
             inline.append(text.replace("\nvoid ", "\nstatic inline void ", 1))
         else:
             bodies.append(text)
-            prototypes.append(f.name)
+            prototypes.append(name)
     header = [
         "#ifndef JOINTFMU_LAW_H",
         "#define JOINTFMU_LAW_H",

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -13,6 +12,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, flatten, interval, problem
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
+from ..templates import template
 from ..units import UNITS, display_unit
 from ..variables import Model
 from ..xml_parts import listed
@@ -50,19 +50,8 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     }
 
 
-def _template(name: str) -> jinja2.Template:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    return environment.get_template(name)
-
-
 def _partner_page(model: Model, parameters: ParameterFile) -> str:
-    return _template("partner.html").render(
+    return template(Path(__file__).with_name("partner.html")).render(
         model=model, version=__version__, variables=listed(model, flatten(parameters.values))
     )
 
@@ -72,7 +61,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
     variables = listed(model, flatten(parameters.values))
     exposed = model.parameter_fields()
     rows = _rows(parameters)
-    return _template(f"{model.joint}.html").render(
+    return template(Path(__file__).with_name(f"{model.joint}.html")).render(
         model=model,
         file=parameters,
         version=__version__,

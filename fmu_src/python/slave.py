@@ -11,7 +11,6 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from jointfmu_fmus.stamp import build_time
 from jointfmu_fmus.variables import MODELS, Model
 from jointfmu_fmus.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
@@ -20,6 +19,7 @@ from pythonfmu.enums import Fmi2Initial, Fmi2Status
 from jointfmu import __version__
 from jointfmu.parameters import load
 from jointfmu.quantity import build, flatten
+from jointfmu.stamp import build_time
 
 T = TypeVar("T")
 

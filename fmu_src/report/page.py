@@ -4,26 +4,18 @@ import platform
 from pathlib import Path
 from typing import Any
 
-import jinja2
-
 from jointfmu import __version__
 from jointfmu.parameters import write_text
+from jointfmu.stamp import build_time
 
-from ..stamp import build_time
+from ..templates import template
 from . import figures, systems
 
 
 def write_report(path: Path, outcome: Any) -> None:
     """Write the self-contained page of an outcome of the main job."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
     ramps = outcome.ramps
-    page = environment.get_template("page.html").render(
+    page = template(Path(__file__).with_name("page.html")).render(
         version=__version__,
         python=platform.python_version(),
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),

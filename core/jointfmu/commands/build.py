@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..parameters import load
-from .common import command
+from .common import command, without_package
 
 
 def add(commands: Any) -> None:
@@ -38,10 +38,7 @@ def _build(args: argparse.Namespace) -> int:
         if args.systems:
             built += ssp.build_systems(args.out, file)
     except ImportError as error:
-        raise ValueError(
-            f"the package {error.name or error} is missing, needed to build; "
-            "install it with: pip install 'jointfmu[build]'"
-        ) from None
+        raise without_package(error, "build") from None
     if args.json:
         print(json.dumps({"built": [str(path) for path in built]}))
     else:

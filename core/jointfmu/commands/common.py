@@ -32,6 +32,14 @@ def command(commands: Any, name: str, run: Run, text: str) -> argparse.ArgumentP
     return sub
 
 
+def without_package(error: ImportError, purpose: str) -> ValueError:
+    """The refusal of a command whose package is missing, with the extra that brings it."""
+    return ValueError(
+        f"the package {error.name or error} is missing, needed to {purpose}; "
+        "install it with: pip install 'jointfmu[build]'"
+    )
+
+
 def settings(sub: argparse.ArgumentParser) -> None:
     """Declare `--set NAME=VALUE ...`."""
     sub.add_argument(

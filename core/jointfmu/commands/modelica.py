@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from ..parameters import load
-from .common import command
+from .common import command, without_package
 
 
 def add(commands: Any) -> None:
@@ -32,10 +32,7 @@ def _modelica(args: argparse.Namespace) -> int:
         states = [(force, args.moment or 0.0) for force in args.preload]
         written = library.write(args.out, file, states)
     except ImportError as error:
-        raise ValueError(
-            f"the package {error.name or error} is missing, needed to write the library; "
-            "install it with: pip install 'jointfmu[build]'"
-        ) from None
+        raise without_package(error, "write the library") from None
     if args.json:
         print(json.dumps({"written": [str(path) for path in written]}))
     else:

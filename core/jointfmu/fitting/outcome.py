@@ -1,9 +1,7 @@
 """What every fit hands back: the parameter file, how well it is determined, and the plotted data."""
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -11,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..parameters import JOINTS, ParameterFile
 from ..quantity import flat_fields, flatten
+from ..stamp import build_time
 from .identifiability import combinations, undetermined
 from .least_squares import Array, Solution, Unknown
 
@@ -147,12 +146,4 @@ def today() -> str:
 
     Raises ValueError if the variable is no number of seconds.
     """
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    if not epoch:
-        return datetime.now(UTC).date().isoformat()
-    try:
-        return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
-    except (ValueError, OverflowError, OSError):
-        raise ValueError(
-            f"SOURCE_DATE_EPOCH = {epoch!r} is no date; expected whole seconds since 1970"
-        ) from None
+    return build_time().date().isoformat()

@@ -10,7 +10,6 @@ A study file is TOML, one entry per parameter with the same words as on the comm
 """
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
+from ..parameters import read_document
 from . import distributions
 from .distributions import Uncertain
 
 Array = NDArray[np.float64]
 
-SCHEMA = 1
 MOST_SAMPLES = 2**24
 
 
@@ -35,16 +34,7 @@ def read(path: str | Path) -> dict[str, Any]:
     Raises ValueError with one line that names the file, the entry and what is allowed.
     """
     path = Path(path)
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a study file") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected a study file (TOML, UTF-8)") from None
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: is no valid TOML ({error})") from None
-    if type(document.get("schema")) is not int or document["schema"] != SCHEMA:
-        raise ValueError(f"{path}: schema = {document.get('schema')!r}, allowed is {SCHEMA}")
+    document = read_document(path, "a study file")
     if unknown := set(document) - {"schema", "parameters"}:
         raise ValueError(f"{path}: unknown entry {sorted(unknown)[0]!r}, allowed are schema, parameters")
     table = document.get("parameters")

@@ -1,11 +1,11 @@
-"""The date that goes into what is built."""
+"""The date that goes into what is written."""
 
 from datetime import UTC, datetime
 from os import environ
 
 
 def build_time() -> datetime:
-    """Now, or SOURCE_DATE_EPOCH where it is set, for builds that repeat."""
+    """Now, or SOURCE_DATE_EPOCH where it is set, for files that repeat."""
     return fixed_time() or datetime.now(UTC)
 
 
