@@ -1,0 +1,101 @@
+"""ANSYS: MATRIX27 stiffness and damping between node pairs (Zhao 2018, section 2), as an archive of blocks.
+
+KEYOPT(2) = 0: symmetric, real constants C1 to C78 are the upper triangle row by row, degrees of freedom
+UX UY UZ ROTX ROTY ROTZ of node I, then of node J. KEYOPT(3) = 4: stiffness, 5: damping. A spring K along x
+is C1 = C58 = K, C7 = -K (element reference, MATRIX27).
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .placing import Placing, header
+from .springs import Springs
+
+Array = NDArray[np.float64]
+
+MATRIX27, STIFFNESS, DAMPING = 27, 4, 5
+_UPPER = np.triu_indices(12)
+
+
+def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> str:
+    """The text of the file; two elements per pair, first all with stiffness.
+
+    Sets of real constants are shared by pairs that are equal to nine digits, which the format holds.
+    """
+    first, kind, units, count = placing.first, placing.first_set, placing.units, len(springs.nodes)
+    stiffness = placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m"))
+    damping = placing.along(units.of(springs.C_t, "N.s/m"), units.of(springs.C_n, "N.s/m"))
+    sets: dict[tuple[str, ...], int] = {}
+    reals = [_real(sets, row, kind) for row in (*stiffness, *damping)]
+    types = np.repeat([kind, kind + 1], count)
+    pairs = np.vstack([springs.nodes, springs.nodes])
+    rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
+    lines = [
+        *header(about, "!"),
+        "/PREP7",
+        *(_nodes(springs, placing) if placing.own else []),
+        *_type(kind, STIFFNESS),
+        *_type(kind + 1, DAMPING),
+        *_constants(sets),
+        f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
+        "(19i10)",
+        *(_integers((1, t, r, 1, 0, 0, 0, 0, 2, 0, e, *nodes)) for t, r, e, nodes in rows),
+        "        -1",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def triangle(values: Array) -> Array:
+    """C1 to C78 (78) of three springs (3) along x, y, z between two nodes."""
+    matrix = np.zeros((12, 12))
+    here = np.arange(3)
+    matrix[here, here] = matrix[here + 6, here + 6] = values
+    matrix[here, here + 6] = matrix[here + 6, here] = -values
+    return np.asarray(matrix[_UPPER])
+
+
+def _real(sets: dict[tuple[str, ...], int], values: Array, first: int) -> int:
+    """Number of the set of real constants of three springs; new values get a new set."""
+    return sets.setdefault(tuple(f"{v:.8E}" for v in values), first + len(sets))
+
+
+def _constants(sets: dict[tuple[str, ...], int]) -> Iterable[str]:
+    yield f"RLBLOCK,{len(sets):8d},{max(sets.values()):8d},{_UPPER[0].size:8d},{7:8d}"
+    yield from ("(2i8,6g16.9)", "(7g16.9)")
+    for values, number in sets.items():
+        cells = [f"{v:16.8E}" for v in triangle(np.array(values, dtype=np.float64))]
+        yield f"{number:8d}{len(cells):8d}" + "".join(cells[:6])
+        yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
+
+
+def _type(number: int, kind: int) -> Iterable[str]:
+    yield f"ET,{number:9d},{MATRIX27:4d}"
+    yield f"KEYOP,{number:9d},{2:3d},{0:9d}"
+    yield f"KEYOP,{number:9d},{3:3d},{kind:9d}"
+
+
+def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
+    place = placing.coordinates(springs.position)
+    yield f"NBLOCK,6,SOLID,{springs.nodes.max():10d},{springs.nodes.size:10d}"
+    yield "(3i9,6e21.13e3)"
+    for side in (0, 1):
+        for node, xyz in zip(springs.nodes[:, side], place, strict=True):
+            yield f"{node:9d}{0:9d}{0:9d}" + "".join(_exponential(v) for v in xyz)
+    yield "N,R5.3,LOC,       -1,"
+    for side in (0, 1):
+        labels = np.sort(springs.nodes[:, side])
+        yield f"CMBLOCK,JOINT_SIDE_{side + 1},NODE,{labels.size:8d}"
+        yield "(8i10)"
+        yield from (_integers(labels[i : i + 8]) for i in range(0, labels.size, 8))
+
+
+def _integers(values: Iterable[int]) -> str:
+    return "".join(f"{v:10d}" for v in values)
+
+
+def _exponential(value: float) -> str:
+    """A number as Fortran writes it with e21.13e3: three digits of exponent."""
+    mantissa, exponent = f"{value:.13E}".split("E")
+    return f"{mantissa}E{int(exponent):+04d}".rjust(21)

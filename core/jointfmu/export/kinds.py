@@ -1,0 +1,13 @@
+"""What can be written, for the command line; loads nothing."""
+
+KINDS = {
+    "ansys": ("springs",),
+    "calculix": ("springs", "contact"),
+    "abaqus": ("springs", "contact"),
+    "modelica": ("curve",),
+    "csv": ("springs", "contact", "curve"),
+}
+"""{format: what it can hold}."""
+WHAT = ("springs", "contact", "curve")
+ERROR = 1e-3
+"""Largest error of a table's load [1] by straight lines, unless another is asked for."""
