@@ -51,3 +51,14 @@ def areal_roughness(G: Number, H: Number) -> Number:
 def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
     """G [m] in the sense of Zhao 2018, Eqs. 1 and 30, whose waves lack the factor sqrt(ln gamma)."""
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
+
+
+def rms_height(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
+    """h_rms [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
+    return np.sqrt((wave_power(1.0 / longest, H, G) - wave_power(1.0 / shortest, H, G)) / (2.0 * H))
+
+
+def rms_slope(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
+    """h'_rms [1], root mean square gradient: the integral of (2 pi frequency)^2 Phi over ln(frequency)."""
+    high, low = (wave_power(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
+    return 2.0 * np.pi * np.sqrt((high - low) / (2.0 - 2.0 * H))

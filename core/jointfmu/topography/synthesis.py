@@ -1,10 +1,15 @@
-"""Seeded Weierstrass-Mandelbrot surfaces: isotropic (Hu 2023, Eq. 1), textured (Yu 2022, Eq. 3), profiles."""
+"""Seeded surfaces of given D and G.
+
+Weierstrass-Mandelbrot: isotropic (Hu 2023, Eq. 1), textured (Yu 2022, Eq. 3), profiles. Periodic: every wave
+of a band.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..quantity import check, quantity
+from .fractal import wave_power
 from .heights import Areal, Array, Profile
 
 
@@ -94,6 +99,35 @@ def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed:
     spacing = waves.size / waves.points
     z = along_x[None, :] + along_y[:, None]
     return Areal(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
+
+
+def periodic(size: float, points: int, D: float, G: float, band: tuple[float, float], seed: int) -> Areal:
+    """Isotropic surface with all the waves of a band that fit a periodic square, and no others.
+
+    size   : [m]  side of the square; points : along a side
+    D      : 1    fractal dimension of the surface, 2 < D < 3
+    G      : [m]  fractal roughness in the sense of `isotropic`
+    band   : [m]  longest and shortest wave, size >= longest > shortest >= 2 spacings
+    seed   : of the phases; the amplitudes are those of `fractal.wave_power` without scatter
+
+    Raises ValueError if D is outside its interval or the band does not fit the square and its grid.
+    """
+    _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
+    longest, shortest = band
+    spacing = size / points
+    if not size >= longest > shortest >= 2.0 * spacing * (1.0 - 1e-9):
+        raise ValueError(
+            f"band = {longest:g} to {shortest:g} m is not allowed: the longest wave is at most the side "
+            f"{size:g} m, the shortest below it and at least two spacings, {2.0 * spacing:g} m"
+        )
+    f = np.hypot(np.fft.fftfreq(points, spacing)[:, None], np.fft.rfftfreq(points, spacing))
+    inside = (f >= (1.0 - 1e-9) / longest) & (f <= (1.0 + 1e-9) / shortest)
+    f[~inside] = np.inf
+    cell = 1.0 / (2.0 * np.pi * f**2 * size**2)  # share of ln f of one mode
+    noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((points, points)))
+    waves = noise / np.abs(noise) * np.sqrt(wave_power(f, 3.0 - D, G) * cell)
+    z = np.fft.irfft2(waves, s=(points, points)) * points**2
+    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")
 
 
 def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:
