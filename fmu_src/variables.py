@@ -260,7 +260,7 @@ MODELS: dict[str, Model] = {
                     (*_TIGHT, "s_rel_z"),
                 ),
             },
-            hidden=("pattern",),
+            hidden=("pattern", "field"),
         ),
         Model(
             name="GearContact",

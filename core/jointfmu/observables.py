@@ -13,7 +13,7 @@ from .asperity import zhao2018 as zhao
 from .asperity.yu2022 import Yu2022
 from .footprint.bolts import cells, pressure_shape, unit_pressures
 from .interface import at_largest_spot
-from .joints.bolted_joint import BoltedJoint, pressures, row_forces
+from .joints.bolted_joint import BoltedJoint, bolt_pattern, pressures, row_forces
 from .joints.gear_contact import GearContact
 from .joints.harmonic_drive import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 from .surface import domain_extension, hardness_coefficient
@@ -91,9 +91,10 @@ def p_max(joint: BoltedJoint, preload: float) -> float:
 
 def p_between(joint: BoltedJoint, preload: float) -> float:
     """Pressure [Pa] midway between a corner bolt and its neighbour off the row, at a preload [N]."""
-    areas, nodes = cells(joint.pattern)
-    middle = joint.pattern.bolts[[0, 3]].mean(axis=0)[None, :]
-    unit = float(unit_pressures(joint.pattern, areas, nodes, middle).sum())
+    pattern = bolt_pattern(joint)
+    areas, nodes = cells(pattern)
+    middle = pattern.bolts[[0, 3]].mean(axis=0)[None, :]
+    unit = float(unit_pressures(pattern, areas, nodes, middle).sum())
     return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
 
 

@@ -5,6 +5,7 @@ A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter
     [surface]
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
+A bolted joint has either the section [pattern] or the section [field], whose values are lists.
 `kind` is one of KINDS; the unit must be the SI unit that the code declares, nothing is converted.
 """
 
@@ -26,6 +27,8 @@ SCHEMA = 1
 KINDS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
 """Where a value comes from: printed in the paper, computed from printed values, a catalogue,
 an engineering estimate, fitted to calibration points, or set by the user."""
+_PER_LINE = 5
+"""Numbers of a list on a line."""
 JOINTS: dict[str, type[Any]] = {
     "harmonic_drive": HarmonicDrive,
     "bolted_joint": BoltedJoint,
@@ -75,7 +78,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     if joint is not None and kind != joint:
         raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
-    values, kinds, sources = _entries(path, kind, body)
+    values, kinds, sources = entries(path, JOINTS[kind], body)
     try:
         parameters = build(JOINTS[kind], values)
     except ValueError as error:
@@ -101,11 +104,11 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
     return document
 
 
-def _entries(
-    path: Path, joint: str, body: Mapping[str, Any]
+def entries(
+    path: Path, cls: type[Any], body: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, kinds and sources by structured name; every unit checked against the code."""
-    declared = dict(flat_fields(JOINTS[joint]))
+    """Values, kinds and sources by structured name; every unit checked against the parameter set `cls`."""
+    declared = dict(flat_fields(cls))
     values: dict[str, Any] = {}
     kinds: dict[str, str] = {}
     sources: dict[str, str] = {}
@@ -161,6 +164,9 @@ def dump(parameters: ParameterFile) -> str:
 def _toml(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
+    if isinstance(value, tuple):
+        rows = [", ".join(map(repr, value[i : i + _PER_LINE])) for i in range(0, len(value), _PER_LINE)]
+        return "[\n  " + ",\n  ".join(rows) + ",\n]"
     return _quoted(value) if isinstance(value, str) else repr(float(value))
 
 

@@ -32,14 +32,25 @@ def quantity(
     return field(metadata={**meta, "calibration": calibration, "whole": whole})
 
 
+def series(
+    unit: str, doc: str, *, gt: float = -inf, ge: float = -inf, lt: float = inf, le: float = inf
+) -> Any:
+    """Declare a tuple of numbers [unit], every one inside an interval."""
+    meta = {"unit": unit, "doc": doc, "gt": gt, "ge": ge, "lt": lt, "le": le}
+    return field(metadata={**meta, "calibration": False, "whole": False, "series": True})
+
+
 def choice(*allowed: str | bool, doc: str) -> Any:
     """Declare a named choice; the first is the default."""
     return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
 
 
-def group(doc: str) -> Any:
-    """Declare a nested group of quantities (`surface`, `side1`, ...)."""
-    return field(metadata={"group": True, "doc": doc})
+def group(doc: str, **either: type[Any]) -> Any:
+    """Declare a nested group of quantities (`surface`, `side1`, ...).
+
+    either : names and classes of which a parameter set has one, instead of the field's own
+    """
+    return field(metadata={"group": True, "doc": doc, "either": either})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +93,23 @@ def label(item: Field[Any]) -> str:
     return item.name.rstrip("_")
 
 
+def sections(item: Field[Any], own: Any) -> dict[str, type[Any]]:
+    """Names and classes that a group may have; `own` is the field's type."""
+    return item.metadata["either"] or {label(item): own}
+
+
+def section(item: Field[Any], value: Any) -> str:
+    """Name of a group that is there."""
+    either = item.metadata["either"]
+    return next((name for name, cls in either.items() if isinstance(value, cls)), label(item))
+
+
+def chosen(item: Field[Any], own: Any, prefix: str, values: Iterable[str]) -> str:
+    """Name of the group that most of the parameter names speak of; the first if none does."""
+    heads = [name.removeprefix(prefix).partition(".")[0] for name in values if name.startswith(prefix)]
+    return max(sections(item, own), key=heads.count)
+
+
 def interval(item: Field[Any]) -> str:
     """The allowed interval as text, e.g. `[0, 1)`."""
     meta = item.metadata
@@ -101,6 +129,8 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
             return None
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
+    if "series" in meta:
+        return _series_problem(name, value, item)
     number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)
     if not number or array.dtype.kind not in "fiu":
@@ -116,6 +146,17 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
         return f"{name} = {first:g} is no whole number, allowed are 1, 2, 3, ..."
     first = array[~inside].flat[0]
     return f"{name} = {first:.10g}{unit} is outside {interval(item)}: {meta['doc']}"
+
+
+def _series_problem(name: str, values: Any, item: Field[Any]) -> str | None:
+    """As `problem`, of the first of some numbers that is wrong."""
+    if not isinstance(values, list | tuple) or not values:
+        shown = " ".join(repr(values).split())[:80]
+        return f"{name} = {shown} is no list of numbers: {item.metadata['doc']}"
+    one = {key: value for key, value in item.metadata.items() if key != "series"}
+    single = field(metadata=one)
+    found = (problem(f"{name}[{i}]", value, single) for i, value in enumerate(values))
+    return next((text for text in found if text), None)
 
 
 def check(obj: Any) -> None:
@@ -139,7 +180,8 @@ def flat_fields(cls: type[Any], prefix: str = "") -> Iterator[tuple[str, Field[A
     hints = get_type_hints(cls)
     for item in fields(cls):
         if "group" in item.metadata:
-            yield from flat_fields(hints[item.name], f"{prefix}{label(item)}.")
+            for name, one in sections(item, hints[item.name]).items():
+                yield from flat_fields(one, f"{prefix}{name}.")
         elif item.metadata:
             yield prefix + label(item), item
 
@@ -150,7 +192,7 @@ def flatten(obj: Any) -> dict[str, Any]:
     for item in fields(obj):
         value = getattr(obj, item.name)
         if is_dataclass(value) and "group" in item.metadata:
-            values |= {f"{label(item)}.{name}": v for name, v in flatten(value).items()}
+            values |= {f"{section(item, value)}.{name}": v for name, v in flatten(value).items()}
         elif item.metadata:
             values[label(item)] = value
     return values
@@ -162,9 +204,13 @@ def build(cls: type[T], values: Mapping[str, Any]) -> T:
     Raises ValueError, one line, naming every unknown or missing name and every value that is no
     number or lies outside its interval.
     """
-    known = dict(flat_fields(cls))
+    left_out = _left_out(cls, values)
+    everything = dict(flat_fields(cls))
+    known = {name: item for name, item in everything.items() if not name.startswith(tuple(left_out))}
     required = {name for name, item in known.items() if item.default is MISSING}
-    problems = [f"unknown name {name!r}" for name in values if name not in known]
+    beside = [name for name in values if name in everything and name not in known]
+    problems = [f"{name} is no parameter of a set that has [{left_out[_head(name)]}]" for name in beside]
+    problems += [f"unknown name {name!r}" for name in values if name not in everything]
     if problems:
         problems.append(f"allowed are {', '.join(known)}")
     if missing := sorted(required - values.keys()):
@@ -176,14 +222,36 @@ def build(cls: type[T], values: Mapping[str, Any]) -> T:
     return _assemble(cls, dict(values), "")
 
 
+def _left_out(cls: type[Any], values: Iterable[str]) -> dict[str, str]:
+    """{prefix: name of the group that is there} of the groups that a parameter set does not have."""
+    found: dict[str, str] = {}
+    hints = get_type_hints(cls)
+    for item in fields(cls):
+        if item.metadata.get("either"):
+            one = chosen(item, hints[item.name], "", values)
+            found |= {f"{name}.": one for name in item.metadata["either"] if name != one}
+    return found
+
+
+def _head(name: str) -> str:
+    return name.partition(".")[0] + "."
+
+
 def _assemble(cls: type[T], values: dict[str, Any], prefix: str) -> T:
     hints = get_type_hints(cls)
     arguments: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
         name = prefix + label(item)
         if "group" in item.metadata:
-            arguments[item.name] = _assemble(hints[item.name], values, f"{name}.")
+            one = chosen(item, hints[item.name], prefix, values)
+            inner = sections(item, hints[item.name])[one]
+            arguments[item.name] = _assemble(inner, values, f"{prefix}{one}.")
         elif name in values:
-            value = values[name]
-            arguments[item.name] = float(value) if type(value) is int else value
+            arguments[item.name] = _plain(values[name])
     return cls(**arguments)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return tuple(float(one) for one in value)
+    return float(value) if type(value) is int else value

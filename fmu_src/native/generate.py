@@ -12,7 +12,8 @@ import numpy as np
 
 from jointfmu import __version__, curve, table
 from jointfmu.footprint import lobes
-from jointfmu.footprint.bolts import PressureShape, pressure_shape
+from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints import harmonic_drive
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import flatten, interval

@@ -52,7 +52,10 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
 
 def _partner_page(model: Model, parameters: ParameterFile) -> str:
     return template(Path(__file__).with_name("partner.html")).render(
-        model=model, version=__version__, variables=listed(model, flatten(parameters.values))
+        model=model,
+        version=__version__,
+        variables=listed(model, flatten(parameters.values)),
+        terminals=TERMINALS.get(model.name, ()),
     )
 
 
@@ -84,6 +87,8 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
             allowed = ", ".join(str(a).lower() for a in meta["allowed"])
         else:
             allowed = "1, 2, 3, ..." if meta.get("whole") else interval(fields[name])
+        if isinstance(value, tuple):
+            value = f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}"
         kind, source = parameters.kinds.get(name, "user"), parameters.sources.get(name, "default choice")
         rows.append(_Row(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from jointfmu.joints.bolted_joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint import BoltedJointSpring, bolt_pattern
 from jointfmu.parameters import default
 from jointfmu.ramp import Ramp
 from jointfmu.validation import Row
@@ -93,7 +93,7 @@ def pressure_map(preload: float) -> str:
             points = ax.scatter(
                 xy[:, 0], xy[:, 1], c=p, s=14.0 * share / share.max(), marker="s", cmap="viridis"
             )
-            ax.plot(*(spring.joint.pattern.bolts * 1e3).T, "o", color="white", mec="black", ms=6)
+            ax.plot(*(bolt_pattern(spring.joint).bolts * 1e3).T, "o", color="white", mec="black", ms=6)
             ax.set_aspect("equal")
             ax.grid(False)
             ax.set_title(

@@ -23,10 +23,11 @@ _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Columns of a file in SI units, in the order of its rows."""
+    """Columns of a file in SI units, in the order of its rows, which are on the named lines."""
 
     path: Path
     columns: Mapping[str, Array]
+    lines: Sequence[int] = ()
 
     def require(self, name: str, spec: Mapping[str, Units]) -> Array:
         """A column; ValueError if the file has none."""
@@ -64,7 +65,7 @@ def read(path: str | Path, spec: Mapping[str, Units], least: int) -> Table:
         raise ValueError(f"{path}: has {len(rows) - 1} points, at least {least} are needed")
     numbers = [i for i, _ in lines[1:]]
     columns = {name: _column(path, name, place, rows, numbers) for name, (place, _) in places.items()}
-    return Table(path, {name: columns[name] * size for name, (_, size) in places.items()})
+    return Table(path, {name: columns[name] * size for name, (_, size) in places.items()}, numbers)
 
 
 def _headings(path: Path, cells: Sequence[str], spec: Mapping[str, Units]) -> dict[str, tuple[int, float]]:

@@ -113,8 +113,8 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    declared = {n: f for n, f in flat_fields(JOINTS[start.joint]) if "unit" in f.metadata}
     values, found = flatten(start.values), []
+    declared = {n: f for n, f in flat_fields(JOINTS[start.joint]) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
             raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")

@@ -21,6 +21,7 @@ import numpy as np
 
 from ..curve import approach_curve
 from ..footprint.bolts import BoltPattern, pressure_shape
+from ..footprint.shape import NodalField
 from ..interface import stiffness_curve
 from ..joints.bolted_joint import BoltedJoint, node_pressure, shear_ratio
 from ..parameters import ParameterFile, default
@@ -58,7 +59,7 @@ def joint_stiffness(joint: BoltedJoint, preload: Array, direction: str = "normal
 
 
 @cache
-def _shape(pattern: BoltPattern) -> tuple[Array, Array]:
+def _shape(pattern: BoltPattern | NodalField) -> tuple[Array, Array]:
     """Shares and pressures over mean (n) [1] of the pressure shape, nodes of equal pressure put together."""
     shape = pressure_shape(pattern)
     equal, node = np.unique(np.round(shape.equal, 12), return_inverse=True)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..quantity import check, quantity
+from .shape import NodalField, PressureShape
 
 Array = NDArray[np.float64]
 
@@ -46,22 +47,17 @@ class BoltPattern:
         """Pressure of one bolt, up to its factor: (1 + (r/decay_length)^2)^-decay_exponent [1]."""
         return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
 
-
-@dataclass(frozen=True, slots=True)
-class PressureShape:
-    """Nodes of the bolted contact and the pressure that unit bolt forces make.
-
-    share    : (n)    [1] part of the nominal area, sums to 1
-    position : (n, 2) [m] relative to the centroid of the contact
-    equal    : (n)    [1] pressure over mean pressure with equal bolt forces
-    tilt     : (n)    [1] the same for +1 on the row y > 0 and -1 on the row y < 0, over the mean
-                          pressure of one row
-    """
-
-    share: Array
-    position: Array
-    equal: Array
-    tilt: Array
+    def shape(self) -> PressureShape:
+        """Shares, positions and pressures of the cells of the frame."""
+        areas, points = cells(self)
+        unit = unit_pressures(self, areas, points, points) * areas.sum()
+        centroid = np.average(points, axis=0, weights=areas)
+        return PressureShape(
+            share=areas / areas.sum(),
+            position=points - centroid,
+            equal=unit.mean(axis=0),
+            tilt=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
+        )
 
 
 def cells(pattern: BoltPattern) -> tuple[Array, Array]:
@@ -97,14 +93,6 @@ def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array)
     return np.asarray(decay(at) / np.sum(areas * decay(points), axis=1)[:, None])
 
 
-def pressure_shape(pattern: BoltPattern) -> PressureShape:
+def pressure_shape(source: BoltPattern | NodalField) -> PressureShape:
     """The baked-in table of the bolted joint: shares, positions and pressure shapes."""
-    areas, points = cells(pattern)
-    unit = unit_pressures(pattern, areas, points, points) * areas.sum()
-    centroid = np.average(points, axis=0, weights=areas)
-    return PressureShape(
-        share=areas / areas.sum(),
-        position=points - centroid,
-        equal=unit.mean(axis=0),
-        tilt=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
-    )
+    return source.shape()

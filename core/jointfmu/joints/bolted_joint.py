@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..asperity import mindlin
 from ..asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
 from ..curve import Curve, approach_curve
-from ..footprint.bolts import BoltPattern, PressureShape, pressure_shape
+from ..footprint.bolts import BoltPattern, pressure_shape
+from ..footprint.shape import NodalField, PressureShape
 from ..interface import largest_spot
 from ..quantity import Limit, Number, check_limits, group, quantity
 
@@ -25,7 +26,11 @@ class BoltedJoint(Zhao2018):
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, whole=True
     )
     row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
-    pattern: BoltPattern = group("frame and decay of the pressure around each bolt")
+    pattern: BoltPattern | NodalField = group(
+        "what gives the pressure: the decay around each bolt of a frame, or the points of a field",
+        pattern=BoltPattern,
+        field=NodalField,
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -35,6 +40,19 @@ class BoltedJoint(Zhao2018):
         """Intervals that other parameters decide."""
         why = "two rows cannot hold more bolts than the joint has"
         return [Limit(name="row_bolts", low=1.0, high=0.5 * self.n_bolts, ends="[]", doc=why)]
+
+
+def bolt_pattern(joint: BoltedJoint) -> BoltPattern:
+    """The frame of a joint whose pressure is that of a pattern of bolts.
+
+    Raises ValueError if the joint has a nodal field instead.
+    """
+    if isinstance(joint.pattern, BoltPattern):
+        return joint.pattern
+    count = len(joint.pattern.share)
+    raise ValueError(
+        f"the joint has [field], a nodal field of {count} points; expected [pattern], a frame of bolts"
+    )
 
 
 def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, moment: ArrayLike) -> Array:

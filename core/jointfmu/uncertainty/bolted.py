@@ -17,6 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from ..asperity import mindlin
 from ..footprint.bolts import BoltPattern, pressure_shape
+from ..footprint.shape import NodalField
 from ..joints.bolted_joint import BoltedJoint, shear_ratio
 from ..quantity import flatten
 from .approach import held, tabulate
@@ -36,10 +37,14 @@ _BELOW = 1e-6
 
 
 @lru_cache(maxsize=64)
-def equal_pressures(pattern: BoltPattern) -> tuple[Array, Array]:
-    """Pressure over mean pressure (q) [1], ascending, and shares of the area (q) that stand for all nodes."""
+def equal_pressures(pattern: BoltPattern | NodalField) -> tuple[Array, Array]:
+    """Pressure over mean pressure (q) [1], ascending, and shares of the area (q) that stand for all nodes.
+
+    Open nodes have no part in it.
+    """
     shape = pressure_shape(pattern)
-    logs, shares = discrete_gauss(np.log(shape.equal), shape.share, EQUAL)
+    closed = shape.equal > 0.0
+    logs, shares = discrete_gauss(np.log(shape.equal[closed]), shape.share[closed], EQUAL)
     return np.exp(logs), shares
 
 
@@ -92,7 +97,9 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
 
 
 @lru_cache(maxsize=8)
-def _matrices(pattern: BoltPattern, start: float, ramp: bytes) -> tuple[Places, Array, Array, Array]:
+def _matrices(
+    pattern: BoltPattern | NodalField, start: float, ramp: bytes
+) -> tuple[Places, Array, Array, Array]:
     equal, shares = equal_pressures(pattern)
     places, force = Places.of(start, equal), np.frombuffer(ramp)
     ends = (places.force, force)
@@ -102,7 +109,7 @@ def _matrices(pattern: BoltPattern, start: float, ramp: bytes) -> tuple[Places, 
 
 def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
     joint = columns(BoltedJoint, values, 1)
-    pattern = BoltPattern(**flatten(joint.pattern))
+    pattern = type(joint.pattern)(**flatten(joint.pattern))
     equal, shares = equal_pressures(pattern)
     touching = loads > 0.0
     ramp = np.log(loads[touching] / loads[-1])

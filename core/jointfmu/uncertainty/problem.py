@@ -54,8 +54,10 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     """
     model, declared = MODELS[file.joint], dict(flat_fields(JOINTS[file.joint]))
     base = flatten(file.values)
-    if unknown := [name for name in given if name not in declared and name != model.load]:
-        allowed = ", ".join([*declared, model.load])
+    lists = {name for name, item in declared.items() if "series" in item.metadata}
+    known = [*(base.keys() - lists), model.load]
+    if unknown := [name for name in given if name not in known]:
+        allowed = ", ".join(name for name in [*declared, model.load] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
     load_text = given.get(model.load)
     relative = isinstance(load_text, str) and is_relative(load_text)

@@ -7,7 +7,7 @@ from typing import Any, TypeVar, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import Limit, flat_fields, flatten, label
+from ..quantity import Limit, chosen, flat_fields, flatten, label, sections
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -29,7 +29,10 @@ def _columns(cls: type[T], values: Mapping[str, Any], prefix: str) -> T:
     for item in fields(cls):  # type: ignore[arg-type]
         name = prefix + label(item)
         if "group" in item.metadata:
-            object.__setattr__(one, item.name, _columns(hints[item.name], values, f"{name}."))
+            own = hints[item.name]
+            section = chosen(item, own, prefix, values)
+            inner = _columns(sections(item, own)[section], values, f"{prefix}{section}.")
+            object.__setattr__(one, item.name, inner)
         else:
             object.__setattr__(one, item.name, values[name])
     return one
@@ -40,8 +43,8 @@ def inside(joint: Any, count: int) -> Mask:
     good = np.ones(count, dtype=bool)
     values = flatten(joint)
     for name, item in flat_fields(type(joint)):
-        meta, value = item.metadata, np.asarray(values[name])
-        if "allowed" in meta or value.ndim == 0:
+        meta, value = item.metadata, values.get(name)
+        if "allowed" in meta or not isinstance(value, np.ndarray):
             continue
         good &= np.isfinite(value) & (value > meta["gt"]) & (value >= meta["ge"])
         good &= (value < meta["lt"]) & (value <= meta["le"])

@@ -1,0 +1,153 @@
+"""`jointfmu footprint`: the pressure field of a bolted joint, brought along or computed."""
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import plots
+from ..parameters import ParameterFile, check_writable, default, dump, load, write_text
+from . import footprint_compute
+from .common import Parser, command
+
+if TYPE_CHECKING:
+    from ..fields.contact import ContactField
+    from ..fields.reduction import Reduction
+
+
+def add(commands: Any) -> None:
+    """Declare the command and its kinds."""
+    text = "the contact pressure of a bolted joint: from a file, or by finite elements"
+    top = commands.add_parser("footprint", help=text, description=text)
+    kinds = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    _import(kinds)
+    footprint_compute.add(kinds)
+
+
+def _import(kinds: Any) -> None:
+    one = command(kinds, "import", _bring, "bring a nodal contact result into a joint's parameter file")
+    one.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
+    one.add_argument(
+        "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
+    )
+    one.add_argument(
+        "--joint", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
+    )
+    one.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
+    one.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
+    one.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
+    one.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
+    one.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
+    one.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
+    one.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
+    one.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
+    one.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
+    one.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
+    one.add_argument(
+        "--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help="further listings"
+    )
+    one.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
+    one.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+
+
+def _bring(args: argparse.Namespace) -> int:
+    if (args.moment is None) != (args.moment_file is None):
+        raise ValueError("--moment and --moment-file belong together: expected both or none")
+    if args.out:
+        check_writable(args.out)
+    if args.plot:
+        plots.check(args.plot)
+    from ..fields import figure, joint
+
+    start = load(args.joint, "bolted_joint") if args.joint else default("bolted_joint")
+    field, tilted = _reading(args).field(args.file, args.moment_file)
+    source = f"nodal contact result {args.file.name}"
+    if args.moment_file:
+        source += f" and {args.moment_file.name}"
+    file, reduction = joint.with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
+    file = replace(file, name=f"{start.name}, field of {args.file.name}")
+    if args.plot:
+        figure.draw(field, reduction, args.plot)
+    if args.out:
+        write_text(args.out, dump(file))
+    found = _findings(args, file, field, reduction)
+    print(json.dumps(found) if args.json else "\n".join(_lines(found, start.values.A_0)))
+    return 0
+
+
+def _reading(args: argparse.Namespace) -> Any:
+    """How the file is to be read; every choice checked."""
+    from ..fields.reading import FORMATS, Reading
+    from ..fields.result import LENGTHS, PRESSURES
+    from ..fields.surface import AXES, OPEN, SIDES, Plane
+
+    for name, value, allowed in (
+        ("--format", args.format, FORMATS),
+        ("--length-unit", args.length_unit, tuple(LENGTHS)),
+        ("--pressure-unit", args.pressure_unit, tuple(PRESSURES)),
+        ("--normal", args.normal, tuple(AXES)),
+        ("--rows", args.rows, tuple(AXES)),
+        ("--side", args.side, SIDES),
+        ("--open", args.open, OPEN),
+    ):
+        if value is not None and value not in allowed:
+            raise ValueError(f"{name} = {value!r} is not one of {', '.join(allowed)}")
+    return Reading(
+        format=args.format,
+        length=args.length_unit,
+        pressure=args.pressure_unit,
+        data=args.data,
+        beside=args.beside,
+        plane=Plane(args.normal, args.rows, args.side),
+        open=args.open,
+    )
+
+
+def _findings(
+    args: argparse.Namespace, file: ParameterFile, field: "ContactField", reduction: "Reduction"
+) -> dict[str, Any]:
+    joint = file.values
+    return {
+        "file": str(args.file),
+        "nodes": reduction.nodes,
+        "A_0": joint.A_0,
+        "force": field.force,
+        "force_of_the_bolts": args.preload * joint.n_bolts,
+        "p_max": float(field.pressure.max()),
+        "p_mean": field.force / joint.A_0,
+        "open_nodes": int((field.pressure == 0.0).sum()),
+        "points": reduction.points,
+        "deviation": reduction.deviation,
+        "loads": reduction.loads,
+        "largest_moment": reduction.moment * args.preload * joint.row_distance * joint.row_bolts,
+        "deviation_beyond": reduction.beyond,
+        "written": [str(path) for path in (args.out, args.plot) if path],
+    }
+
+
+def _lines(found: dict[str, Any], before: float) -> list[str]:
+    from ..fields.sums import PRELOADS
+
+    low, high = PRELOADS
+    part = 100.0 * (found["force"] / found["force_of_the_bolts"] - 1.0)
+    lines = [
+        f"{found['nodes']} nodes ({found['open_nodes']} open), pressure up to "
+        f"{found['p_max'] / 1e6:.4g} MPa, mean {found['p_mean'] / 1e6:.4g} MPa",
+        f"force {found['force']:.6g} N, {part:+.2g} % of the bolts' {found['force_of_the_bolts']:.6g} N; "
+        "the field is scaled to theirs",
+        f"A_0 is the nodes' area, {found['A_0']:.6g} m2 (it was {before:.6g} m2)",
+    ]
+    if found["loads"]:
+        lines.append(
+            f"{found['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{found['deviation']:.1e} at {found['loads']} other loads (preload {low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {found['largest_moment']:.4g} N.m at this one)"
+        )
+    else:
+        lines.append("all nodes are kept")
+    if found["deviation_beyond"]:
+        lines.append(
+            f"larger moments open nodes: within {found['deviation_beyond']:.1e} until a row is unloaded"
+        )
+    return [*lines, *(f"wrote {path}" for path in found["written"])]

@@ -1,0 +1,41 @@
+"""CSV of a contact field: x [m], y [m], area [m2], pressure [Pa], one node per line.
+
+The heading states the units, which may be others (COLUMNS). x runs along the bolt rows, y across them.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..fitting import columns
+from .contact import ContactField
+from .result import LENGTHS, PRESSURES, NodalResult
+
+COLUMNS: Mapping[str, columns.Units] = {
+    "x": LENGTHS,
+    "y": LENGTHS,
+    "area": {f"{unit}2": size**2 for unit, size in LENGTHS.items()},
+    "pressure": PRESSURES,
+}
+
+
+def read(path: Path) -> NodalResult:
+    """The nodes of a file, in SI units; ValueError with file, line and column otherwise."""
+    table = columns.read(path, COLUMNS, 1)
+    found = {name: table.require(name, COLUMNS) for name in COLUMNS}
+    return NodalResult(
+        path=path,
+        word="line",
+        names=np.array(table.lines, dtype=np.int64),
+        place=np.column_stack([found["x"], found["y"], np.zeros_like(found["x"])]),
+        pressure=found["pressure"],
+        area=found["area"],
+    )
+
+
+def text(field: ContactField) -> str:
+    """A field as the text of a file that `read` reads back, in SI units and to the last bit."""
+    rows = np.column_stack([field.position, field.area, field.pressure]).tolist()
+    lines = [",".join(map(repr, row)) for row in rows]
+    return "\n".join(["x [m],y [m],area [m2],pressure [Pa]", *lines, ""])

@@ -1,0 +1,112 @@
+"""A file with a nodal contact result to a checked field."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import ansys, csvfile, frd, meshfile
+from .contact import ContactField
+from .result import LENGTHS, PRESSURES, NodalResult
+from .surface import OPEN, Plane, Surface, surface
+
+FORMATS = ("csv", "mesh", "ansys", "frd")
+SUFFIXES = {".csv": "csv", ".frd": "frd", ".lis": "ansys", ".txt": "ansys", ".out": "ansys"}
+"""Format by the end of a file's name; others are meshes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """How a file is read.
+
+    format   : one of FORMATS; None: by the file's name
+    length   : unit of its lengths, of LENGTHS; None for CSV, whose heading states it
+    pressure : unit of its pressures, of PRESSURES; None for CSV
+    data     : point data that is the pressure, for meshes
+    beside   : further listings (ANSYS)
+    open     : what to do with nodes without pressure, one of OPEN
+    """
+
+    format: str | None = None
+    length: str | None = None
+    pressure: str | None = None
+    data: str | None = None
+    beside: Sequence[Path] = ()
+    plane: Plane = Plane()
+    open: str = OPEN[0]
+
+    def field(
+        self, path: Path, tilted: Path | None = None, beside: Sequence[Path] = ()
+    ) -> tuple[ContactField, ContactField | None]:
+        """The field of a file and, from a second one at the same nodes, that with a moment.
+
+        beside : further listings of the second one
+
+        Raises ValueError, one line that names the file and the node.
+        """
+        first = self._surface(path, self.beside)
+        second = None if tilted is None else self._surface(tilted, beside or self.beside)
+        kept = np.ones(first.area.size, dtype=bool)
+        if self.open == "drop":
+            kept = first.pressure > 0.0
+        elif self.open == "refuse":
+            for one in filter(None, (first, second)):
+                _refuse_open(one)
+        if second is None:
+            return first.field(kept), None
+        if second.area.size != first.area.size:
+            raise ValueError(
+                f"{tilted}: has a contact of {second.area.size} nodes, expected those of {path}: "
+                f"{first.area.size}"
+            )
+        return first.field(kept), second.field(kept)
+
+    def _surface(self, path: Path, beside: Sequence[Path]) -> Surface:
+        return surface(self._result(path, beside), self.plane)
+
+    def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
+        kind = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
+        for given, name, only in ((self.data, "--data", "mesh"), (beside, "--with", "ansys")):
+            if given and kind != only:
+                raise ValueError(f"{path}: is read as {kind}, {name} is for the format {only}")
+        if kind == "csv":
+            self._stated_by_file(path)
+            return csvfile.read(path)
+        length, pressure = self._units(path)
+        if kind == "ansys":
+            return ansys.read([path, *beside], length, pressure)
+        if kind == "frd":
+            return frd.read(path, length, pressure)
+        return meshfile.read(path, length, pressure, self.data)
+
+    def _units(self, path: Path) -> tuple[float, float]:
+        """Sizes of the stated units."""
+        for value, name, units in (
+            (self.length, "--length-unit", LENGTHS),
+            (self.pressure, "--pressure-unit", PRESSURES),
+        ):
+            if value is None:
+                raise ValueError(f"{path}: states no units; state {name}, one of {', '.join(units)}")
+        return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]
+
+    def _stated_by_file(self, path: Path) -> None:
+        """Refuse options that a CSV file answers itself."""
+        for given, name in (
+            (self.length, "--length-unit"),
+            (self.pressure, "--pressure-unit"),
+            (self.plane.side, "--side"),
+            (self.plane.rows, "--rows"),
+            (None if self.plane.normal == "z" else self.plane.normal, "--normal"),
+        ):
+            if given is not None:
+                raise ValueError(f"{path}: {name} {given}: a CSV file states units and plane in its heading")
+
+
+def _refuse_open(found: Surface) -> None:
+    open_nodes = np.flatnonzero(found.pressure == 0.0)
+    if open_nodes.size:
+        raise ValueError(
+            f"{found.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+            f"{found.area.size} nodes; state --open keep (they just touch) or --open drop (they never do)"
+        )
