@@ -7,10 +7,38 @@ import sys
 from collections.abc import Sequence
 
 from . import __version__
-from .commands import build, fit, law, modelica, ramp, surface, sweep, uncertainty, validate
+from .commands import (
+    build,
+    export,
+    fit,
+    footprint,
+    law,
+    modelica,
+    modes,
+    ramp,
+    ring,
+    surface,
+    sweep,
+    uncertainty,
+    validate,
+)
 from .commands.common import Parser
 
-COMMANDS = (law, build, modelica, ramp, surface, fit, uncertainty, sweep, validate)
+COMMANDS = (
+    law,
+    build,
+    modelica,
+    export,
+    footprint,
+    modes,
+    ramp,
+    ring,
+    surface,
+    fit,
+    uncertainty,
+    sweep,
+    validate,
+)
 
 
 def parser() -> Parser:

@@ -1,0 +1,209 @@
+"""`jointfmu footprint compute`: the pressure of a bolted joint by finite elements."""
+
+import argparse
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import plots
+from ..curve import Curve, approach_curve
+from ..parameters import ParameterFile, check_writable, default, dump, load, write_text
+from ..quantity import flatten
+from .common import command
+
+if TYPE_CHECKING:
+    from ..fem.convergence import MeshResult
+    from ..fem.geometry import Assembly
+    from ..fem.joint import JointSolution
+
+TILT = 1.0 / 3.0
+"""Moment of the second field for `--out`, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
+FINEST = 5
+"""Most meshes of `--refine`."""
+COARSEST = 0.3
+"""Least refinement [1] at which a hole still looks like one."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "compute the contact pressure of a bolted joint by finite elements"
+    sub = command(commands, "compute", run, text)
+    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
+    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
+    sub.add_argument("--moment", type=float, metavar="M", help="bending moment about x [N.m] (default: 0)")
+    sub.add_argument(
+        "--joint", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
+    )
+    sub.add_argument(
+        "--out", type=Path, metavar="FILE", help="write the joint with this field, for FMUs (TOML)"
+    )
+    sub.add_argument("--field", type=Path, metavar="FILE", help="write the field (.csv, .vtu)")
+    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw the pressure (.png, .svg)")
+    sub.add_argument(
+        "--refine", type=int, default=1, metavar="N", help=f"number of meshes, 1 to {FINEST} (default: 1)"
+    )
+    sub.add_argument(
+        "--refinement",
+        type=float,
+        default=1.0,
+        metavar="R",
+        help="divides the sizes of elements (default: 1)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the command; returns the exit status."""
+    try:
+        from ..fem import convergence, results
+        from ..fem.assembly import load as read
+    except ImportError as error:
+        raise without_fem(error) from None
+    assembly, file = read(args.assembly), joint_file(args.joint)
+    moment = 0.0 if args.moment is None else args.moment
+    assembly.bolt_forces(args.preload, moment)
+    _check(args)
+    if args.field:
+        results.check(args.field)
+    file = with_assembly(file, assembly, whole=args.out is not None)
+    levels = convergence.refinements(args.refine, args.refinement)
+    try:
+        rows, solution = convergence.study(assembly, _law(file), args.preload, moment, levels)
+    except (ImportError, OSError) as error:
+        raise without_fem(error) from None
+    written = _write(args, file, solution)
+    found = _findings(solution, moment, args.preload)
+    if args.json:
+        print(json.dumps(found | {"meshes": list(_meshes(rows)), "written": written}))
+    else:
+        print("\n".join([*_lines(found), *_table(rows)]))
+        print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
+    return 0
+
+
+def joint_file(path: Path | None) -> ParameterFile:
+    """The joint's parameters: of a file, or the default."""
+    return load(path, "bolted_joint") if path else default("bolted_joint")
+
+
+def _law(file: ParameterFile) -> Curve:
+    return approach_curve(file.values)
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse what cannot be done or written before the work."""
+    if not 1 <= args.refine <= FINEST:
+        raise ValueError(f"--refine = {args.refine} is outside [1, {FINEST}]: number of meshes")
+    if not COARSEST <= args.refinement <= 4.0:
+        raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
+    for path in filter(None, (args.out, args.field)):
+        check_writable(path)
+    if args.plot:
+        plots.check(args.plot)
+
+
+def without_fem(error: Exception) -> ValueError:
+    """The refusal where a package, or a system library of gmsh, is missing."""
+    return ValueError(
+        f"finite elements need what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
+        "and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
+    )
+
+
+def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
+    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`."""
+    changes = {"A_0": assembly.contact_area}
+    for name in ("side1", "side2"):
+        body = getattr(assembly, name)
+        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
+    if whole:
+        rows = assembly.outer_rows()
+        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
+        if rows is not None:
+            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
+    old = flatten(file.values)
+    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
+    return file.with_values(new, "derived", f"from the assembly {assembly.name}")
+
+
+def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
+    """Write what was asked for; returns the paths."""
+    from ..fem import results
+
+    if args.out:
+        write_text(args.out, dump(_with_field(args, file, solution)))
+    if args.field:
+        results.write(solution, args.field)
+    if args.plot:
+        results.draw(solution, args.plot)
+    return [str(path) for path in (args.out, args.field, args.plot) if path]
+
+
+def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
+    """The joint with the field at the preload, and what a moment adds from a second one."""
+    from ..fields.joint import with_field
+
+    joint, law = solution.joint, _law(file)
+    moment = args.moment or TILT * joint.assembly.most_moment(args.preload)
+    equal = joint.solve(law, args.preload).field if args.moment else solution.field
+    tilted = (
+        solution.field if args.moment else joint.solve(law, args.preload, moment).field if moment else None
+    )
+    source = f"finite elements of the assembly {joint.assembly.name}"
+    file, _ = with_field(file, equal, args.preload, source, tilted=tilted, moment=moment or None)
+    return replace(file, name=f"{file.name}, computed field")
+
+
+def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
+    field = solution.field
+    places, between = solution.between
+    return {
+        "assembly": solution.joint.assembly.name,
+        "preload": preload,
+        "moment": moment,
+        "area": float(field.area.sum()),
+        "force": field.force,
+        "p_mean": field.force / float(field.area.sum()),
+        "p_max": solution.peak,
+        "between": [
+            {"x": x, "y": y, "p": p} for (x, y), p in zip(places.tolist(), between.tolist(), strict=True)
+        ],
+        "open_share": float(field.area[field.pressure <= 0.0].sum() / field.area.sum()),
+        **solution.stiffness,
+    }
+
+
+def _lines(found: dict[str, Any]) -> Iterator[str]:
+    """The findings for people."""
+    yield f"{found['assembly']}: {found['preload']:g} N per bolt, moment {found['moment']:g} N.m"
+    yield f"contact   {found['area'] * 1e4:.2f} cm2, {100 * found['open_share']:.3g} % open"
+    yield f"force     {found['force']:.6g} N"
+    yield f"pressure  mean {found['p_mean'] / 1e6:.3g} MPa, peak {found['p_max'] / 1e6:.4g} MPa"
+    for one in found["between"]:
+        yield f"          between bolts at ({one['x']:g}, {one['y']:g}) m: {one['p'] / 1e6:.3g} MPa"
+    yield f"interface K_N {found['K_N']:.5g} N/m, K_rx {found['K_rx']:.5g}, K_ry {found['K_ry']:.5g} N.m/rad"
+
+
+def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, Any]]:
+    for row in rows:
+        yield {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+
+
+def _table(rows: list["MeshResult"]) -> Iterator[str]:
+    """Meshes with the relative change from one to the next and the observed order."""
+    if len(rows) < 2:
+        return
+    from ..fem.convergence import COLUMNS, changes, orders
+
+    heads = [f"{name} [{unit}]" for name, unit in COLUMNS.items()]
+    yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
+    for row in rows:
+        values = " ".join(f"{row.values[name]:16.6g}" for name in COLUMNS)
+        yield f"{row.refinement:6.2f} {row.unknowns:9d} {values}"
+    for change, row in zip(changes(rows), rows[1:], strict=True):
+        percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in COLUMNS)
+        yield f"change to {row.refinement:6.2f} {percent}"
+    if found := orders(rows):
+        yield "observed order   " + " ".join(f"{found[name]:16.1f}" for name in COLUMNS)

@@ -1,0 +1,111 @@
+"""`jointfmu ring`: resonance of a joint in its system over the load, by running FMUs."""
+
+import argparse
+import csv
+import io
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+from .. import plots
+from ..parameters import check_writable, write_text
+from .common import command, without_package
+
+SYSTEMS = {"robot_joint": ("N.m", "kg.m2"), "bolted_column": ("N", "kg")}
+"""{system: (unit of the load, unit of the inertia)}."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "run a joint's FMU with a body on it and find resonance and damping over the load"
+    ring = command(commands, "ring", _ring, text)
+    ring.add_argument("system", choices=SYSTEMS, metavar="SYSTEM", help="robot_joint or bolted_column")
+    ring.add_argument(
+        "--fmus",
+        type=Path,
+        default=Path("dist/fmi2"),
+        metavar="DIR",
+        help="folder with the FMUs of `jointfmu build --systems` (default: dist/fmi2)",
+    )
+    ring.add_argument(
+        "--load",
+        type=float,
+        nargs="+",
+        metavar="VALUE",
+        help="robot_joint: torque [N.m] (default: up to rated torque); bolted_column: preload per bolt [N]",
+    )
+    ring.add_argument(
+        "--inertia", type=float, metavar="VALUE", help="of the body [kg.m2 or kg] (default: of the example)"
+    )
+    ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
+    ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
+
+
+def _ring(args: argparse.Namespace) -> int:
+    _check(args)
+    try:
+        from jointfmu_fmus import ringing
+        from jointfmu_fmus.report.systems import SIZE, draw
+    except ImportError as error:
+        raise without_package(error, "run a system") from None
+    found = getattr(ringing, args.system)(args.fmus, args.load, args.inertia)
+    rows = [_row(point) for point in found]
+    for message in dict.fromkeys(text for point in found for text in point.messages):
+        print(message, file=sys.stderr)
+    table = _table(rows, SYSTEMS[args.system][0])
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        with plots.drawing(args.plot, SIZE) as figure:
+            draw(figure, found, args.system)
+    misses = [line for point in found for line in point.misses]
+    if args.json:
+        print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
+    else:
+        sys.stdout.write(table)
+        for path in filter(None, (args.csv, args.plot)):
+            print(f"wrote {path}")
+    for line in misses:
+        print(f"missed: {line}", file=sys.stderr)
+    return int(bool(misses))
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse what no FMU would, before the work."""
+    for value in args.load or ():
+        if not math.isfinite(value):
+            raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
+    if args.inertia is not None and not 0.0 < args.inertia < math.inf:
+        unit = SYSTEMS[args.system][1]
+        raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
+    if args.csv:
+        check_writable(args.csv)
+    if args.plot:
+        plots.check(args.plot)
+
+
+def _row(point: Any) -> dict[str, float]:
+    """One working point: load, frequencies [Hz], damping ratios [1], and the largest stable steps [s] of a
+    co-simulation whose master passes the force on at once, or one step late."""
+    return {
+        "load": point.load,
+        "frequency": point.frequency / math.tau,
+        "expected_frequency": point.expected / math.tau,
+        "damping_ratio": point.damping,
+        "stated_damping_ratio": point.stated,
+        "largest_step": 2.0 / point.expected,
+        "largest_step_late": (2.0 * point.stated) ** (1.0 / 3.0) / point.expected,
+    }
+
+
+def _table(rows: list[dict[str, float]], load: str) -> str:
+    """The rows as CSV text, header `name [unit]`, six digits."""
+    units = (load, "Hz", "Hz", "1", "1", "s", "s")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(f"{name} [{unit}]" for name, unit in zip(rows[0], units, strict=True))
+    for row in rows:
+        writer.writerow(f"{value:.6g}" for value in row.values())
+    return text.getvalue()

@@ -1,0 +1,130 @@
+"""The box specimen of Zhao 2018: lengths from its six frequencies at 9 kN, to predict the others.
+
+No length is published but the distance of the bolt rows. Five describe an open box whose walls are flush
+with the inside of the flange: length, height, wall, flange thickness and the flange's overhang, in whose
+middle the bolts sit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..curve import Curve, approach_curve
+from ..joints.bolted_joint import BoltedJoint, shear_ratio
+from .assembly import load
+from .assembly_modes import computed, uniform
+from .bolts import BoltGrid
+from .elasticity import Array
+from .geometry import Assembly, BoxSection
+from .joint import BoltedContact
+
+LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")
+REFINEMENT = 0.5
+"""Of the meshes [1]; twice as fine ones lower the frequencies by less than 1 % (docs/finite_elements.md)."""
+STEP = 0.01
+"""Relative step of the difference quotients: well above what a new mesh changes at random."""
+RANGE = 0.1
+"""Relative change of the lengths that one step may bring at first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Identification:
+    """Lengths that fit, and how well.
+
+    lengths   : {name: m}
+    error     : (6) [1] computed over measured frequency, less 1
+    slope     : (6, 5) [1] change of the logarithm of a frequency with that of a length
+    """
+
+    lengths: dict[str, float]
+    error: Array
+    slope: Array
+
+    @property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation [1] of each length, relative, if the errors of the fit are random."""
+        variance = float(self.error @ self.error) / (self.error.size - len(self.lengths))
+        covariance = variance * np.linalg.inv(self.slope.T @ self.slope)
+        return dict(zip(self.lengths, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+
+
+def specimen(start: Assembly, lengths: Sequence[float]) -> Assembly:
+    """The assembly with other lengths (5) [m], in the order of LENGTHS."""
+    length, height, wall, flange_thickness, overhang = lengths
+    if not (isinstance(start.side2, BoxSection) and isinstance(start.bolts, BoltGrid)):
+        raise ValueError(f"{start.name}: is no box on a grid of bolts; expected the box specimen")
+    box = replace(
+        start.side2,
+        length=length,
+        width=start.bolts.row_spacing + overhang,
+        height=height,
+        wall=wall,
+        flange_width=overhang + wall,
+        flange_thickness=flange_thickness,
+        wall_inset=overhang,
+    )
+    return replace(start, side1=box, side2=box, bolts=replace(start.bolts, column_spacing=length - overhang))
+
+
+def shipped() -> Assembly:
+    """The assembly with the identified lengths."""
+    return load(Path(str(files("jointfmu_models") / "assemblies" / "box_specimen_by_frequency.toml")))
+
+
+def lengths_of(assembly: Assembly) -> Array:
+    """Lengths (5) [m] of a box specimen, in the order of LENGTHS."""
+    box = assembly.side2
+    assert isinstance(box, BoxSection)
+    return np.array([box.length, box.height, box.wall, box.flange_thickness, box.wall_inset])
+
+
+def frequencies(
+    assembly: Assembly,
+    joint: BoltedJoint,
+    states: Sequence[tuple[float, float]],
+    refinement: float = REFINEMENT,
+    count: int = 6,
+) -> tuple[Array, Array]:
+    """Natural frequencies (states, count) [Hz] with the computed field, and with uniform pressure.
+
+    joint  : gives the interface law; its area is that of the assembly
+    states : preloads [N] per bolt and moments [N.m]
+    """
+    law, shear = _interface(assembly, joint)
+    contact = BoltedContact.of(assembly, refinement)
+    found, even = [], []
+    for preload, moment in states:
+        force = float(assembly.bolt_forces(preload, moment).sum())
+        found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
+        even.append(uniform(contact, law, force, shear, count).frequency)
+    return np.array(found), np.array(even)
+
+
+def identify(
+    start: Assembly, joint: BoltedJoint, preload: float, measured: Array, refinement: float = REFINEMENT
+) -> Identification:
+    """Least squares over the lengths.
+
+    preload  : [N] per bolt, without a moment
+    measured : (6) [Hz] frequencies by mode
+    """
+    first = lengths_of(start)
+
+    def error(ratio: Array) -> Array:
+        box = specimen(start, (ratio * first).tolist())
+        found, _ = frequencies(box, joint, [(preload, 0.0)], refinement, measured.size)
+        return np.asarray(found[0] / measured - 1.0)
+
+    fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=8)
+    lengths = dict(zip(LENGTHS, (fit.x * first).tolist(), strict=True))
+    return Identification(lengths, np.asarray(fit.fun), np.asarray(fit.jac) * fit.x)
+
+
+def _interface(assembly: Assembly, joint: BoltedJoint) -> tuple[Curve, float]:
+    """The law with the contact area of an assembly, and its tangential over normal stiffness."""
+    joint = replace(joint, A_0=assembly.contact_area)
+    return approach_curve(joint), float(shear_ratio(joint))

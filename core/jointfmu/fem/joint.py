@@ -1,0 +1,109 @@
+"""The bolted joint as a contact problem: from an assembly and a preload to the pressure field."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..fields.contact import ContactField
+from .contact import ContactModel, ContactSolution, Interface, Law
+from .elasticity import ElasticBody
+from .geometry import Assembly, Body
+from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BoltedContact:
+    """An assembly, meshed; loads differ from solve to solve.
+
+    heads : for each body, load (n, bolts) [N per N] of each bolt along +z
+    """
+
+    assembly: Assembly
+    plan: Plan
+    bodies: tuple[ElasticBody, ...]
+    interface: Interface
+    heads: tuple[Array, ...]
+
+    @classmethod
+    def of(cls, assembly: Assembly, refinement: float = 1.0) -> "BoltedContact":
+        """Mesh an assembly; refinement [1] divides the sizes of all elements.
+
+        Of two equal bodies only side 2 is meshed: side 1 is its mirror image.
+        """
+        plan = plan_of(assembly, refinement)
+        sides = (2,) if assembly.side1 == assembly.side2 else (1, 2)
+        bodies, heads = [], []
+        for side in sides:
+            body = elastic_body(plan, assembly, side, refinement)
+            marked = body.mesh.boundaries
+            count = len(assembly.bolts.positions)
+            bodies.append(body)
+            heads.append(np.stack([body.pressing(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
+        interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
+        return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
+
+    def solve(self, law: Law, preload: float, moment: float = 0.0) -> "JointSolution":
+        """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
+        force = self.assembly.bolt_forces(preload, moment)
+        signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
+        loads = [sign * head @ force for sign, head in zip(signs, self.heads, strict=True)]
+        model = ContactModel(self.bodies, self.interface, law)
+        return JointSolution(self, force, model.solve(loads, force.sum() / self.interface.area.sum()))
+
+
+def elastic_body(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
+    """One body of an assembly on a plan."""
+    body: Body = assembly.side1 if side == 1 else assembly.side2
+    return ElasticBody(body_mesh(plan, assembly, side, refinement), body.E, body.nu, body.density)
+
+
+@dataclass(frozen=True)
+class JointSolution:
+    """Pressure of a bolted joint: `force` (bolts) [N] of each bolt, `contact` the equilibrium."""
+
+    joint: BoltedContact
+    force: Array
+    contact: ContactSolution
+
+    @property
+    def field(self) -> ContactField:
+        """The contact at the quadrature points: areas and total force are those of the finite elements."""
+        at = self.joint.interface
+        return ContactField(area=at.area, position=at.position, pressure=self.contact.pressure)
+
+    @property
+    def peak(self) -> float:
+        """Greatest pressure [Pa], at a node: usually on the edge of a hole."""
+        return float(self.contact.node_pressure.max())
+
+    @property
+    def between(self) -> tuple[Array, Array]:
+        """Places (k, 2) [m] of the contact midway between neighbouring bolts, their pressure (k) [Pa]."""
+        places = midway(self.joint.assembly.bolts.positions)
+        sides = (self.joint.assembly.side1, self.joint.assembly.side2)
+        solid = [side.layers()[0].solid(*places.T) for side in sides]
+        places = places[solid[0] & solid[1]]
+        return places, self.contact.pressure_at(places) if len(places) else np.zeros(0)
+
+    @property
+    def stiffness(self) -> dict[str, float]:
+        """Normal stiffness [N/m] of the interface, and [N.m/rad] about x and y through its centroid."""
+        field = self.field
+        k = field.area * self.contact.stiffness
+        x, y = (field.position - field.centroid).T
+        return {"K_N": float(k.sum()), "K_rx": float(k @ y**2), "K_ry": float(k @ x**2)}
+
+
+def midway(bolts: Array) -> Array:
+    """Middles (k, 2) [m] of neighbouring bolts: no third one lies in the circle on their connection."""
+    found = []
+    for i in range(len(bolts)):
+        for j in range(i):
+            middle = 0.5 * (bolts[i] + bolts[j])
+            apart = np.hypot(*(bolts - middle).T)
+            if np.sum(apart < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
+                found.append(middle)
+    return np.array(found).reshape(-1, 2)

@@ -1,0 +1,93 @@
+"""Natural frequencies of two bodies that float freely, held together by the stiffness of their contact."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from .contact import Interface, trace
+from .elasticity import Array, ElasticBody
+from .sparse import Cholesky
+
+RIGID = 6
+"""Motions without strain of an assembly that floats freely."""
+SHIFT = 100.0
+"""Frequency [Hz] at whose negative square the eigensolver looks; far below the elastic modes."""
+LEAST = 1.0
+"""Frequency [Hz] below which a motion counts as rigid."""
+AXES = (0, 1, 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Modes:
+    """Modes with strain, by rising frequency.
+
+    frequency : (k) [Hz]
+    shape     : k times the displacement (n, 3) of the nodes of each body, of modal mass 1 kg [1]
+    mass      : [kg] of the assembly
+    """
+
+    frequency: Array
+    shape: tuple[tuple[Array, ...], ...]
+    mass: float
+
+
+def modes(
+    bodies: tuple[ElasticBody, ...], interface: Interface, normal: Array, tangential: Array, count: int = 6
+) -> Modes:
+    """The lowest modes with strain of the assembly, free on all sides.
+
+    bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
+    normal, tangential : (q) [N/m3] stiffness per area at the quadrature points of the interface
+    count      : of modes
+
+    Raises RuntimeError if the contact does not hold the bodies together.
+    """
+    if len(bodies) == 2:
+        found = _lowest(bodies, _springs(bodies, interface, [tangential, tangential, normal]), RIGID + count)
+    else:
+        none = np.zeros_like(normal)
+        found = []
+        for stiffness, sign in (([none, none, normal], 1.0), ([tangential, tangential, none], -1.0)):
+            half = _lowest(bodies, 2.0 * _springs(bodies, interface, stiffness), RIGID // 2 + count)
+            found += [(f, _both(shape[0], sign)) for f, shape in half]
+        found.sort(key=lambda one: one[0])
+    frequency = np.array([one[0] for one in found])
+    if frequency[RIGID] < LEAST:
+        raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
+    mass = sum(float(body.mass.sum()) / len(AXES) for body in bodies) * (3 - len(bodies))
+    last = RIGID + count
+    return Modes(frequency[RIGID:last], tuple(one[1] for one in found[RIGID:last]), mass)
+
+
+def _springs(bodies: tuple[ElasticBody, ...], interface: Interface, stiffness: list[Array]) -> sp.csr_matrix:
+    """Stiffness matrix [N/m] of the interface with a stiffness per area (q) [N/m3] along each axis."""
+    signs = (1.0, -1.0)[: len(bodies)]
+    total: sp.csr_matrix | float = 0.0
+    for axis, each in zip(AXES, stiffness, strict=True):
+        opening = sp.hstack([s * trace(body, interface, axis) for s, body in zip(signs, bodies, strict=True)])
+        total = total + opening.T @ sp.diags(interface.area * each) @ opening
+    return sp.csr_matrix(total)
+
+
+def _lowest(
+    bodies: tuple[ElasticBody, ...], springs: sp.csr_matrix, count: int
+) -> list[tuple[float, tuple[Array, ...]]]:
+    """Frequencies [Hz] and shapes: Lanczos on the inverse, shifted so that rigid motions do no harm."""
+    mass = sp.block_diag([body.mass for body in bodies], format="csr")
+    stiffness = sp.block_diag([body.stiffness for body in bodies], format="csr") + springs
+    shift = -((2.0 * np.pi * SHIFT) ** 2)
+    factor = Cholesky(stiffness - shift * mass)
+    inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
+    start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
+    squares, shapes = eigsh(stiffness, k=count, M=mass, sigma=shift, OPinv=inverse, v0=start)
+    ends = np.cumsum([body.size for body in bodies])[:-1]
+    parts = [tuple(part.reshape(-1, 3) for part in np.split(shape, ends)) for shape in shapes.T]
+    return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), parts, strict=True))
+
+
+def _both(shape: Array, sign: float) -> tuple[Array, Array]:
+    """Side 1, the mirror image in z = 0 (its opposite for sign -1), and side 2, together of mass 1 kg."""
+    above = np.sqrt(0.5) * shape
+    return sign * above * np.array([1.0, 1.0, -1.0]), above
