@@ -1,22 +1,35 @@
 """Write the pictures of README and docs: `python build_fmus.py && python docs/figures.py`."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from jointfmu_fmus import ringing, ssp
 from jointfmu_fmus.checks import default_ramp
-from jointfmu_fmus.report import figures
+from jointfmu_fmus.report import figures, systems
 
-from jointfmu import validation
-from jointfmu.parameters import write_text
+from jointfmu import plots, validation
+from jointfmu.parameters import load, write_text
 
-ROOT = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parent.parent
+IMAGES = ROOT / "docs" / "images"
 
 
 def main() -> None:
-    """Write docs/images/*.svg."""
-    folder = ROOT.parent / "dist" / "python"
-    result = default_ramp("HarmonicDriveCompliance", folder)
+    """Write docs/images."""
+    result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
     picture = figures.harmonic_stiffness(result, validation.validate())
-    write_text(ROOT / "images" / "harmonic_drive_ramp.svg", picture)
+    write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
+    resonance(IMAGES / "tutorial_resonance.png")
+
+
+def resonance(path: Path) -> None:
+    """Draw the plot in which the tutorial ends."""
+    drive = load(ROOT / "models" / "catalogue" / "size_14_ratio_80.toml")
+    with TemporaryDirectory() as folder:
+        ssp.build_systems(Path(folder), drive)
+        found = ringing.robot_joint(Path(folder) / "fmi2")
+    with plots.drawing(path, systems.SIZE) as figure:
+        systems.draw(figure, found, "robot_joint")
 
 
 if __name__ == "__main__":

@@ -1,39 +1,49 @@
 """A small master: an inertia or mass on a joint to the ground, as co-simulation of two FMUs (FMI 2.0)."""
 
 import ctypes
-import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
+
+from jointfmu.ramp import slave, unpacked
 
 Array = NDArray[np.float64]
 
 
 class Slave:
-    """An instance of an FMU with the inputs and outputs that are wired; to be used with `with`."""
+    """An instance of an FMU with the inputs and outputs that are wired; to be used with `with`.
+
+    Raises ValueError if the file is no FMU for this platform, a name is unknown or the FMU refuses a value
+    (the message is the FMU's own). What it logs besides is in `messages`.
+    """
 
     def __init__(
         self, path: Path, start: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
     ) -> None:
-        self._folder = extract(str(path))
-        description = read_model_description(str(path))
-        self._refs = {v.name: v.valueReference for v in description.modelVariables}
-        name = description.coSimulation.modelIdentifier
-        self._fmu = FMU2Slave(
-            guid=description.guid, unzipDirectory=self._folder, modelIdentifier=name, instanceName=name
-        )
-        self._fmu.instantiate()
-        self._fmu.setupExperiment(startTime=0.0)
-        self._fmu.enterInitializationMode()
-        self._fmu.setReal([self._refs[n] for n in start], list(start.values()))
-        self._fmu.exitInitializationMode()
-        self._in, self._out = self._wires(inputs), self._wires(outputs)
+        self.messages: list[str] = []
+        self._path = path
+        with ExitStack() as opened:
+            folder, description = opened.enter_context(unpacked(path))
+            self._refs = {v.name: v.valueReference for v in description.modelVariables}
+            for name in (*start, *inputs, *outputs):
+                if name not in self._refs:
+                    raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(self._refs)}")
+            one = opened.enter_context(slave(folder, description, self.messages))
+            self._fmu = one.fmu
+            try:
+                one.begin()
+                self._fmu.setReal([self._refs[n] for n in start], list(start.values()))
+                self._fmu.exitInitializationMode()
+            except FMICallException as error:
+                raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
+            self._in, self._out = self._wires(inputs), self._wires(outputs)
+            self._opened = opened.pop_all()
 
     def _wires(self, names: Sequence[str]) -> tuple[Any, int, Any]:
         n = len(names)
@@ -43,17 +53,24 @@ class Slave:
         """Give the inputs their values."""
         refs, n, room = self._in
         room[:] = values
-        self._fmu.fmi2SetReal(self._fmu.component, refs, n, room)
+        self._call(self._fmu.fmi2SetReal, refs, n, room)
 
     def get(self) -> list[float]:
         """The outputs at the present inputs."""
         refs, n, room = self._out
-        self._fmu.fmi2GetReal(self._fmu.component, refs, n, room)
+        self._call(self._fmu.fmi2GetReal, refs, n, room)
         return list(room)
 
     def step(self, time: float, size: float) -> None:
         """One step."""
-        self._fmu.fmi2DoStep(self._fmu.component, time, size, 1)
+        self._call(self._fmu.fmi2DoStep, time, size, 1)
+
+    def _call(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Call a function of the FMU; ValueError with the FMU's reason if it refuses."""
+        try:
+            function(self._fmu.component, *arguments)
+        except FMICallException as error:
+            raise ValueError(f"{self._path}: {self.messages[-1] if self.messages else error}") from None
 
     def __enter__(self) -> Self:
         return self
@@ -61,8 +78,7 @@ class Slave:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._fmu.freeInstance()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._opened.close()
 
 
 def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late: bool = False) -> Array:

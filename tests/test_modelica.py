@@ -26,6 +26,7 @@ from jointfmu.joints.bolted_joint import BoltedJointSpring
 from jointfmu.joints.gear_contact import GearContactSpring
 from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
+from jointfmu.partners import ForceProfile, TorqueProfile
 
 REPOSITORY = Path(__file__).parent.parent
 COMMITTED = REPOSITORY / "models/modelica"
@@ -222,7 +223,7 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
         assert read is not None, path
         root.extend(read)
     # variables and equations of the flat model
-    expected = {"Examples.RobotJoint": (55, 36), "Examples.BoltedColumn": (45, 31)}
+    expected = {"Examples.RobotJoint": (49, 32), "Examples.BoltedColumn": (45, 31)}
     for path in sorted(COMMITTED.rglob("*.mo")):
         folder, name = path.parent.name, path.stem
         if folder in ("Components", "Wrappers", "Examples") and name != "package":
@@ -301,14 +302,10 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
 
 
-def trapezoid(t: float, height: float, start: float, rise: float, hold: float) -> float:
-    return float(np.interp(t, start + np.cumsum([0.0, rise, hold, rise]), [0.0, height, height, 0.0]))
-
-
-def reference(right: Any, start: list[float], kinks: list[float], times: np.ndarray) -> np.ndarray:
-    """solve_ivp from kink to kink of the input."""
+def reference(right: Any, start: list[float], edges: list[float], times: np.ndarray) -> np.ndarray:
+    """solve_ivp from edge to edge of the load, so that it passes over none."""
     out, state = [], np.array(start)
-    ends = [0.0, *sorted(kinks), float(times[-1]) * (1.0 + 1e-12)]
+    ends = [0.0, *sorted(edges), float(times[-1]) * (1.0 + 1e-12)]
     for low, high in pairwise(ends):
         some = times[(times >= low) & (times < high)]
         run = solve_ivp(right, (low, high), state, "DOP853", rtol=1e-9, atol=1e-14, t_eval=[*some, high])
@@ -317,16 +314,21 @@ def reference(right: Any, start: list[float], kinks: list[float], times: np.ndar
     return np.concatenate(out, axis=1)
 
 
+def edges_of(load: Any) -> list[float]:
+    fall = load.pulse_start + load.pulse_rise + load.pulse_hold
+    return [load.pulse_start, load.pulse_start + load.pulse_rise, fall, fall + load.pulse_rise]
+
+
 def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveSpring):
     v = system("robot_joint").values
     text = top("extends JointStiffness.Examples.RobotJoint;")
     found = simulate(rumoca, text, v["experiment.stop_time"], 5e-3)
-    pulse = [v[f"torque.pulse_{k}"] for k in ("height", "start", "rise", "hold")]
-    ramp = v["torque.ramp_start"] + np.array([0.0, v["torque.ramp_duration"]])
+    load = TorqueProfile(**{k.removeprefix("torque."): x for k, x in v.items() if k.startswith("torque.")})
+    ramp = [load.ramp_start, load.ramp_start + load.ramp_duration]
 
     def right(t: float, x: np.ndarray) -> list[float]:
         torques = drive.motion(*x)
-        motor = np.interp(t, ramp, [0.0, v["torque.ramp_height"]]) + trapezoid(t, *pulse)
+        motor = float(load.outputs({"time": t, "tau_in": 0.0})["tau"])
         weight = v["link.m"] * GRAVITY * v["link.l"] * math.sin(x[2])
         return [
             x[1],
@@ -335,9 +337,9 @@ def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveS
             (float(torques["tau2"]) - weight) / v["link.J"],
         ]
 
-    kinks = [*ramp, *(pulse[1] + np.cumsum([0.0, pulse[2], pulse[3], pulse[2]]))]
+    edges = [*ramp, *edges_of(load)]
     times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0, 0.0, 0.0, 0.0], kinks, times)
+    exact = reference(right, [0.0, 0.0, 0.0, 0.0], edges, times)
     windup = exact[2] - exact[0] / drive.joint.ratio
     assert np.ptp(windup) > 1e-3  # the pulse is seen
     assert np.abs(found["link.phi"][first] - exact[2]).max() <= 1e-6 * np.abs(exact[2]).max()
@@ -349,7 +351,8 @@ def test_bolted_column_runs_as_the_package_says(rumoca: Any, bolted: BoltedJoint
     stop = 0.15 * v["experiment.stop_time"]
     text = top("extends JointStiffness.Examples.BoltedColumn;")
     found = simulate(rumoca, text, stop, 1e-5)
-    pulse = [v[f"pulse.{k}"] for k in ("height", "start", "rise", "hold")]
+    pulse = {f"pulse_{k.removeprefix('pulse.')}": x for k, x in v.items() if k.startswith("pulse.")}
+    load = ForceProfile(ramp_height=0.0, ramp_start=0.0, ramp_duration=1.0, **pulse)
 
     def right(t: float, x: np.ndarray) -> list[float]:
         state = bolted.motion(
@@ -358,11 +361,11 @@ def test_bolted_column_runs_as_the_package_says(rumoca: Any, bolted: BoltedJoint
             (0.0, 0.0, float(x[0])),
             (0.0, 0.0, float(x[1])),
         )
-        return [x[1], (trapezoid(t, *pulse) + state["f_z"]) / v["column.m"]]
+        pushed = float(load.outputs({"time": t, "f_in": 0.0})["f"])
+        return [x[1], (pushed + state["f_z"]) / v["column.m"]]
 
-    kinks = list(pulse[1] + np.cumsum([0.0, pulse[2], pulse[3], pulse[2]]))
     times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0, 0.0], kinks, times)[0]
+    exact = reference(right, [0.0, 0.0], edges_of(load), times)[0]
     assert np.abs(exact).max() > 5e-7
     assert np.abs(found["column.s"][first] - exact).max() <= 1e-3 * np.abs(exact).max()
 

@@ -6,10 +6,16 @@ from pathlib import Path
 
 import pytest
 from jointfmu_fmus.building import build
+from jointfmu_fmus.native.build import build as native_build
+from jointfmu_fmus.partners import parameters as partner_parameters
 
 from jointfmu import cli, validation
+from jointfmu.fields import csvfile
+from jointfmu.fields.contact import ContactField
+from jointfmu.parameters import default
 
 ROOT = Path(__file__).resolve().parent.parent
+ASSEMBLY = "models/assemblies/box_specimen.toml"
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
@@ -21,7 +27,14 @@ def blocks(language):
 def folder(tmp_path_factory):
     place = tmp_path_factory.mktemp("readme")
     build([], ["fmi2", "fmi3"], None, place / "dist")
+    native_build("RotationalInertia", partner_parameters("RotationalInertia"), place / "dist" / "fmi2", "2")
     (place / "my_joint.toml").write_text((ROOT / "models/bolted_joint/box_specimen.toml").read_text())
+    (place / "models/assemblies").mkdir(parents=True)
+    (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
+    joint = default("bolted_joint").values
+    shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
+    field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
+    (place / "my_field.csv").write_text(csvfile.text(field))
     return place
 
 
@@ -57,6 +70,10 @@ def test_every_kind_of_command_is_shown():
         "uncertainty",
         "sweep",
         "modelica",
+        "export",
+        "footprint",
+        "modes",
+        "ring",
     }
 
 

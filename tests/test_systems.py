@@ -1,6 +1,7 @@
 """Joints in systems: their partners, SSP archives in two simulators, and proof of the coupling."""
 
 import ctypes
+import json
 import math
 import subprocess
 import sys
@@ -8,7 +9,9 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import tostring
 
+import fmpy
 import numpy as np
 import pytest
 from conftest import Fmu, refused_line
@@ -20,11 +23,15 @@ from jointfmu_fmus import ringing, ssp
 from jointfmu_fmus.building import build
 from jointfmu_fmus.checks import check_ringing
 from jointfmu_fmus.master import Slave, motion
+from jointfmu_fmus.native.terminals import TERMINALS
 from jointfmu_fmus.partners import PARTNERS
 from jointfmu_fmus.systems import SYSTEMS, system
 from jointfmu_fmus.variables import MODELS
+from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
+from scipy.interpolate import CubicSpline
+from test_modelica import simulate, top
 
 from jointfmu import cli
 from jointfmu.joints.bolted_joint import BoltedJointSpring
@@ -83,6 +90,28 @@ def test_a_partner_is_a_valid_fmu_for_every_platform(built: Path, name: str, ver
         v.name for v in PARTNERS[name].outputs
     ]
     assert description.numberOfContinuousStates == PARTNERS[name].states
+
+
+@ALL
+def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) -> None:
+    """Same members, so that a tool connects whole flanges; what a partner takes is what a joint applies."""
+    with zipfile.ZipFile(built / "fmi3" / f"{name}.fmu") as archive:
+        root = ssp.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    schema = etree.XMLSchema(file=str(Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"))
+    schema.assertValid(etree.fromstring(tostring(root)))
+    listed = {v.name: v.unit for v in (*PARTNERS[name].inputs, *PARTNERS[name].outputs)}
+    found = {}
+    for terminal in root.iter("Terminal"):
+        members = {m.get("memberName"): m.attrib for m in terminal.iter("TerminalMemberVariable")}
+        found[terminal.get("name")] = {k: m["variableName"] for k, m in members.items()}
+        assert {listed[m["variableName"]] for m in members.values()} <= set(listed.values())
+        (flow,) = [m for m in members.values() if m["variableKind"] != "signal"]
+        assert flow["variableKind"] == "inflow"
+        joint = {"phi": "HarmonicDriveSpring", "s": "BoltedJoint"}[next(iter(members))]
+        assert any(t.members.keys() == members.keys() for t in TERMINALS[joint])
+    motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
+    expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
+    assert found == (expected if PARTNERS[name].states else {})
 
 
 @BOTH
@@ -318,6 +347,30 @@ np.save(out, np.array(rows))
 """
 
 
+COSIM = """
+import sys, numpy as np
+from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimObserver import CosimObserver
+path, name, step, count, out, *wanted = sys.argv[1:]
+execution = CosimExecution.from_ssp_file(path, step_size=round(1e9 * float(step)))  # nanoseconds
+observer = CosimObserver.create_last_value()
+execution.add_observer(observer)
+index = {one.name.decode(): one.index for one in execution.slave_infos()}
+places = []
+for component, _, variable in (v.partition("::") for v in wanted):
+    references = {v.name.decode(): v.reference for v in execution.slave_variables(index[component])}
+    places.append((index[component], references[variable]))
+rows = []
+for _ in range(int(count)):
+    assert execution.step()
+    rows.append([observer.last_real_values(i, [r])[0] for i, r in places])
+np.save(out, np.array(rows))
+"""
+
+
+@pytest.mark.parametrize(
+    ("client", "script"), [("ecospy", ECOS), ("libcosimpy", COSIM)], ids=["ecos", "cosim"]
+)
 @pytest.mark.parametrize(
     ("name", "step", "count", "wanted"),
     [
@@ -325,13 +378,21 @@ np.save(out, np.array(rows))
         ("bolted_column", 5e-6, 1000, ["column::s", "load::f"]),
     ],
 )
-def test_fmpy_and_ecos_run_the_same_archive(
-    built: Path, tmp_path: Path, name: str, step: float, count: int, wanted: list[str]
+def test_other_simulators_run_the_archive_as_fmpy_does(
+    built: Path,
+    tmp_path: Path,
+    client: str,
+    script: str,
+    name: str,
+    step: float,
+    count: int,
+    wanted: list[str],
 ) -> None:
-    pytest.importorskip("ecospy")
+    """The same equations step by step: they differ by round-off, which the motion does not amplify."""
+    pytest.importorskip(client)
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
     arguments = [path, name, step, count, out, *wanted]
-    subprocess.run([sys.executable, "-c", ECOS, *map(str, arguments)], check=True, timeout=100)
+    subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
     rows = np.load(out)
     other = simulated(built, name, step, (count - 0.5) * step)
     for k, column in enumerate(wanted):
@@ -388,6 +449,42 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
     orders = np.log2(np.divide(errors[:-1], errors[1:]))
     assert errors[-1] < 1e-3 * 1.15e-6
     assert np.all(np.abs(orders - 2.0) < 0.2), (errors, orders)
+
+
+@pytest.mark.parametrize(
+    ("name", "model", "stop", "steps"),
+    [
+        ("robot_joint", "RobotJoint", 1.2, (2e-4, 1e-4)),
+        ("bolted_column", "BoltedColumn", 3e-3, (2e-6, 1e-6)),
+    ],
+)
+def test_the_modelica_example_moves_as_the_archive(
+    built: Path, name: str, model: str, stop: float, steps: tuple[float, float]
+) -> None:
+    """rumoca's solver on the Modelica text, fmpy's steps on the FMUs: they meet as h^2, the order of a step.
+
+    What the extrapolation to h = 0 leaves is of fourth order in h, and the dissipation factor that the
+    Modelica table interpolates linearly: measured 1.1e-4 and 1.2e-4.
+    """
+    rumoca = pytest.importorskip("rumoca")
+    found = simulate(rumoca, top(f"extends JointStiffness.Examples.{model};"), stop, stop / 300)
+    times, first = np.unique(found.time, return_index=True)
+
+    def deflection(values: Any) -> Array:
+        if name == "bolted_column":
+            return np.asarray(values["column.s"])
+        return np.asarray(values["link.phi"] - values["motor.phi"] / DRIVE.joint.ratio)
+
+    expected, runs = deflection(found)[first], []
+    for step in steps:
+        rows = simulated(built, name, step, stop - 0.5 * step)
+        end = np.append(0.0, rows["time"] + step)  # fmpy's rows carry the begin of their step
+        runs.append(CubicSpline(end, np.append(0.0, deflection(rows)))(times))
+    scale = np.max(np.abs(expected))
+    errors = [np.max(np.abs(run - expected)) / scale for run in runs]
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
+    limit = (4.0 * runs[1] - runs[0]) / 3.0
+    assert np.max(np.abs(limit - expected)) < 3e-4 * scale
 
 
 # The coupling itself: a link on the drive, motor held
@@ -487,61 +584,101 @@ def test_the_largest_stable_step_with_late_forces(built: Path) -> None:
     assert [grows(factor * plain, 0.0) for factor in (0.9, 1.15)] == [False, True]
 
 
-@BOTH
-def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
-    """Drive and link as model-exchange FMUs, one system for CVode."""
+def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop: float) -> dict[str, Array]:
+    """States at the end of model-exchange FMUs as one system under CVode.
+
+    wires : (FMU, output, FMU, input), in the order in which values are passed on
+    """
     from fmpy.sundials import CVodeSolver
 
-    stop, angle = 0.03, 1.3e-3
-    if version == "2":
-        build(["HarmonicDriveSpring"], ["fmi2"], None, built)
-    else:
-        build(["HarmonicDriveSpring"], ["fmi3"], None, built)
-    joint = make("HarmonicDriveSpring", version, True).start()
-    link = make("RotationalInertia", version, True).start({"J": LINK, "phi": angle})
-    for fmu in (joint, link):
+    bodies = {n: f for n, f in fmus.items() if f.description.numberOfContinuousStates}
+    for fmu in fmus.values():
         fmu.fmu.enterContinuousTimeMode()
-    states = (ctypes.c_double * 2)()
+    pair = (ctypes.c_double * 2)()
 
     def array(pointer: Any) -> Array:
-        return np.ctypeslib.as_array(pointer, (2,))
+        return np.ctypeslib.as_array(pointer, (2 * len(bodies),)).reshape(-1, 2)
 
-    def get(pointer: Any, n: int) -> None:
-        (link.fmu.getContinuousStates)(states, 2)
-        array(pointer)[:] = states
+    def read(getter: str) -> Callable[[Any, int], None]:
+        def callback(pointer: Any, n: int) -> None:
+            for row, body in zip(array(pointer), bodies.values(), strict=True):
+                getattr(body.fmu, getter)(pair, 2)
+                row[:] = pair
+
+        return callback
 
     def put(pointer: Any, n: int) -> None:
-        states[:] = array(pointer)
-        link.fmu.setContinuousStates(states, 2)
+        for row, body in zip(array(pointer), bodies.values(), strict=True):
+            pair[:] = row
+            body.fmu.setContinuousStates(pair, 2)
 
-    def rates(pointer: Any, n: int) -> None:
-        at = link.get("phi", "w")
-        joint.set({"phi2": at["phi"], "w2": at["w"]})
-        link.set({"tau_b": joint.get("tau2")["tau2"]})
-        getter = link.fmu.getDerivatives if version == "2" else link.fmu.getContinuousStateDerivatives
-        getter(states, 2)
-        array(pointer)[:] = states
+    second = next(iter(bodies.values())).version == 2
+    rates = read("getDerivatives" if second else "getContinuousStateDerivatives")
 
-    def nominals(pointer: Any, n: int) -> None:
-        link.fmu.getNominalsOfContinuousStates(states, 2)
-        array(pointer)[:] = states
+    def pass_on(pointer: Any, n: int) -> None:
+        for source, output, target, wire in wires:
+            fmus[target].set({wire: fmus[source].get(output)[output]})
+        rates(pointer, n)
+
+    def put_time(time: float) -> None:
+        for fmu in fmus.values():
+            fmu.fmu.setTime(time)
 
     class Inputs:
         def apply(self, time: float) -> None: ...
 
     solver = CVodeSolver(
-        2, 0, get, put, rates, lambda pointer, n: None, nominals, link.fmu.setTime, Inputs(), 0.0,
-        relativeTolerance=1e-10, maxNumSteps=100_000,
+        2 * len(bodies), 0, read("getContinuousStates"), put, pass_on, lambda pointer, n: None,
+        read("getNominalsOfContinuousStates"), put_time, Inputs(), 0.0,
+        relativeTolerance=1e-10, maxNumSteps=100_000, maxStep=1e-3,
     )  # fmt: skip
     time = 0.0
     while time < stop - 1e-12:
         _, _, time = solver.step(time, stop)
-    exchange = np.array(list(link.get("phi", "w").values()))
-    count = 24_000
+    found = np.empty(2 * len(bodies))
+    read("getContinuousStates")(found.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), 0)
+    return dict(zip(bodies, found.reshape(-1, 2), strict=True))
+
+
+@BOTH
+def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
+    """Drive and link as model-exchange FMUs, one system for CVode."""
+    stop, angle, count = 0.03, 1.3e-3, 24_000
+    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
+    fmus = {
+        "drive": make("HarmonicDriveSpring", version, True).start(),
+        "link": make("RotationalInertia", version, True).start({"J": LINK, "phi": angle}),
+    }
+    motion_out = [("link", "phi", "drive", "phi2"), ("link", "w", "drive", "w2")]
+    exchange = exchanged(fmus, [*motion_out, ("drive", "tau2", "link", "tau_b")], stop)["link"]
     tight = ring(built, stop / count, count, angle, DRIVE.joint.d)[-1]
     scale = np.array([angle, 300.0 * angle])
     assert np.max(np.abs(exchange - tight) / scale) < 1e-6
     assert np.max(np.abs(exchange - released(angle, True, stop)) / scale) < 1e-6
+
+
+@BOTH
+def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, version: str) -> None:
+    """All four FMUs with the connections of the archive under CVode, and the archive's co-simulation
+    extrapolated to a step of zero, which leaves an error of fourth order."""
+    path, stop, early = str(built / "ssp" / "robot_joint.ssp"), 0.12, {"load_pulse_start": 0.01}
+    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
+    parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters}
+    fmus = {}
+    for name, kind in ssp.components(ssp.structure("robot_joint")).items():
+        mine = {n.partition(".")[2]: float(v) for n, v in parameters.items() if n.startswith(f"{name}.")}
+        fmus[name] = make(kind, version, True).start(mine | ({"pulse_start": 0.01} if name == "load" else {}))
+    connections = read_ssd(path).system.connections
+    wires = [(c.startElement, c.startConnector, c.endElement, c.endConnector) for c in connections]
+    wires.sort(key=lambda wire: wire[0] == "drive")  # its outputs follow its inputs at once
+    exchange = exchanged(fmus, wires, stop)
+    steps = (5e-5, 2.5e-5)
+    rows = [simulated(built, "robot_joint", h, stop - 0.5 * h, **early)[-1] for h in steps]
+    for name in ("motor", "link"):
+        for k, state in enumerate(("phi", "w")):
+            coarse, fine = (row[f"{name}.{state}"] for row in rows)
+            limit = (4.0 * fine - coarse) / 3.0
+            assert exchange[name][k] == pytest.approx(limit, rel=1e-6)
 
 
 # What the nonlinear joint does
@@ -554,6 +691,99 @@ def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+
+
+# jointfmu ring
+
+
+@pytest.fixture(scope="module")
+def rung(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of a run with table and picture."""
+    out = tmp_path_factory.mktemp("ring")
+    arguments = [
+        "--fmus",
+        built / "fmi2",
+        "--load",
+        2.0,
+        -0.5,
+        "--csv",
+        out / "a.csv",
+        "--plot",
+        out / "a.png",
+    ]
+    assert cli.main(["ring", "robot_joint", *map(str, arguments)]) == 0
+    return out
+
+
+def test_ring_writes_a_table_and_a_picture(rung: Path) -> None:
+    header, *rows = (rung / "a.csv").read_text().splitlines()
+    assert header.startswith("load [N.m],frequency [Hz],expected_frequency [Hz],damping_ratio [1]")
+    found = np.array([[float(x) for x in row.split(",")] for row in rows])
+    expected = [math.sqrt(working_point(abs(t))[1] / LINK) / math.tau for t in (2.0, -0.5)]
+    np.testing.assert_allclose(found[:, 0], [2.0, -0.5])
+    np.testing.assert_allclose(found[:, 2], expected, rtol=1e-5)  # six digits printed
+    np.testing.assert_allclose(found[:, 1], expected, rtol=ringing.RESONANCE_TOLERANCE)
+    frequency, zeta = math.tau * found[:, 2], found[:, 4]
+    np.testing.assert_allclose(found[:, 5], 2.0 / frequency, rtol=1e-5)  # docs/systems.md, proved above
+    np.testing.assert_allclose(found[:, 6], (2.0 * zeta) ** (1 / 3) / frequency, rtol=1e-5)
+    assert (rung / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = ["--fmus", str(built / "fmi2"), "--json"]
+    assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in ringing.LOADING]
+    first = found["rows"][0]
+    assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
+    assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0
+    stiffness = BOLTED.motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_zz"]
+    (row,) = json.loads(capsys.readouterr().out)["rows"]
+    assert row["expected_frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau)
+
+
+def test_ring_prints_the_steps_that_the_guide_quotes(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    quoted = []
+    for name, load in (("robot_joint", "5"), ("bolted_column", "15e3")):
+        assert cli.main(["ring", name, "--fmus", str(built / "fmi2"), "--load", load, "--json"]) == 0
+        (row,) = json.loads(capsys.readouterr().out)["rows"]
+        quoted.append((1e3 * row["largest_step"], 1e3 * row["largest_step_late"]))
+    (drive, late_drive), (column, late_column) = quoted
+    page = (Path(__file__).parent.parent / "docs/tools/index.md").read_text(encoding="utf-8")
+    assert f"{drive:.1f} and {late_drive:.2f} ms for the example drive at 5 N m" in page
+    assert f"{column:.3f} and {late_column:.3f} ms for the example column of 100 kg at 15 kN" in page
+
+
+def test_ring_says_where_the_law_ends(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fmus = str(built / "fmi2")
+    assert cli.main(["ring", "robot_joint", "--fmus", fmus, "--load", "40", "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert json.loads(out)["missed"] == 0
+    assert "beyond the tabulated law" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["robot_joint", "--load", "nan"], "load = nan is outside (-inf, inf)"),
+        (["robot_joint", "--load", "1e300"], "too large, p_max is not finite"),
+        (["robot_joint", "--inertia", "-1"], "inertia = -1 kg.m2 is outside (0, inf)"),
+        (
+            ["robot_joint", "--inertia", "1e-5"],
+            "damping ratio 1.74 with the inertia 1e-05; allowed is less than 0.1",
+        ),
+        (["bolted_column", "--load", "0"], "load = 0 N: the joint has no stiffness there"),
+        (["bolted_column", "--load", "-5"], "preload = -5 N is outside [0, inf)"),
+        (["bolted_column", "--fmus", "nowhere"], "nowhere/BoltedJoint.fmu: there is no such file"),
+        (["robot_joint", "--plot", "a.pdf"], "suffix '.pdf' is no picture"),
+        (["gearbox"], "invalid choice: 'gearbox'"),
+    ],
+)
+def test_ring_refuses(
+    built: Path, arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = [] if "--fmus" in arguments else ["--fmus", built / "fmi2"]
+    assert said in refused_line(capsys, "ring", *arguments, *folder)
 
 
 # The page

@@ -30,10 +30,19 @@ _MODEL_OF = {
 _ORDER = {
     "": ("Examples", "Components", "Wrappers", "Interfaces", "Data", "Functions"),
     "Examples": ("RobotJoint", "BoltedColumn"),
-    "Components": ("HarmonicDriveSpring", "BoltedJoint", "GearContact", "LinkWeight"),
+    "Components": ("HarmonicDriveSpring", "BoltedJoint", "GearContact", "LinkWeight", "Load"),
     "Wrappers": tuple(MODELS),
     "Interfaces": tuple(MODELS),
-    "Functions": ("load", "stiffness", "bend", "linear", "segment", "loadDerivative", "stiffnessDerivative"),
+    "Functions": (
+        "load",
+        "stiffness",
+        "bend",
+        "linear",
+        "segment",
+        "smoothStep",
+        "loadDerivative",
+        "stiffnessDerivative",
+    ),
 }
 
 
@@ -84,7 +93,8 @@ def library(
             damping_tolerance=f"{DAMPING_TOLERANCE:g}",
             strongest=f"{STRONGEST:g}",
         )
-    out["Components/LinkWeight.mo"] = env.get_template("Components/LinkWeight.mo").render(common)
+    for name in ("LinkWeight", "Load"):
+        out[f"Components/{name}.mo"] = env.get_template(f"Components/{name}.mo").render(common)
     for name, record in tables.items():
         out[f"Data/{name}.mo"] = env.get_template("Data/record.mo").render(common, name=name, **record)
     for name, model in MODELS.items():

@@ -52,6 +52,17 @@ def _shaft(number: int, side: str, doc: str) -> Terminal:
     return Terminal(f"flange{number}", _ROTATIONAL, side, doc, members)
 
 
+def _body(motion: str, rate: str, flow: str, kind: str, body: str) -> tuple[Terminal, Terminal]:
+    """Both flanges of a partner that moves; each takes a load of its own."""
+
+    def flange(side: str) -> Terminal:
+        load = (f"{flow}_{side}", "inflow")
+        members = {motion: (motion, "signal"), rate: (rate, "signal"), flow: load}
+        return Terminal(f"flange_{side}", kind, side, f"{body}, load {load[0]}", members)
+
+    return flange("a"), flange("b")
+
+
 TERMINALS: dict[str, tuple[Terminal, ...]] = {
     "HarmonicDriveSpring": (
         _shaft(1, "a", "wave generator (motor)"),
@@ -76,7 +87,10 @@ TERMINALS: dict[str, tuple[Terminal, ...]] = {
             {"s": ("s_rel", "signal"), "f": ("f", "inflow")},
         ),
     ),
+    "RotationalInertia": _body("phi", "w", "tau", _ROTATIONAL, "the inertia"),
+    "TranslationalMass": _body("s", "v", "f", _TRANSLATIONAL, "the mass"),
 }
+"""Of the joints, and of their partners that move; a load over time has no motion and so no flange."""
 
 
 def terminals_and_icons(model: Model) -> dict[str, bytes]:

@@ -59,13 +59,13 @@ def write_report(path: Path, outcome: Any) -> None:
                 "The link rings about a working point, motor held. Circles: peak of the simulated signal's "
                 "spectrum; line: square root of K_WTS over the link's inertia. Right: the decay at the first "
                 "torque, between the envelopes of the stated damping.",
-                systems.ringing(outcome.ringing["robot_joint"], "torque [N m]", 1.0, "wind-up [urad]", 1e6),
+                systems.ringing(outcome.ringing["robot_joint"], "robot_joint"),
                 None,
             ),
             (
                 "In a system: resonance of the bolted column over its preload",
                 "The same for the mass on the bolted joint, along the joint's normal.",
-                systems.ringing(outcome.ringing["bolted_column"], "preload [kN]", 1e-3, "motion [nm]", 1e9),
+                systems.ringing(outcome.ringing["bolted_column"], "bolted_column"),
                 None,
             ),
         ],

@@ -51,6 +51,10 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
       connector RealInput = input Real;
       connector RealOutput = output Real;
 
+      partial block SO
+        RealOutput y;
+      end SO;
+
       package Adaptors
         partial model FlowToPotentialAdaptor
           parameter Boolean use_pder = true;
@@ -92,49 +96,7 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
       equation
         y = k*u;
       end Gain;
-
-      block Add
-        parameter Real k1 = +1;
-        parameter Real k2 = +1;
-        Interfaces.RealInput u1;
-        Interfaces.RealInput u2;
-        Interfaces.RealOutput y;
-      equation
-        y = k1*u1 + k2*u2;
-      end Add;
     end Math;
-
-    package Sources
-      block Ramp
-        parameter Real height = 1;
-        parameter Units.SI.Time duration(min=0, start=2);
-        parameter Real offset = 0;
-        parameter Units.SI.Time startTime = 0;
-        Interfaces.RealOutput y;
-      equation
-        y = offset + (if time < startTime then 0 else if time < startTime + duration then
-          (time - startTime)*height/duration else height);
-      end Ramp;
-
-      block Trapezoid "One pulse (nperiod = 1)"
-        parameter Real amplitude = 1;
-        parameter Units.SI.Time rising(min=0) = 0;
-        parameter Units.SI.Time width(min=0) = 0.5;
-        parameter Units.SI.Time falling(min=0) = 0;
-        parameter Units.SI.Time period(start=1);
-        parameter Integer nperiod = -1;
-        parameter Real offset = 0;
-        parameter Units.SI.Time startTime = 0;
-        Interfaces.RealOutput y;
-      equation
-        y = offset + (if time < startTime then 0
-          else if time < startTime + rising then amplitude*(time - startTime)/rising
-          else if time < startTime + rising + width then amplitude
-          else if time < startTime + rising + width + falling then
-            amplitude*(startTime + rising + width + falling - time)/falling
-          else 0);
-      end Trapezoid;
-    end Sources;
   end Blocks;
 
   package Mechanics

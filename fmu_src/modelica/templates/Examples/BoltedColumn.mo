@@ -1,9 +1,8 @@
 within JointStiffness.Examples;
 model BoltedColumn "A machine column on a bolted joint, struck by a force pulse"
   extends Modelica.Icons.Example;
-  Modelica.Blocks.Sources.Trapezoid pulse(
-    amplitude=<< v["pulse.height"] >>, rising=<< v["pulse.rise"] >>, width=<< v["pulse.hold"] >>, falling=<< v["pulse.rise"] >>,
-    period=<< v["experiment.stop_time"] >>, nperiod=1, startTime=<< v["pulse.start"] >>)
+  JointStiffness.Components.Load load(
+    pulse_height=<< v["pulse.height"] >>, pulse_start=<< v["pulse.start"] >>, pulse_rise=<< v["pulse.rise"] >>, pulse_hold=<< v["pulse.hold"] >>)
     annotation (Placement(transformation(extent={{80,-10},{60,10}})));
   Modelica.Mechanics.Translational.Sources.Force force
     annotation (Placement(transformation(extent={{50,-10},{30,10}})));
@@ -18,7 +17,7 @@ equation
     annotation (Line(points={{-30,0},{0,0}}, color={0,127,0}));
   connect(column.flange_b, force.flange)
     annotation (Line(points={{20,0},{30,0}}, color={0,127,0}));
-  connect(pulse.y, force.f)
+  connect(load.y, force.f)
     annotation (Line(points={{59,0},{52,0}}, color={0,0,127}));
   connect(joint.flange_x, held.flange)
     annotation (Line(points={{-30,12},{-10,12},{-10,30}}, color={0,127,0}));

@@ -1,14 +1,10 @@
 within JointStiffness.Examples;
 model RobotJoint "Motor, harmonic drive and a link in gravity"
   extends Modelica.Icons.Example;
-  Modelica.Blocks.Sources.Ramp ramp(height=<< v["torque.ramp_height"] >>, duration=<< v["torque.ramp_duration"] >>, startTime=<< v["torque.ramp_start"] >>)
-    annotation (Placement(transformation(extent={{-100,10},{-80,30}})));
-  Modelica.Blocks.Sources.Trapezoid pulse(
-    amplitude=<< v["torque.pulse_height"] >>, rising=<< v["torque.pulse_rise"] >>, width=<< v["torque.pulse_hold"] >>, falling=<< v["torque.pulse_rise"] >>,
-    period=<< v["experiment.stop_time"] >>, nperiod=1, startTime=<< v["torque.pulse_start"] >>)
-    annotation (Placement(transformation(extent={{-100,-30},{-80,-10}})));
-  Modelica.Blocks.Math.Add add
-    annotation (Placement(transformation(extent={{-70,-10},{-50,10}})));
+  JointStiffness.Components.Load load(
+    ramp_height=<< v["torque.ramp_height"] >>, ramp_start=<< v["torque.ramp_start"] >>, ramp_duration=<< v["torque.ramp_duration"] >>,
+    pulse_height=<< v["torque.pulse_height"] >>, pulse_start=<< v["torque.pulse_start"] >>, pulse_rise=<< v["torque.pulse_rise"] >>, pulse_hold=<< v["torque.pulse_hold"] >>)
+    annotation (Placement(transformation(extent={{-76,-10},{-56,10}})));
   Modelica.Mechanics.Rotational.Sources.Torque torque
     annotation (Placement(transformation(extent={{-42,-10},{-22,10}})));
   Modelica.Mechanics.Rotational.Components.Inertia motor(J=<< v["motor.J"] >>, phi(fixed=true, start=0), w(fixed=true, start=0))
@@ -20,12 +16,8 @@ model RobotJoint "Motor, harmonic drive and a link in gravity"
   JointStiffness.Components.LinkWeight weight(m=<< v["link.m"] >>, l=<< v["link.l"] >>)
     annotation (Placement(transformation(extent={{72,-10},{92,10}})));
 equation
-  connect(ramp.y, add.u1)
-    annotation (Line(points={{-79,20},{-76,20},{-76,6},{-72,6}}, color={0,0,127}));
-  connect(pulse.y, add.u2)
-    annotation (Line(points={{-79,-20},{-76,-20},{-76,-6},{-72,-6}}, color={0,0,127}));
-  connect(add.y, torque.tau)
-    annotation (Line(points={{-49,0},{-44,0}}, color={0,0,127}));
+  connect(load.y, torque.tau)
+    annotation (Line(points={{-55,0},{-44,0}}, color={0,0,127}));
   connect(torque.flange, motor.flange_a)
     annotation (Line(points={{-22,0},{-14,0}}));
   connect(motor.flange_b, drive.flange_a)

@@ -1,14 +1,10 @@
 within JointStiffness.Examples;
 model RobotJoint "Motor, harmonic drive and a link in gravity"
   extends Modelica.Icons.Example;
-  Modelica.Blocks.Sources.Ramp ramp(height=0.01, duration=0.5, startTime=0.1)
-    annotation (Placement(transformation(extent={{-100,10},{-80,30}})));
-  Modelica.Blocks.Sources.Trapezoid pulse(
-    amplitude=0.03, rising=0.002, width=0.006, falling=0.002,
-    period=2, nperiod=1, startTime=1)
-    annotation (Placement(transformation(extent={{-100,-30},{-80,-10}})));
-  Modelica.Blocks.Math.Add add
-    annotation (Placement(transformation(extent={{-70,-10},{-50,10}})));
+  JointStiffness.Components.Load load(
+    ramp_height=0.01, ramp_start=0.1, ramp_duration=0.5,
+    pulse_height=0.03, pulse_start=1, pulse_rise=0.002, pulse_hold=0.006)
+    annotation (Placement(transformation(extent={{-76,-10},{-56,10}})));
   Modelica.Mechanics.Rotational.Sources.Torque torque
     annotation (Placement(transformation(extent={{-42,-10},{-22,10}})));
   Modelica.Mechanics.Rotational.Components.Inertia motor(J=1e-05, phi(fixed=true, start=0), w(fixed=true, start=0))
@@ -20,12 +16,8 @@ model RobotJoint "Motor, harmonic drive and a link in gravity"
   JointStiffness.Components.LinkWeight weight(m=1, l=0.2)
     annotation (Placement(transformation(extent={{72,-10},{92,10}})));
 equation
-  connect(ramp.y, add.u1)
-    annotation (Line(points={{-79,20},{-76,20},{-76,6},{-72,6}}, color={0,0,127}));
-  connect(pulse.y, add.u2)
-    annotation (Line(points={{-79,-20},{-76,-20},{-76,-6},{-72,-6}}, color={0,0,127}));
-  connect(add.y, torque.tau)
-    annotation (Line(points={{-49,0},{-44,0}}, color={0,0,127}));
+  connect(load.y, torque.tau)
+    annotation (Line(points={{-55,0},{-44,0}}, color={0,0,127}));
   connect(torque.flange, motor.flange_a)
     annotation (Line(points={{-22,0},{-14,0}}));
   connect(motor.flange_b, drive.flange_a)
