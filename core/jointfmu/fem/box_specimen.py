@@ -88,20 +88,24 @@ def frequencies(
     states: Sequence[tuple[float, float]],
     refinement: float = REFINEMENT,
     count: int = 6,
-) -> tuple[Array, Array]:
-    """Natural frequencies (states, count) [Hz] with the computed field, and with uniform pressure.
+    even: bool = False,
+) -> Array:
+    """Natural frequencies (states, count) [Hz] of an assembly.
 
     joint  : gives the interface law; its area is that of the assembly
     states : preloads [N] per bolt and moments [N.m]
+    even   : with the bolts' force spread evenly over the contact, instead of the computed field
     """
     law, shear = _interface(assembly, joint)
     contact = BoltedContact.of(assembly, refinement)
-    found, even = [], []
+    found = []
     for preload, moment in states:
-        force = float(assembly.bolt_forces(preload, moment).sum())
-        found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
-        even.append(uniform(contact, law, force, shear, count).frequency)
-    return np.array(found), np.array(even)
+        if even:
+            force = float(assembly.bolt_forces(preload, moment).sum())
+            found.append(uniform(contact, law, force, shear, count).frequency)
+        else:
+            found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
+    return np.array(found)
 
 
 def identify(
@@ -116,7 +120,7 @@ def identify(
 
     def error(ratio: Array) -> Array:
         box = specimen(start, (ratio * first).tolist())
-        found, _ = frequencies(box, joint, [(preload, 0.0)], refinement, measured.size)
+        found = frequencies(box, joint, [(preload, 0.0)], refinement, measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
     fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=8)

@@ -109,6 +109,17 @@ class BoltedJointSpring:
         """Approach (n) [m] of the nodes at tightening."""
         return self.curve.inverse(pressures(self.joint, self.shape, preload, moment))
 
+    def within_law(self, preload: float, moment: float) -> Array:
+        """As `tightened`; ValueError if nothing is in contact or the hardness is reached."""
+        start = self.tightened(preload, moment)
+        low, high = self.curve.displacement[[0, -1]]
+        if not (np.isfinite(preload + moment) and low < np.max(start) < high):
+            raise ValueError(
+                f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
+                f"some contact and a pressure of at most {self.curve.end[1]:g} Pa"
+            )
+        return start
+
     def motion(
         self,
         preload: float,
