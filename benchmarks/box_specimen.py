@@ -38,7 +38,7 @@ PAPER = {
 CHOICES = [("continuity", "family"), ("continuity", "hertz"), ("printed", "family"), ("printed", "hertz")]
 PRELOADS = np.array([3e3, 6e3, 9e3, 12e3, 15e3, 18e3, 21e3, 24e3, 27e3, 30e3, 36e3])
 START = (0.327, 0.257, 0.0192, 0.052, 0.036)
-"""Lengths [m] where the fit begins: the best of some forty fits from random lengths on a coarse mesh."""
+"""Lengths [m] where the fit begins: near the best that box_specimen_search.py finds with the default law."""
 
 
 def measured() -> Array:

@@ -1,0 +1,195 @@
+"""What six frequencies say of an unknown box: fits from random lengths, by choice of the law.
+
+    python benchmarks/box_specimen_search.py [--fits N] [--seed S]
+
+Coarse bricks, and bolts whose pressure decays as in the default parameters of the joint, make a fit a
+matter of half a minute. Six lengths: those of jointfmu.fem.box_specimen and a ledge inside the walls; a
+seventh for the floor of a closed box. Prints the best fits to the frequencies at 9 kN, and how these rise
+to 15 kN.
+"""
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from box_specimen import STATES, measured
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from skfem import MeshHex, MeshQuad
+
+from jointfmu.fem.contact import Interface, trace
+from jointfmu.fem.elasticity import ElasticBody
+from jointfmu.fem.modes import Modes, modes
+from jointfmu.interface import stiffness_curve
+from jointfmu.joints.bolted_joint import BoltedJoint, shear_ratio
+from jointfmu.parameters import default
+from jointfmu.progress import track
+
+Array = NDArray[np.float64]
+NAMES = ("length", "height", "wall", "flange", "overhang", "ledge", "floor")
+LEAST = np.array([0.20, 0.08, 0.008, 0.010, 0.0285, 0.0005, 0.005])
+MOST = np.array([0.80, 0.80, 0.060, 0.080, 0.0900, 0.0800, 0.060])
+"""Bounds [m]; the overhang carries a bolt's head, the flange is at least as thick as a washer is wide."""
+E, NU, DENSITY, ROWS = 1.5e11, 0.28, 7800.0, 0.3
+ACROSS, ALONG, MIDDLE = 1, 3, 2
+"""Bricks across a wall or ledge, along the height, along half of the opening."""
+SAMPLES = 5
+"""Random lengths of which the best starts a fit."""
+STEP = 1e-3
+CASES = [
+    ("continuity", "family", "open"),
+    ("continuity", "hertz", "open"),
+    ("printed", "family", "open"),
+    ("printed", "hertz", "open"),
+    ("continuity", "family", "closed"),
+    ("printed", "family", "closed"),
+]
+
+
+@dataclass(frozen=True)
+class Box:
+    """One half of the specimen with its contact; `bolts` (8, 2) [m]."""
+
+    body: ElasticBody
+    interface: Interface
+    bolts: Array
+
+    @classmethod
+    def of(cls, lengths: Array) -> "Box":
+        """Bricks whose number does not depend on the lengths (6 or 7) [m]."""
+        length, height, wall, flange, overhang, ledge, *floor = lengths
+        half = np.array([0.5 * length, 0.5 * (ROWS + overhang)])
+        depth = np.array([overhang + wall + ledge, overhang + wall, overhang, 0.0])
+        lines = [_line(end - depth) for end in half]
+        levels = [0.0, flange, height - floor[0], height] if floor else [0.0, flange, height]
+        z = _steps(np.array(levels), [1, ALONG, 1][: len(levels) - 1])
+        mesh = MeshHex.init_tensor(*lines, z)
+        x, y, at = mesh.p[:, mesh.t].mean(axis=1)
+        inside = (np.abs(x) < half[0] - overhang) & (np.abs(y) < half[1] - overhang)
+        hollow = (np.abs(x) < half[0] - depth[1]) & (np.abs(y) < half[1] - depth[1])
+        solid = np.where(at < flange, ~_opening(x, y, half - depth[0]), inside & ~hollow)
+        solid |= inside & (at > height - floor[0]) if floor else False
+        plan = MeshQuad.init_tensor(*lines)
+        ring = ~_opening(*plan.p[:, plan.t].mean(axis=1), half - depth[0])
+        ends = half - 0.5 * overhang
+        bolts = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * ends
+        return cls(
+            ElasticBody(mesh.restrict(np.nonzero(solid)[0]), E, NU, DENSITY),
+            Interface.of(plan.restrict(np.nonzero(ring)[0])),
+            bolts,
+        )
+
+    def pressure(self, joint: BoltedJoint, force: float) -> Array:
+        """(q) [Pa] by the joint's decay around bolts of a force [N]."""
+        apart = self.interface.position[:, None, :] - self.bolts
+        each = joint.pattern.decay(np.hypot(*np.moveaxis(apart, -1, 0)))
+        return np.asarray(np.sum(force * each / (self.interface.area @ each), axis=1))
+
+    def springs(self, joint: BoltedJoint, force: float) -> tuple[Array, Array]:
+        """Normal and tangential stiffness per area (q) [N/m3]."""
+        pressure = np.maximum(self.pressure(joint, force), 1e4)
+        normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
+        return normal, float(shear_ratio(replace(joint, critical_area="continuity"))) * normal
+
+    def modes(self, joint: BoltedJoint, force: float) -> Modes:
+        """Six modes of two such halves."""
+        return modes((self.body,), self.interface, *self.springs(joint, force))
+
+    def squares(self, joint: BoltedJoint, force: float, found: Modes) -> Array:
+        """Rayleigh quotients (6) [1/s2] of given shapes."""
+        normal, tangential = self.springs(joint, force)
+        rows = [trace(self.body, self.interface, axis) for axis in range(3)]
+        values = []
+        for below, above in found.shape:
+            u, gap = above.ravel(), (below - above).ravel()
+            opening = [row @ gap for row in rows]
+            squares = tangential * (opening[0] ** 2 + opening[1] ** 2) + normal * opening[2] ** 2
+            energy = 2.0 * u @ (self.body.stiffness @ u) + self.interface.area @ squares
+            values.append(energy / (2.0 * u @ (self.body.mass @ u)))
+        return np.array(values)
+
+
+def _line(places: Array) -> Array:
+    """Grid lines [m] through +-places, rising, the opening in between."""
+    right = _steps(np.concatenate([[0.0], places]), [MIDDLE, ACROSS, ACROSS, ACROSS])
+    return np.concatenate([-right[:0:-1], right])
+
+
+def _steps(edges: Array, counts: list[int]) -> Array:
+    parts = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(edges[:-1], edges[1:], counts, strict=True)]
+    return np.concatenate([edges[:1], *parts])
+
+
+def _opening(x: Array, y: Array, half: Array) -> NDArray[np.bool_]:
+    return np.asarray((np.abs(x) < half[0]) & (np.abs(y) < half[1]))
+
+
+def fit(joint: BoltedJoint, start: Array, target: Array) -> tuple[Array, Array]:
+    """Lengths [m] near a start and the errors of the frequencies [1]; slopes by Rayleigh's quotient."""
+    known: dict[bytes, Modes] = {}
+    force = STATES[0][0]
+
+    def error(logs: Array) -> Array:
+        known[logs.tobytes()] = found = Box.of(np.exp(logs)).modes(joint, force)
+        return np.asarray(found.frequency / target - 1.0)
+
+    def slope(logs: Array) -> Array:
+        found = known[logs.tobytes()]
+        first = Box.of(np.exp(logs)).squares(joint, force, found)
+        columns = []
+        for k in range(logs.size):
+            moved = logs.copy()
+            moved[k] += STEP
+            change = Box.of(np.exp(moved)).squares(joint, force, found) / first - 1.0
+            columns.append(0.5 * change / STEP * found.frequency / target)
+        return np.stack(columns, axis=1)
+
+    least, most = np.log(LEAST[: start.size]), np.log(MOST[: start.size])
+    found = least_squares(
+        error, np.log(start), slope, bounds=(least, most), max_nfev=16, x_scale=0.15, ftol=1e-4
+    )
+    return np.exp(found.x), np.asarray(found.fun)
+
+
+def starts(joint: BoltedJoint, count: int, closed: bool, seed: int, target: Array) -> Iterator[Array]:
+    """Random lengths, each the best of SAMPLES."""
+    rng, size = np.random.default_rng(seed), 7 if closed else 6
+    for _ in track(range(count), "fits", count):
+        tried: list[tuple[float, Array]] = []
+        while len(tried) < SAMPLES:
+            lengths = LEAST[:size] * (MOST[:size] / LEAST[:size]) ** rng.random(size)
+            if lengths[0] < 2.0 * lengths[[2, 4, 5]].sum() + 0.04 or lengths[1] < lengths[3] + 0.1:
+                continue
+            found = Box.of(lengths).modes(joint, STATES[0][0]).frequency
+            tried.append((float(np.sum(np.log(found / target) ** 2)), lengths))
+        yield min(tried, key=lambda one: one[0])[1]
+
+
+def main() -> None:
+    """Print the best fit of every case."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--fits", type=int, default=5, help="per case (default: 5)")
+    parser.add_argument("--seed", type=int, default=1)
+    args = parser.parse_args()
+    target = measured()
+    for area, spot, ends in CASES:
+        joint = replace(default("bolted_joint").values, critical_area=area, spot_stiffness=spot)
+        found = []
+        for start in starts(joint, args.fits, ends == "closed", args.seed, target[0]):
+            try:
+                found.append(fit(joint, start, target[0]))
+            except (ValueError, RuntimeError):
+                continue  # lengths that leave no body, or no contact that holds
+        lengths, error = min(found, key=lambda one: float(one[1] @ one[1]))
+        errors = sorted(100 * float(np.sqrt(np.mean(e**2))) for _, e in found)
+        rise = Box.of(lengths).modes(joint, STATES[1][0]).frequency / (target[0] * (1.0 + error)) - 1.0
+        print(f"{area}, {spot}, {ends}: rms errors [%]", *(f"{e:.1f}" for e in errors))
+        print("  lengths [mm]", *(f"{n} {1e3 * v:.1f}" for n, v in zip(NAMES, lengths, strict=False)))
+        print("  error at 9 kN [%]   ", *(f"{100 * e:6.1f}" for e in error))
+        print("  rise to 15 kN [%]   ", *(f"{100 * r:6.1f}" for r in rise), flush=True)
+    print("  measured rise [%]   ", *(f"{100 * r:6.1f}" for r in target[1] / target[0] - 1.0))
+
+
+if __name__ == "__main__":
+    main()
