@@ -4,7 +4,7 @@
 
 Prints the frequencies of Table 3 by the shipped lengths, with the computed and with a uniform pressure,
 the choices of the law, finer meshes, and f1 over the preload (Fig. 12). --identify fits
-the lengths anew (ten minutes), from START.
+the lengths anew (three minutes), from START.
 """
 
 import argparse
