@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import plots
-from ..parameters import ParameterFile, check_writable, default, dump, load, write_text
+from ..parameters import ParameterFile, check_writable, dump, write_text
 from . import footprint_compute
 from .common import Parser, command
+from .finite_elements import joint_file
 
 if TYPE_CHECKING:
     from ..fields.contact import ContactField
@@ -60,7 +61,7 @@ def _bring(args: argparse.Namespace) -> int:
         plots.check(args.plot)
     from ..fields import figure, joint
 
-    start = load(args.joint, "bolted_joint") if args.joint else default("bolted_joint")
+    start = joint_file(args.joint)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:

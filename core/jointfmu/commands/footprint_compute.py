@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -10,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from .. import plots
 from ..curve import Curve, approach_curve
-from ..parameters import ParameterFile, check_writable, default, dump, load, write_text
-from ..quantity import flatten
+from ..parameters import ParameterFile, check_writable, dump, write_text
 from .common import command
+from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.convergence import MeshResult
-    from ..fem.geometry import Assembly
     from ..fem.joint import JointSolution
 
 TILT = 1.0 / 3.0
@@ -31,12 +29,8 @@ def add(commands: Any) -> None:
     """Declare the command."""
     text = "compute the contact pressure of a bolted joint by finite elements"
     sub = command(commands, "compute", run, text)
-    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
-    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
+    assembly_arguments(sub)
     sub.add_argument("--moment", type=float, metavar="M", help="bending moment about x [N.m] (default: 0)")
-    sub.add_argument(
-        "--joint", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
-    )
     sub.add_argument(
         "--out", type=Path, metavar="FILE", help="write the joint with this field, for FMUs (TOML)"
     )
@@ -83,11 +77,6 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def joint_file(path: Path | None) -> ParameterFile:
-    """The joint's parameters: of a file, or the default."""
-    return load(path, "bolted_joint") if path else default("bolted_joint")
-
-
 def _law(file: ParameterFile) -> Curve:
     return approach_curve(file.values)
 
@@ -102,30 +91,6 @@ def _check(args: argparse.Namespace) -> None:
         check_writable(path)
     if args.plot:
         plots.check(args.plot)
-
-
-def without_fem(error: Exception) -> ValueError:
-    """The refusal where a package, or a system library of gmsh, is missing."""
-    return ValueError(
-        f"finite elements need what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
-        "and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
-    )
-
-
-def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
-    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`."""
-    changes = {"A_0": assembly.contact_area}
-    for name in ("side1", "side2"):
-        body = getattr(assembly, name)
-        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
-    if whole:
-        rows = assembly.outer_rows()
-        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
-        if rows is not None:
-            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
-    old = flatten(file.values)
-    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
-    return file.with_values(new, "derived", f"from the assembly {assembly.name}")
 
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:

@@ -10,7 +10,7 @@ from ..curve import approach_curve
 from ..joints.bolted_joint import shear_ratio
 from ..parameters import check_writable, write_bytes
 from .common import command
-from .footprint_compute import joint_file, with_assembly, without_fem
+from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.modes import Modes
@@ -23,12 +23,8 @@ def add(commands: Any) -> None:
     """Declare the command."""
     text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
     sub = command(commands, "modes", run, text)
-    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
-    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
+    assembly_arguments(sub)
     sub.add_argument("--moment", type=float, default=0.0, metavar="M", help="about x [N.m] (default: 0)")
-    sub.add_argument(
-        "--joint", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
-    )
     sub.add_argument("--count", type=int, default=6, metavar="N", help=f"modes, 1 to {MOST} (default: 6)")
     sub.add_argument(
         "--refinement",

@@ -6,7 +6,7 @@ from typing import Any
 
 from .. import validation
 from .common import command
-from .footprint_compute import without_fem
+from .finite_elements import without_fem
 
 
 def add(commands: Any) -> None:

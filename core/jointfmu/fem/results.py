@@ -1,6 +1,5 @@
 """The computed contact as files: nodal CSV, VTU for ParaView, a picture."""
 
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from .. import plots
 from ..fields import csvfile
 from ..parameters import check_writable, write_bytes, write_text
 from .joint import JointSolution
+from .vtu import packed
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -54,15 +54,10 @@ def quarters(solution: JointSolution) -> tuple[Array, Index, Array]:
 
 def vtu(solution: JointSolution) -> bytes:
     """Quadrilaterals of the contact with pressure [Pa] and approach [m] at their corners."""
-    import meshio
-
     places, cells, approach = quarters(solution)
     data = {"pressure": solution.contact.model.law.derivatives(approach, 1)[0], "approach": approach}
     points = np.column_stack([places, np.zeros(len(places))])
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "field.vtu"
-        meshio.Mesh(points, [("quad", cells)], point_data=data).write(place)
-        return place.read_bytes()
+    return packed(points, "quad", cells, data)
 
 
 def draw(solution: JointSolution, path: str | Path) -> None:

@@ -1,12 +1,10 @@
 """Shapes of modes for ParaView."""
 
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
 from .elasticity import Array, ElasticBody, Index
 from .modes import Modes
+from .vtu import packed
 
 
 def vtu(bodies: tuple[ElasticBody, ...], found: Modes) -> bytes:
@@ -14,7 +12,6 @@ def vtu(bodies: tuple[ElasticBody, ...], found: Modes) -> bytes:
 
     bodies : as in jointfmu.fem.modes; a mirror image is drawn too
     """
-    import meshio
     from skfem.io.meshio import to_meshio
 
     parts = [(body.mesh.p.T, to_meshio(body.mesh).cells[0].data) for body in bodies]
@@ -28,10 +25,7 @@ def vtu(bodies: tuple[ElasticBody, ...], found: Modes) -> bytes:
         data[f"mode {i}, {frequency:.1f} Hz"] = moved / np.linalg.norm(moved, axis=1).max()
     points = np.concatenate([points for points, _ in parts])
     cells = _outward(points, np.concatenate([parts[0][1], parts[1][1] + counts[0]]))
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "modes.vtu"
-        meshio.Mesh(points, [("hexahedron", cells)], point_data=data).write(place)
-        return place.read_bytes()
+    return packed(points, "hexahedron", cells, data)
 
 
 def _corners(bodies: tuple[ElasticBody, ...]) -> tuple[Index, Index]:

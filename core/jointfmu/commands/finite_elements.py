@@ -1,0 +1,50 @@
+"""What the commands with finite elements share: arguments, the interface's parameters, the refusal."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..parameters import ParameterFile, default, load
+from ..quantity import flatten
+
+if TYPE_CHECKING:
+    from ..fem.geometry import Assembly
+
+
+def assembly_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare the assembly, `--preload` and `--joint`."""
+    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
+    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
+    sub.add_argument(
+        "--joint", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
+    )
+
+
+def joint_file(path: Path | None) -> ParameterFile:
+    """The bolted joint's parameters: of a file, or the default."""
+    return load(path, "bolted_joint") if path else default("bolted_joint")
+
+
+def without_fem(error: Exception) -> ValueError:
+    """The refusal where a package, or a system library of gmsh, is missing."""
+    return ValueError(
+        f"finite elements need what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
+        "and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
+    )
+
+
+def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
+    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`."""
+    changes = {"A_0": assembly.contact_area}
+    for name in ("side1", "side2"):
+        body = getattr(assembly, name)
+        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
+    if whole:
+        rows = assembly.outer_rows()
+        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
+        if rows is not None:
+            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
+    old = flatten(file.values)
+    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
+    return file.with_values(new, "derived", f"from the assembly {assembly.name}")

@@ -1,0 +1,17 @@
+"""Meshes with data at their points, for ParaView."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from .elasticity import Array, Index
+
+
+def packed(points: Array, kind: str, cells: Index, data: Mapping[str, Array]) -> bytes:
+    """A VTU file: points (k, 3) [m], cells (m, corners) of meshio's `kind`, values (k, ...) by name."""
+    import meshio
+
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder) / "mesh.vtu"
+        meshio.Mesh(points, [(kind, cells)], point_data=dict(data)).write(place)
+        return place.read_bytes()
