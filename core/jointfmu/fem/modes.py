@@ -1,5 +1,6 @@
 """Natural frequencies of two bodies that float freely, held together by the stiffness of their contact."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,6 @@ SHIFT = 100.0
 """Frequency [Hz] at whose negative square the eigensolver looks; far below the elastic modes."""
 LEAST = 1.0
 """Frequency [Hz] below which a motion counts as rigid."""
-AXES = (0, 1, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,27 +45,29 @@ def modes(
     Raises RuntimeError if the contact does not hold the bodies together.
     """
     if len(bodies) == 2:
-        found = _lowest(bodies, _springs(bodies, interface, [tangential, tangential, normal]), RIGID + count)
+        springs = _springs(bodies, interface, {0: tangential, 1: tangential, 2: normal})
+        found = _lowest(bodies, springs, RIGID + count)
     else:
-        none = np.zeros_like(normal)
         found = []
-        for stiffness, sign in (([none, none, normal], 1.0), ([tangential, tangential, none], -1.0)):
+        for stiffness, sign in (({2: normal}, 1.0), ({0: tangential, 1: tangential}, -1.0)):
             half = _lowest(bodies, 2.0 * _springs(bodies, interface, stiffness), RIGID // 2 + count)
             found += [(f, _both(shape[0], sign)) for f, shape in half]
         found.sort(key=lambda one: one[0])
     frequency = np.array([one[0] for one in found])
     if frequency[RIGID] < LEAST:
         raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
-    mass = sum(float(body.mass.sum()) / len(AXES) for body in bodies) * (3 - len(bodies))
+    mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
     last = RIGID + count
     return Modes(frequency[RIGID:last], tuple(one[1] for one in found[RIGID:last]), mass)
 
 
-def _springs(bodies: tuple[ElasticBody, ...], interface: Interface, stiffness: list[Array]) -> sp.csr_matrix:
-    """Stiffness matrix [N/m] of the interface with a stiffness per area (q) [N/m3] along each axis."""
+def _springs(
+    bodies: tuple[ElasticBody, ...], interface: Interface, stiffness: Mapping[int, Array]
+) -> sp.csr_matrix:
+    """Stiffness matrix [N/m] of the interface; stiffness per area (q) [N/m3] along some of the axes."""
     signs = (1.0, -1.0)[: len(bodies)]
     total: sp.csr_matrix | float = 0.0
-    for axis, each in zip(AXES, stiffness, strict=True):
+    for axis, each in stiffness.items():
         opening = sp.hstack([s * trace(body, interface, axis) for s, body in zip(signs, bodies, strict=True)])
         total = total + opening.T @ sp.diags(interface.area * each) @ opening
     return sp.csr_matrix(total)
