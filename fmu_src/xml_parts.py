@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
+from jointfmu.joints.model import Model
+
 from .units import UNITS, display_unit
-from .variables import Model
 
 
 class Listed(NamedTuple):
@@ -44,19 +45,6 @@ class Unknown(NamedTuple):
     rate: bool
     knowns: dict[int, str]
     initial: dict[int, str]
-
-
-# Where an output is linear in an input with a factor of parameters only ("parameters") or of none
-# ("constant"). Every other dependency has no particular structure.
-_SPEEDS = {"w1": "parameters", "w2": "parameters"}
-_LINEAR: dict[str, dict[str, dict[str, str]]] = {
-    "HarmonicDriveSpring": {
-        "phi_rel": {"phi1": "parameters", "phi2": "constant"},
-        "tau1": _SPEEDS,
-        "tau2": _SPEEDS,
-        "tau": _SPEEDS,
-    }
-}
 
 
 def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
@@ -124,7 +112,7 @@ def unknowns(model: Model, variability: str) -> list[Unknown]:
     for i, output in enumerate(outputs):
         knowns, initial = {}, {}
         for name in sorted(model.depends(output), key=index.__getitem__):
-            linear = _LINEAR.get(model.name, {}).get(output, {}).get(name)
+            linear = model.linear.get(output, {}).get(name)
             knowns[index[name]] = {None: "dependent", "parameters": variability}.get(linear, "constant")
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"

@@ -12,10 +12,10 @@ from typing import Any
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
-from jointfmu_fmus.building import build
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
 from lxml import etree
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 

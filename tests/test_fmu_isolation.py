@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from conftest import Fmu, unpack
 from fmpy import platform, sharedLibraryExtension
-from jointfmu_fmus.building import build
-from jointfmu_fmus.python import build as python_build
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.python import build as python_build
 
 from jointfmu import ramp
-from jointfmu.joints.gear_contact import GearContactSpring
+from jointfmu.joints import MODELS
+from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import default
 
 Host = Callable[..., Fmu]
@@ -293,7 +293,7 @@ def test_a_host_with_only_numpy_gets_the_numbers(fmu: Host, fmus: Path, only_num
     assert seen["status"] == [0] * 7
     instance = fmu(name).start({driven: value})
     assert dict(zip(instance.outputs, seen["outputs"], strict=True)) == instance.get()
-    assert not {m.split(".")[0] for m in seen["modules"]} & {"jointfmu", "jointfmu_fmus", "scipy", "fmpy"}
+    assert not {m.split(".")[0] for m in seen["modules"]} & {"jointfmu", "jointfmu_fmu_src", "scipy", "fmpy"}
 
 
 def test_a_host_ends_cleanly(fmus: Path, only_numpy: Path) -> None:

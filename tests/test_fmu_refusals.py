@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 from conftest import Fmu, refused_line, run_host
-from jointfmu_fmus.variables import MODELS
 
 from jointfmu import cli
+from jointfmu.joints import MODELS
 
 Host = Callable[..., Fmu]
 NAMES = list(MODELS)

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from jointfmu_fmus.variables import MODELS
 from natives import NAMES, SAME, VERSIONS, Host, attempt, close, jacobian, package, settle
 from test_fmu_refusals import BEYOND, GOOD, REFUSED
 from test_fmu_values import RANGES, parameters
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten

@@ -9,7 +9,8 @@ import pytest
 from conftest import refused_line
 
 from jointfmu import cli
-from jointfmu.parameters import JOINTS, default
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.models import MODELS
@@ -86,7 +87,7 @@ def test_reduced_evaluation_against_the_springs(name):
     assert np.all(outcome.good)
     for i in range(count):
         values, factor, _ = propagate.one_sample(task, points, i)
-        exact = task.model.exact(build(JOINTS[joint], values), factor * task.loads)
+        exact = task.model.exact(build(KINDS[joint].parameters, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
             assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
@@ -139,7 +140,7 @@ def test_samples_that_only_the_law_refuses():
     for i in np.flatnonzero(~outcome.good):
         values, _, _ = propagate.one_sample(task, points, int(i))
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
-            MODELS["bolted_joint"].exact(build(JOINTS["bolted_joint"], values), task.loads)
+            MODELS["bolted_joint"].exact(build(KINDS["bolted_joint"].parameters, values), task.loads)
     refused = propagate.refusals(task, points, outcome.good)
     assert 0 < refused.count == np.count_nonzero(~outcome.good) < 200
     assert "D" in refused.reason

@@ -216,7 +216,7 @@ def test_part_of_every_curve_is_predicted(curve, most):
 def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
     unknowns = {name for fit in FITS[joint][1] for name in fit.unknowns}
     file = default(joint)
-    assert unknowns == {name for name, kind in file.kinds.items() if kind == "calibration"}
+    assert unknowns == {name for name, kind in file.origins.items() if kind == "calibration"}
     declared = {name for name, item in flat_fields(type(file.values)) if item.metadata.get("calibration")}
     assert declared <= unknowns
     for fit in FITS[joint][1]:
@@ -246,7 +246,7 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
     again = calibrate(start)
     for name in unknowns:
         assert flatten(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
-        assert again.kinds[name] == "calibration"
+        assert again.origins[name] == "calibration"
         assert again.sources[name] == committed.sources[name]
     untouched = {name: value for name, value in values.items() if name not in unknowns}
     assert {name: flatten(again.values)[name] for name in untouched} == untouched

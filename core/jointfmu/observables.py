@@ -13,9 +13,9 @@ from .asperity import zhao2018 as zhao
 from .asperity.yu2022 import Yu2022
 from .footprint.bolts import cells, pressure_shape, unit_pressures
 from .interface import at_largest_spot
-from .joints.bolted_joint import BoltedJoint, bolt_pattern, pressures, row_forces
-from .joints.gear_contact import GearContact
-from .joints.harmonic_drive import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from .joints.bolted_joint.spring import BoltedJoint, bolt_pattern, pressures, row_forces
+from .joints.gear_contact.spring import GearContact
+from .joints.harmonic_drive.spring import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 from .surface import domain_extension, hardness_coefficient
 
 Array = NDArray[np.float64]

@@ -14,12 +14,13 @@ from jointfmu import __version__, curve, table
 from jointfmu.footprint import lobes
 from jointfmu.footprint.bolts import pressure_shape
 from jointfmu.footprint.shape import PressureShape
-from jointfmu.joints import harmonic_drive
+from jointfmu.joints import MODELS
+from jointfmu.joints.harmonic_drive import spring as harmonic_drive
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import flatten, interval
 
 from ..partners import PARTNERS
-from ..variables import MODELS, Model
 from .emit import HELPERS, function
 from .graph import Graph, graph
 

@@ -11,12 +11,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from jointfmu.joints import bolted_joint, gear_contact, harmonic_drive
+from jointfmu.joints.bolted_joint import spring as bolted_joint
+from jointfmu.joints.gear_contact import spring as gear_contact
+from jointfmu.joints.harmonic_drive import spring as harmonic_drive
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
 from jointfmu.quantity import Limit, build, flatten
-
-from ..variables import Model
 
 Symbols = Sequence[Any]
 

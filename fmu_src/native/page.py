@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from jointfmu import __version__
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, flatten, interval, problem
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..templates import template
 from ..units import UNITS, display_unit
-from ..variables import Model
 from ..xml_parts import listed
 from .licence import licence
 from .terminals import TERMINALS
@@ -89,7 +89,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
             allowed = "1, 2, 3, ..." if meta.get("whole") else interval(fields[name])
         if isinstance(value, tuple):
             value = f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}"
-        kind, source = parameters.kinds.get(name, "user"), parameters.sources.get(name, "default choice")
+        kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
         rows.append(_Row(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows
 

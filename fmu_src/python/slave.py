@@ -11,12 +11,14 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from jointfmu_fmus.variables import MODELS, Model
-from jointfmu_fmus.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
+from jointfmu_fmu_src.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
 from jointfmu import __version__
+from jointfmu.joints import KINDS, MODELS, register
+from jointfmu.joints.kind import Kind
+from jointfmu.joints.model import Model
 from jointfmu.parameters import load
 from jointfmu.quantity import build, flatten
 from jointfmu.stamp import build_time
@@ -50,12 +52,15 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     computed from it when asked for.
     """
 
+    kind: ClassVar[Kind]
     fmu: ClassVar[str]
     content: ClassVar[str]
     """Digest of everything that runs inside; the GUID comes from it."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        if self.kind.name not in KINDS:  # of another package
+            register(self.kind)
         self.model: Model = MODELS[self.fmu]
         self.modelName = self.fmu
         self.description = self.model.doc

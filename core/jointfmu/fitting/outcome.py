@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import JOINTS, ParameterFile
+from ..joints import KINDS
+from ..parameters import ParameterFile
 from ..quantity import flat_fields, flatten
 from ..stamp import build_time
 from .identifiability import combinations, undetermined
@@ -114,7 +115,9 @@ def unknowns(
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
     values, found = flatten(start.values), []
-    declared = {n: f for n, f in flat_fields(JOINTS[start.joint]) if isinstance(values.get(n), float)}
+    declared = {
+        n: f for n, f in flat_fields(KINDS[start.joint].parameters) if isinstance(values.get(n), float)
+    }
     for name in names:
         if name not in declared:
             raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")

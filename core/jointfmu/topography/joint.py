@@ -1,19 +1,20 @@
 """Which parameters of a joint a surface decides, and a parameter file with them."""
 
-from ..parameters import JOINTS, ParameterFile
+from ..joints import KINDS
+from ..parameters import ParameterFile
 from .results import Identification, Result
 
 
 def changes(found: Identification, joint: str, method: str | None = None) -> dict[str, tuple[float, Result]]:
-    """{structured name: (value, result it comes from)} of a joint, a key of parameters.JOINTS.
+    """{structured name: (value, result it comes from)} of a joint, a key of joints.KINDS.
 
     harmonic_drive : surface.D = D_s of the surface (2 < D_s < 3), surface.G = G_s
     bolted_joint   : surface.D = D of the profile (1 < D < 2), surface.G
     gear_contact   : surface1 = profile along x, surface2 = profile along y; both alike from a profile or
         an isotropic map
     """
-    if joint not in JOINTS:
-        raise ValueError(f"joint = {joint!r} is not one of {', '.join(JOINTS)}")
+    if joint not in KINDS:
+        raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
     main = found.best(method=method)
     if joint == "harmonic_drive":
         areal = main.areal

@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from ..asperity import mindlin
 from ..footprint.bolts import BoltPattern, pressure_shape
 from ..footprint.shape import NodalField
-from ..joints.bolted_joint import BoltedJoint, shear_ratio
+from ..joints.bolted_joint.spring import BoltedJoint, shear_ratio
 from ..quantity import flatten
 from .approach import held, tabulate
 from .chebyshev import discrete_gauss

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
 from ..interface import largest_spot
-from ..joints.harmonic_drive import (
+from ..joints.harmonic_drive.spring import (
     HarmonicDrive,
     contact_length,
     in_series,

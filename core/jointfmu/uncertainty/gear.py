@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints.gear_contact import GearContact
+from ..joints.gear_contact.spring import GearContact
 from .approach import held, tabulate
 from .samples import columns
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints.bolted_joint import BoltedJoint, BoltedJointSpring, node_pressure
-from ..joints.gear_contact import GearContact, GearContactSpring
-from ..joints.harmonic_drive import HarmonicDrive, HarmonicDriveSpring
+from ..joints.bolted_joint.spring import BoltedJoint, BoltedJointSpring, node_pressure
+from ..joints.gear_contact.spring import GearContact, GearContactSpring
+from ..joints.harmonic_drive.spring import HarmonicDrive, HarmonicDriveSpring
 from . import bolted, drive, gear
 
 Array = NDArray[np.float64]

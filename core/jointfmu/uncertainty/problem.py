@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import JOINTS, ParameterFile
+from ..joints import KINDS
+from ..parameters import ParameterFile
 from ..quantity import flat_fields, flatten, problem
 from .distributions import Uncertain, is_relative
 from .models import MODELS, Model
@@ -52,7 +53,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
 
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
     """
-    model, declared = MODELS[file.joint], dict(flat_fields(JOINTS[file.joint]))
+    model, declared = MODELS[file.joint], dict(flat_fields(KINDS[file.joint].parameters))
     base = flatten(file.values)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     known = [*(base.keys() - lists), model.load]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..parameters import JOINTS
+from ..joints import KINDS
 from ..progress import track
 from ..quantity import build
 from .problem import LOAD_END, Problem
@@ -39,7 +39,7 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
     """All outputs at loads (m) for points (n, d) of the unit cube."""
     values, factor = task.sampled(points)
     n = len(points)
-    joint = columns(JOINTS[task.joint], values)
+    joint = columns(KINDS[task.joint].parameters, values)
     good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.model.most(joint))
     outputs: dict[str, Singles] = {
         name: np.full((loads.size, n), np.nan, np.float32) for name in task.model.outputs
@@ -144,11 +144,14 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
         return Refused(0, {}, "")
     values, factor, drawn = one_sample(task, points, int(bad[0]))
     reason = "the law gives no finite value"
-    load, most = factor * float(task.loads[-1]), task.model.most(columns(JOINTS[task.joint], values))
+    load, most = (
+        factor * float(task.loads[-1]),
+        task.model.most(columns(KINDS[task.joint].parameters, values)),
+    )
     if not 0.0 < load <= most:
         reason = f"{task.model.load} = {load:g} {task.model.unit} is outside (0, {most:.6g}]: {LOAD_END}"
     try:
-        task.model.exact(build(JOINTS[task.joint], values), load * np.ones(1))
+        task.model.exact(build(KINDS[task.joint].parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
     return Refused(int(bad.size), drawn, reason)
@@ -164,7 +167,7 @@ def check(task: Problem, points: Array, outcome: Outcome) -> float:
     worst = 0.0
     for i in np.flatnonzero(outcome.good)[:CHECKED]:
         values, factor, drawn = one_sample(task, points, int(i))
-        exact = task.model.exact(build(JOINTS[task.joint], values), factor * task.loads[few])
+        exact = task.model.exact(build(KINDS[task.joint].parameters, values), factor * task.loads[few])
         for name, value in exact.items():
             miss = float(np.max(np.abs(outcome.outputs[name][few, i] / value - 1.0)))
             if not miss <= ACCURACY:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..asperity.hu2023 import Hu2023
-from ..curve import Curve, assemble, refined
-from ..footprint import lobes
-from ..footprint.lobes import (
+from ...asperity.hu2023 import Hu2023
+from ...curve import Curve, assemble, refined
+from ...footprint import lobes
+from ...footprint.lobes import (
     PLACES,
     WEIGHTS,
     Lobe,
@@ -18,11 +18,11 @@ from ..footprint.lobes import (
     piece_ends,
     two_lobes,
 )
-from ..footprint.nodes import Footprint
-from ..interface import checked_spots, largest_spot
-from ..quantity import Limit, Number, check, check_limits, choice, either, group, quantity
-from ..surface import ArealSurface, Elastic, ElasticPlastic
-from ..table import Blocks, stiffness_tables
+from ...footprint.nodes import Footprint
+from ...interface import checked_spots, largest_spot
+from ...quantity import Limit, Number, check, check_limits, choice, either, group, quantity
+from ...surface import ArealSurface, Elastic, ElasticPlastic
+from ...table import Blocks, stiffness_tables
 
 Array = NDArray[np.float64]
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..asperity import mindlin
-from ..asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
-from ..curve import Curve, approach_curve
-from ..footprint.bolts import BoltPattern, pressure_shape
-from ..footprint.shape import NodalField, PressureShape
-from ..interface import largest_spot
-from ..quantity import Limit, Number, check_limits, group, quantity
+from ...asperity import mindlin
+from ...asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
+from ...curve import Curve, approach_curve
+from ...footprint.bolts import BoltPattern, pressure_shape
+from ...footprint.shape import NodalField, PressureShape
+from ...interface import largest_spot
+from ...quantity import Limit, Number, check_limits, group, quantity
 
 Array = NDArray[np.float64]
 
