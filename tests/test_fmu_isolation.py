@@ -17,7 +17,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.python import build as python_build
 
 from jointfmu import ramp
-from jointfmu.joints import MODELS
+from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import default
 
@@ -147,13 +147,16 @@ def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """FMUs of a package whose gear contact is twice as stiff."""
-    out, sources = tmp_path_factory.mktemp("doubled_sources"), python_build.runtime_sources()
+    out, sources = (
+        tmp_path_factory.mktemp("doubled_sources"),
+        python_build.runtime_sources(KINDS["gear_contact"]),
+    )
     sources["joints/gear_contact.py"] += """
 _single = GearContactSpring.approach
 GearContactSpring.approach = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(python_build, "runtime_sources", lambda: sources)
+        patch.setattr(python_build, "runtime_sources", lambda kind: sources)
         build(["GearContact", "BoltedJoint"], ["python"], None, out)
     return out / "python"
 
