@@ -27,6 +27,6 @@ def folder(kind: Kind) -> Path:
     spec = find_spec(package(kind))
     if spec is None or not spec.submodule_search_locations:
         raise ValueError(
-            f"joint {kind.name!r}: the folder {package(kind)} is missing; expected its FMU parts"
+            f"joint {kind.name!r}: {package(kind)} is missing; expected the folder of its FMU parts"
         )
     return Path(spec.submodule_search_locations[0])
