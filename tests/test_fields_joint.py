@@ -15,8 +15,8 @@ from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
+from jointfmu.joints.bolted_joint.published import p_between
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
-from jointfmu.observables import p_between
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 

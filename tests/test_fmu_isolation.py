@@ -151,7 +151,7 @@ def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
         tmp_path_factory.mktemp("doubled_sources"),
         python_build.runtime_sources(KINDS["gear_contact"]),
     )
-    sources["joints/gear_contact.py"] += """
+    sources["joints/gear_contact/spring.py"] += """
 _single = GearContactSpring.approach
 GearContactSpring.approach = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
