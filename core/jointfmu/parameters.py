@@ -21,7 +21,7 @@ from typing import Any
 from .joints.bolted_joint import BoltedJoint
 from .joints.gear_contact import GearContact
 from .joints.harmonic_drive import HarmonicDrive
-from .quantity import build, flat_fields, flatten
+from .quantity import build, changed, flat_fields, flatten
 
 SCHEMA = 1
 KINDS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -54,10 +54,9 @@ class ParameterFile:
 
     def with_values(self, changes: Mapping[str, Any], kind: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""
-        values = build(JOINTS[self.joint], flatten(self.values) | dict(changes))
         return replace(
             self,
-            values=values,
+            values=changed(self.values, changes),
             kinds={**self.kinds, **dict.fromkeys(changes, kind)},
             sources={**self.sources, **dict.fromkeys(changes, source)},
         )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..parameters import JOINTS
 from ..progress import track
-from ..quantity import build
+from ..quantity import Interval, build
 from .problem import LOAD_END, Problem
 from .samples import columns, inside
 from .study import Refused, samples_of, unit_design
@@ -144,9 +144,10 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
         return Refused(0, {}, "")
     values, factor, drawn = one_sample(task, points, int(bad[0]))
     reason = "the law gives no finite value"
-    load, most = factor * float(task.loads[-1]), task.model.most(columns(JOINTS[task.joint], values))
-    if not 0.0 < load <= most:
-        reason = f"{task.model.load} = {load:g} {task.model.unit} is outside (0, {most:.6g}]: {LOAD_END}"
+    load = factor * float(task.loads[-1])
+    allowed = Interval.of(gt=0.0, le=task.model.most(columns(JOINTS[task.joint], values)))
+    if not allowed.contains(load):
+        reason = f"{task.model.load} = {load:g} {task.model.unit} is outside {allowed}: {LOAD_END}"
     try:
         task.model.exact(build(JOINTS[task.joint], values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
