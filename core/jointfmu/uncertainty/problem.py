@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..joints import KINDS
 from ..joints.reduced import Reduced, reduced
 from ..parameters import ParameterFile
-from ..quantity import flat_fields, flatten, problem
+from ..quantity import Interval, flat_fields, flatten, problem
 from .distributions import Uncertain, is_relative
 from .study import samples_of, split
 
@@ -85,7 +85,7 @@ def _check(one: Uncertain, item: Any) -> None:
     if item.metadata["whole"]:
         raise ValueError(f"{one.name} = {one.text}: is a whole number and cannot be uncertain")
     for value in (*(end for end in one.support if np.isfinite(end)), float(one.law.median())):
-        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["gt"] == 0.0
+        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["interval"].low == 0.0
         if not tolerated and (text := problem(one.name, value, item)):
             raise ValueError(f"{one.name} = {one.text}: {text}")
 
@@ -94,7 +94,7 @@ def _ramp(
     curves: Reduced, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None
 ) -> Array:
     """The loads: a ramp from 0 to `to`, or the one load that was set."""
-    most = curves.most(values)
+    allowed = Interval.of(gt=0.0, le=curves.most(values))
     if at is not None:
         if to is not None:
             raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
@@ -102,13 +102,13 @@ def _ramp(
             raise ValueError(f"{curves.load.name} = {at!r} is not a number in {curves.load.unit}")
         ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
         for value in (float(at), *ends):
-            if not 0.0 < value <= most:
-                allowed = f"(0, {most:.6g}]: {LOAD_END}"
-                raise ValueError(f"{curves.load.name} = {value:g} {curves.load.unit} is outside {allowed}")
+            if not allowed.contains(value):
+                given = f"{curves.load.name} = {value:g} {curves.load.unit}"
+                raise ValueError(f"{given} is outside {allowed}: {LOAD_END}")
         return np.array([float(at)])
     end = curves.to(values) if to is None else to
-    if not 0.0 < end <= most:
-        raise ValueError(f"to = {end:g} {curves.load.unit} is outside (0, {most:.6g}]: {LOAD_END}")
+    if not allowed.contains(end):
+        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_END}")
     if not 2 <= points <= 10_000:
         raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
     return np.linspace(0.0, end, points)

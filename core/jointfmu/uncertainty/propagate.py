@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..batch.samples import columns, inside
 from ..joints import KINDS
 from ..progress import track
-from ..quantity import build
+from ..quantity import Interval, build
 from .problem import LOAD_END, Problem
 from .study import Refused, samples_of, unit_design
 
@@ -144,13 +144,10 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
         return Refused(0, {}, "")
     values, factor, drawn = one_sample(task, points, int(bad[0]))
     reason = "the law gives no finite value"
-    load, most = (
-        factor * float(task.loads[-1]),
-        task.reduced.most(columns(KINDS[task.joint].parameters, values)),
-    )
-    if not 0.0 < load <= most:
-        ramped = task.reduced.load
-        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside (0, {most:.6g}]: {LOAD_END}"
+    load, ramped = factor * float(task.loads[-1]), task.reduced.load
+    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(KINDS[task.joint].parameters, values)))
+    if not allowed.contains(load):
+        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_END}"
     try:
         task.reduced.exact(build(KINDS[task.joint].parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
