@@ -1,5 +1,7 @@
 """Which parameters of a joint a surface decides, and a parameter file with them."""
 
+import math
+
 from ..parameters import JOINTS, ParameterFile
 from .results import Identification, Result
 
@@ -30,8 +32,17 @@ def changes(found: Identification, joint: str, method: str | None = None) -> dic
 
 
 def with_surface(file: ParameterFile, found: Identification, method: str | None = None) -> ParameterFile:
-    """The parameter file with D and G of the surface, each with its source."""
+    """The parameter file with D and G of the surface, each with its source.
+
+    Raises ValueError if one is not determined.
+    """
     for name, (value, result) in changes(found, file.joint, method).items():
+        if not math.isfinite(value):
+            D, G = result.profile.D.value, result.profile.G
+            raise ValueError(
+                f"{name} of {' and '.join(found.names)} is not determined (D = {D:.2f}, the interval of G "
+                f"spans {G.decades:.0f} decades): {file.joint} needs a number"
+            )
         file = file.with_values({name: value}, "user", _source(found, result, file.joint, name))
     return file
 
