@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -111,7 +112,10 @@ def _print(found: Identification, heights: Sequence[Heights], args: argparse.Nam
     print("brackets: 95 % confidence intervals")
     for joint in [args.joint] if args.joint else _rough():
         values = changes(found, joint, args.method)
-        text = ", ".join(f"{name} = {value:.6g}" for name, (value, _) in values.items())
+        text = ", ".join(
+            f"{name} = {value:.6g}" if math.isfinite(value) else f"{name} not determined"
+            for name, (value, _) in values.items()
+        )
         print(f"{joint} ({meaning(joint)}, {next(iter(values.values()))[1].method}): {text}")
     if args.write:
         print(f"wrote {args.write}")
@@ -138,6 +142,8 @@ def _row(result: Result) -> tuple[str, ...]:
 
 
 def _bracket(one: Estimate, style: str) -> str:
+    if not math.isfinite(one.value):
+        return "not determined"
     return f"{one.value:{style}} [{one.low:{style}}, {one.high:{style}}]"
 
 
@@ -153,7 +159,7 @@ def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.N
         ],
         "results": [_result_dict(result, args.gamma) for result in found.results],
         "joints": {
-            joint: {name: value for name, (value, _) in changes(found, joint, args.method).items()}
+            joint: {name: _number(value) for name, (value, _) in changes(found, joint, args.method).items()}
             for joint in ([args.joint] if args.joint else _rough())
         },
         "written": str(args.write) if args.write else None,
@@ -177,9 +183,10 @@ def _result_dict(result: Result, gamma: float) -> dict[str, Any]:
     }
 
 
-def _interval(one: Estimate) -> dict[str, float]:
-    return {"value": one.value, "low": one.low, "high": one.high}
+def _interval(one: Estimate) -> dict[str, float | None]:
+    return {"value": _number(one.value), "low": _number(one.low), "high": _number(one.high)}
 
 
-def _number(value: Number) -> float:
-    return float(value)
+def _number(value: Number) -> float | None:
+    """A number of JSON; null if it is not determined."""
+    return float(value) if math.isfinite(float(value)) else None
