@@ -9,6 +9,7 @@ from xml.etree.ElementTree import Element, SubElement, fromstring
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flatten
+from jointfmu.units import UNITS
 
 from .archive import pack, workshop
 from .native.build import build
@@ -16,7 +17,6 @@ from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
 from .systems import SYSTEMS, System, system
-from .units import UNITS
 from .variables import MODELS
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"

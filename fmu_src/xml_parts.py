@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from .units import UNITS, display_unit
+from jointfmu.units import UNITS, display_unit
+
 from .variables import Model
 
 

@@ -10,8 +10,8 @@ from jointfmu import __version__
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flatten
 from jointfmu.stamp import fixed_time
+from jointfmu.units import UNITS
 
-from ..units import UNITS
 from ..variables import Model
 from ..xml_parts import (
     Listed,

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from jointfmu import __version__
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, flatten, interval, problem
+from jointfmu.units import UNITS, display_unit
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..templates import template
-from ..units import UNITS, display_unit
 from ..variables import Model
 from ..xml_parts import listed
 from .licence import licence

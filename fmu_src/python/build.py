@@ -14,7 +14,7 @@ from jointfmu.parameters import ParameterFile, dump
 
 _RUNTIME = (
     "__init__", "quantity", "surface", "powerlaw", "interface", "curve", "table", "parameters", "stamp",
-    "asperity", "footprint", "joints",
+    "units", "asperity", "footprint", "joints",
 )  # fmt: skip
 _PRIVATE = "PRIVATE_PACKAGE"
 """Stands for the name that the digest of all sources gives."""
@@ -61,7 +61,7 @@ def runtime_sources() -> dict[str, str]:
     core, fmus = Path(jointfmu.__file__).parent, Path(__file__).parent.parent
     files = {p: p.relative_to(core) for p in sorted(core.rglob("*.py"))}
     chosen = {p: str(r) for p, r in files.items() if r.parts[0].removesuffix(".py") in _RUNTIME}
-    shared = ("__init__.py", "units.py", "variables.py", "xml_parts.py")
+    shared = ("__init__.py", "variables.py", "xml_parts.py")
     chosen |= {fmus / p: f"fmus/{p}" for p in shared}
     chosen |= {fmus / "python" / p: f"fmus/python/{p}" for p in ("__init__.py", "slave.py")}
     return {inside: _private(p.read_text(encoding="utf-8")) for p, inside in sorted(chosen.items())}
