@@ -65,7 +65,8 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Table:
         raise ValueError(f"{path}: has {len(lines) - 1} points, at least {least} are needed")
     numbers = [number for number, _ in lines[1:]]
     rows = [cells(line, mark) for _, line in lines[1:]]
-    same_length(path, numbers, rows, len(head))
+    for line, row in zip(numbers, rows, strict=True):
+        check_length(path, line, row, len(head))
     columns = {
         name: _column(path, name, numbers, [row[place] for row in rows]) * size
         for name, (place, size) in places.items()
@@ -99,11 +100,10 @@ def cells(line: str, mark: str | None) -> list[str]:
     return next(csv.reader([line], delimiter=mark or ","))
 
 
-def same_length(path: Path, numbers: Sequence[int], rows: Iterable[Sequence[str]], count: int) -> None:
-    """Raise ValueError naming the first line that has not as many columns as it should."""
-    for number, row in zip(numbers, rows, strict=True):
-        if len(row) != count:
-            raise ValueError(f"{path}: line {number} has {len(row)} columns, expected {count}")
+def check_length(path: Path, line: int, row: Sequence[str], count: int) -> None:
+    """Raise ValueError naming the line if it has not as many columns as it should."""
+    if len(row) != count:
+        raise ValueError(f"{path}: line {line} has {len(row)} columns, expected {count}")
 
 
 def number(cell: str) -> float | None:
@@ -164,14 +164,11 @@ def text(
 
 
 def rows(columns: Iterable[Column], digits: Sequence[int | None], between: str = ",") -> list[str]:
-    """The lines of `text`, each column with its own digits."""
-    shown = [_shown(column, count) for column, count in zip(columns, digits, strict=True)]
-    return [between.join(row) for row in zip(*shown, strict=True)]
-
-
-def _shown(column: Column, digits: int | None) -> list[str]:
-    """Numbers as text; rounded ones have no negative zero."""
-    values = column.tolist()
-    if digits is None or column.dtype.kind != "f":
-        return [repr(value) for value in values]
-    return [f"{value + 0.0:.{digits}g}" for value in values]
+    """The lines of `text`, each column with its own digits; rounded numbers have no negative zero."""
+    formats, values = [], []
+    for column, count in zip(columns, digits, strict=True):
+        exact = count is None or column.dtype.kind != "f"
+        formats.append("%r" if exact else f"%.{count}g")
+        values.append((column if exact else column + 0.0).tolist())
+    pattern = between.join(formats)
+    return [pattern % row for row in zip(*values, strict=True)]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..columns import cells, content, number, rows, same_length, separator
+from ..columns import cells, check_length, content, number, rows, separator
 from ..units import sizes
 from .heights import Areal, Array, Heights, Profile
 
@@ -71,22 +71,22 @@ def table(path: Path) -> Array:
     if not lines:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
     mark = separator(lines[0][1])
-    found = [cells(line, mark) if mark else line.split() for _, line in lines]
-    same_length(path, [i for i, _ in lines], found, len(found[0]))
-    return np.array([_numbers(path, i, row) for (i, _), row in zip(lines, found, strict=True)])
+    values: list[Array] = []
+    for i, line in lines:
+        row = cells(line, mark) if mark else line.split()
+        check_length(path, i, row, values[0].size if values else len(row))
+        values.append(_numbers(path, i, row))
+    return np.array(values)
 
 
-def _numbers(path: Path, line: int, row: Sequence[str]) -> list[float]:
-    values = []
-    for cell in row:
-        value = number(cell) if cell.strip() else np.nan
-        if value is None:
-            raise ValueError(
-                f"{path}: is no surface: line {line}: {cell.strip()!r} is no number; "
-                "expected numbers in columns"
-            )
-        values.append(value)
-    return values
+def _numbers(path: Path, line: int, row: Sequence[str]) -> Array:
+    values = [number(cell) if cell.strip() else np.nan for cell in row]
+    if None in values:
+        cell = row[values.index(None)].strip()
+        raise ValueError(
+            f"{path}: is no surface: line {line}: {cell!r} is no number; expected numbers in columns"
+        )
+    return np.array(values, dtype=np.float64)
 
 
 def columns(path: Path, values: Array, factors: list[float]) -> Heights:
