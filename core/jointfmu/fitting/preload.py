@@ -109,11 +109,12 @@ def fit(
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
     unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
+    kN = COLUMNS["preload"]["kN"]
     picture = Picture(
-        x=curve.preload / 1e3,
+        x=curve.preload / kN,
         y=curve.value * size,
         misfit=100.0 * np.expm1(-found.residuals),
-        line=(grid / 1e3, finer.predicted(result.values, stiffness, direction) * size),
+        line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
     return Outcome(result, found, _facts(curve, found), picture, notes=_notes(names, mass))
