@@ -22,7 +22,7 @@ import numpy as np
 from jointfmu import cli
 from jointfmu.curve import approach_curve
 from jointfmu.export.placing import AXES
-from jointfmu.joints.bolted_joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 
 DECKS = Path(__file__).resolve().parent.parent / "models/calculix"

@@ -20,11 +20,11 @@ from zipfile import ZipFile
 
 import fmpy
 import numpy as np
-from jointfmu_fmus.building import FLAVOURS, build
-from jointfmu_fmus.native import compiler, generate
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.native import compiler, generate
 
 from jointfmu.host import Fmi2
+from jointfmu.joints import MODELS
 
 ROUNDS, REPEATS, PYTHON_CYCLES = 5, 101, 100
 ROWS = 4093  # as in native_fmus.c

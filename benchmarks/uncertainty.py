@@ -9,7 +9,8 @@ from time import process_time
 
 import numpy as np
 
-from jointfmu.parameters import JOINTS, default
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default
 from jointfmu.quantity import build
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.problem import pose
@@ -57,9 +58,11 @@ def main():
         propagate.bands(task, points)
         fast = process_time() - start
         outcome = propagate.run(task, points[:OBVIOUS], task.loads, "")
-        parameters = [build(JOINTS[joint], propagate.one_sample(task, points, i)[0]) for i in range(OBVIOUS)]
+        parameters = [
+            build(KINDS[joint].parameters, propagate.one_sample(task, points, i)[0]) for i in range(OBVIOUS)
+        ]
         start = process_time()
-        exact = [task.model.exact(one, task.loads) for one in parameters]
+        exact = [task.reduced.exact(one, task.loads) for one in parameters]
         slow = (process_time() - start) * SAMPLES / OBVIOUS
         worst = difference(task, outcome, exact)
         print(f"{joint:16} {fast:8.1f} {slow:10.0f} {slow / fast:8.0f} {worst:12.1e}")

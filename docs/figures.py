@@ -3,9 +3,9 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmus import ringing, ssp
-from jointfmu_fmus.checks import default_ramp
-from jointfmu_fmus.report import figures, systems
+from jointfmu_fmu_src import ringing, ssp
+from jointfmu_fmu_src.checks import default_ramp
+from jointfmu_fmu_src.report import figures, systems
 
 from jointfmu import plots, validation
 from jointfmu.parameters import load, write_text

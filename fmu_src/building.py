@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 
 from .native.build import build_fmi2, build_fmi3
 from .python.build import build as build_python
-from .variables import MODELS
 
 FLAVOURS: dict[str, Callable[[str, ParameterFile, Path], Path]] = {
     "fmi2": build_fmi2,

@@ -10,13 +10,13 @@ from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu import ramp
 from jointfmu.interface import stiffness_curve
-from jointfmu.joints.gear_contact import GearContact
+from jointfmu.joints import MODELS
+from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import default
 from jointfmu.reference import Point, points
 from jointfmu.validation import Row, compare
 
 from .ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing
-from .variables import MODELS
 
 INTEGRATION_TOLERANCE = 1e-6
 """FMU against an independent integration of its stiffness [1]."""

@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from typing import Any
 
+from jointfmu.joints.model import Model, Ramp, Variable
 from jointfmu.parameters import ParameterFile
 from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import flatten
-
-from .variables import Model, Ramp, Variable
 
 _SOURCE = "typical of the example systems"
 _LOAD = {"ramp_start": 0.0, "ramp_duration": 1.0, "pulse_start": 0.0, "pulse_rise": 1e-3, "pulse_hold": 1e-3}

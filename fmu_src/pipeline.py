@@ -7,6 +7,7 @@ from pathlib import Path
 from fmpy.validation import validate_fmu
 
 from jointfmu import ramp, validation
+from jointfmu.joints import MODELS
 from jointfmu.parameters import write_text
 from jointfmu.progress import track
 
@@ -15,7 +16,6 @@ from .checks import Check, check, check_ringing, default_ramp, published_through
 from .report import write_report
 from .ringing import Ringing, examples
 from .ssp import build_systems
-from .variables import MODELS
 
 
 @dataclass(slots=True)

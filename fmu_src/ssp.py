@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement, fromstring
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flatten
@@ -17,7 +18,6 @@ from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
 from .systems import SYSTEMS, System, system
-from .variables import MODELS
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {

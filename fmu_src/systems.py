@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 
-from jointfmu.parameters import JOINTS, KINDS
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ORIGINS
 from jointfmu.units import UNITS
 
 SCHEMA = 1
@@ -38,7 +39,7 @@ def system(name: str) -> System:
         raise ValueError(f"system = {name!r}, allowed are {', '.join(SYSTEMS)}")
     path = files("jointfmu_models") / "systems" / f"{name}.toml"
     document = tomllib.loads(path.read_text(encoding="utf-8"))
-    if document.get("schema") != SCHEMA or document.get("joint") not in JOINTS:
+    if document.get("schema") != SCHEMA or document.get("joint") not in KINDS:
         raise ValueError(f"{path}: schema or joint missing; expected schema = {SCHEMA} and a joint")
     values, units, sources = {}, {}, {}
     for group, entries in document.items():
@@ -46,7 +47,7 @@ def system(name: str) -> System:
             continue
         for key, entry in entries.items():
             label = f"{group}.{key}"
-            if entry["unit"] not in UNITS or entry["kind"] not in KINDS or not entry["source"]:
+            if entry["unit"] not in UNITS or entry["kind"] not in ORIGINS or not entry["source"]:
                 raise ValueError(
                     f"{path}: {label}: expected a unit of {', '.join(UNITS)}, a kind and a source"
                 )

@@ -173,7 +173,7 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with all FMUs of the default parameters."""
-    from jointfmu_fmus.building import build
+    from jointfmu_fmu_src.building import build
 
     out = tmp_path_factory.mktemp("fmus")
     build([], ["python"], None, out)
@@ -183,7 +183,7 @@ def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with fmi2/NAME.fmu and fmi3/NAME.fmu of the default parameters."""
-    from jointfmu_fmus.building import build
+    from jointfmu_fmu_src.building import build
 
     out = tmp_path_factory.mktemp("native")
     build([], ["fmi2", "fmi3"], None, out)

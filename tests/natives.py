@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Fmu
-from jointfmu_fmus.variables import MODELS
 from test_fmu_values import STATE, law, parameters
+
+from jointfmu.joints import MODELS
 
 Host = Callable[..., Fmu]
 Inputs = dict[str, float]

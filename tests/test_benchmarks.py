@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from jointfmu_fmus.variables import MODELS
+
+from jointfmu.joints import MODELS
 
 BENCHMARKS = Path(__file__).resolve().parent.parent / "benchmarks"
 

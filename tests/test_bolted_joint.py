@@ -12,7 +12,7 @@ from jointfmu.asperity import mindlin
 from jointfmu.curve import MAX_ERROR
 from jointfmu.footprint.bolts import PressureShape
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint import BoltedJoint, BoltedJointSpring, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJoint, BoltedJointSpring, pressures, shear_ratio
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

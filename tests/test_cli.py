@@ -12,7 +12,8 @@ from jointfmu import __version__, reference, validation
 from jointfmu.cli import main
 from jointfmu.commands.law import LAWS, ROW, law_parameters
 from jointfmu.interface import at_largest_spot, at_pressure
-from jointfmu.observables import OBSERVABLES
+from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint.published import PUBLISHED
 from jointfmu.parameters import default, dump
 from jointfmu.quantity import flatten
 
@@ -214,7 +215,8 @@ def test_validate_as_text(run):
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     *lines, last = out.splitlines()
-    points = [p for paper in reference.PAPERS for p in reference.points(paper)]
+    papers = [paper for kind in KINDS.values() for paper in kind.papers]
+    points = [p for paper in papers for p in reference.points(paper)]
     assert len(lines) == len(points) + 1
     for word in ("published", "computed", "error", "tolerance", "role", "verdict"):
         assert word in lines[0]
@@ -241,7 +243,7 @@ def test_validate_as_json(run):
 
 
 def test_a_missed_validation_point_gives_status_1(run, monkeypatch):
-    monkeypatch.setitem(OBSERVABLES, "spot_stiffness_ratio", lambda values: 1.0)
+    monkeypatch.setitem(PUBLISHED.observables, "spot_stiffness_ratio", lambda values: 1.0)
     status, out, err = run("validate", "--json")
     assert (status, err) == (1, "")
     found = json.loads(out)
@@ -254,7 +256,7 @@ def test_a_missed_validation_point_gives_status_1(run, monkeypatch):
 
 def test_a_missed_calibration_point_is_shown(run, monkeypatch):
     """It is a miss in the table; the status follows the points with the role validation."""
-    monkeypatch.setitem(OBSERVABLES, "p_max", lambda values, preload: 8e6)
+    monkeypatch.setitem(PUBLISHED.observables, "p_max", lambda values, preload: 8e6)
     status, out, err = run("validate")
     assert (status, err) == (0, "")
     assert "MISS" in out

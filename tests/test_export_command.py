@@ -7,7 +7,7 @@ import pytest
 from conftest import refused_line
 
 from jointfmu import __version__, cli
-from jointfmu.export.kinds import KINDS
+from jointfmu.export.forms import FORMS
 from jointfmu.parameters import default, dump
 
 MARKS = {"ansys": "!", "calculix": "**", "abaqus": "**", "modelica": "#", "csv": "#"}
@@ -26,7 +26,7 @@ def run(capsys, *arguments):
     return out
 
 
-@pytest.mark.parametrize(("form", "what"), [(form, what) for form, kinds in KINDS.items() for what in kinds])
+@pytest.mark.parametrize(("form", "what"), [(form, what) for form, kinds in FORMS.items() for what in kinds])
 def test_every_file_says_what_it_is(form, what, folder, capsys):
     options = [] if what == "contact" else ["--preload", "9e3"]
     said = json.loads(run(capsys, form, what, *options, "--out", "sub/joint.txt", "--json"))

@@ -13,7 +13,7 @@ from jointfmu.export.mesh import Mesh, read_pairs
 from jointfmu.export.placing import AXES, Placing
 from jointfmu.export.springs import SUMS, of_joint, on_mesh, under_pressure
 from jointfmu.export.units import SI, UNITS
-from jointfmu.joints.bolted_joint import BoltedJointSpring, pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures
 from jointfmu.parameters import default
 
 MM = UNITS["mm-N-MPa-t"]

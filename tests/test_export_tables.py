@@ -9,9 +9,9 @@ from scipy.interpolate import PchipInterpolator
 from jointfmu.export import columns, files, keywords, tables
 from jointfmu.export.units import SI, UNITS
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint import BoltedJointSpring
-from jointfmu.joints.gear_contact import GearContactSpring
-from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.gear_contact.spring import GearContactSpring
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 
 MM = UNITS["mm-N-MPa-t"]
@@ -266,7 +266,7 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
 
 def test_header_is_plain_text():
     file = default("gear_contact")
-    odd = type(file)(file.joint, "Zähne\n*STEP", file.values, file.kinds, file.sources)
+    odd = type(file)(file.joint, "Zähne\n*STEP", file.values, file.origins, file.sources)
     text = files.contact("abaqus", odd, SI, 1e-2).text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()

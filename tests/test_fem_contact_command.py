@@ -10,7 +10,7 @@ import pytest
 
 from jointfmu.cli import main
 from jointfmu.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
-from jointfmu.joints.bolted_joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load
 
 PLATES = """

@@ -22,7 +22,7 @@ from jointfmu.fem.ring_forms import (
     opposite_forces_in_elements,
 )
 from jointfmu.interface import at_pressure
-from jointfmu.joints.harmonic_drive import contact_length
+from jointfmu.joints.harmonic_drive.spring import contact_length
 from jointfmu.parameters import default
 
 DRIVE = default("harmonic_drive").values

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jointfmu_fmus.building import build
-from jointfmu_fmus.modelica import library
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.modelica import library
 
 from jointfmu import cli, plots, ramp
 from jointfmu.fields import csvfile
@@ -15,8 +15,8 @@ from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
-from jointfmu.joints.bolted_joint import BoltedJointSpring, bolt_pattern
-from jointfmu.observables import p_between
+from jointfmu.joints.bolted_joint.published import p_between
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 
@@ -150,7 +150,7 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
     assert isinstance(again.values.pattern, NodalField)
     assert float(FIELD.area.sum()) == again.values.A_0
     assert "pattern." not in " ".join(flatten(again.values))
-    assert again.kinds["field.tilt"] == "derived"
+    assert again.origins["field.tilt"] == "derived"
     assert again.sources["field.share"].endswith(f"{found.points} points for {found.nodes} nodes")
     assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
 
@@ -165,6 +165,16 @@ def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
 def test_broken_field_is_refused(imported, change, message):
     with pytest.raises(ValueError, match=message):
         imported[0].with_values(change, "user", "test")
+
+
+def test_a_file_with_both_sections_is_refused(imported, tmp_path):
+    path = tmp_path / "joint.toml"
+    lines = dump(FILE).partition("[pattern]\n")[2].splitlines()
+    path.write_text(dump(imported[0]) + "\n".join(["[pattern]", *lines]) + "\n")
+    with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
+        load(path, "bolted_joint")
+    assert str(error.value).endswith(": allowed is one of [pattern], [field]")
+    assert "\n" not in str(error.value)
 
 
 def test_unbalanced_field_is_refused():

@@ -57,14 +57,14 @@ def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
     assert cli.main(["fit", "catalogue", *options(**SIZE_14, ratio=100, source=source, write=out)]) == 0
     assert "not determined" in capsys.readouterr().out  # three angles do not fix three parameters
     made, shipped = load(out), load(SHIPPED)
-    assert (made.name, made.sources, made.kinds) == (shipped.name, shipped.sources, shipped.kinds)
+    assert (made.name, made.sources, made.origins) == (shipped.name, shipped.sources, shipped.origins)
     torque = np.linspace(0.1, 27.0, 50)
     # another platform's round-off may end the fit elsewhere along what is not determined
     np.testing.assert_allclose(windup(made.values, torque), windup(shipped.values, torque), rtol=1e-4)
 
 
 def test_fmu_passes_through_the_catalogue(tmp_path):
-    from jointfmu_fmus.building import build
+    from jointfmu_fmu_src.building import build
 
     build(["HarmonicDriveCompliance"], ["fmi2"], load(SHIPPED), tmp_path)
     path = tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu"

@@ -13,7 +13,7 @@ from jointfmu.fitting import preload, torque_angle
 from jointfmu.fitting.drive import windup
 from jointfmu.fitting.least_squares import Unknown, solve
 from jointfmu.fitting.loop import backbone
-from jointfmu.joints.bolted_joint import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 
 SCRIPT = Path(__file__).resolve().parent.parent / "benchmarks" / "fit_round_trips.py"
@@ -158,7 +158,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
     assert {
         n for n, s in file.sources.items() if s.startswith("fitted to loops.csv, 2026-01-01, torque -2")
     } == {*torque_angle.FREE}
-    assert {file.kinds[name] for name in torque_angle.FREE} == {"calibration"}
+    assert {file.origins[name] for name in torque_angle.FREE} == {"calibration"}
     assert document["parameters"]["K_FTS0"] == file.values.K_FTS0
     assert picture.read_bytes().startswith(b"\x89PNG")
 

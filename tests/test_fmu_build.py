@@ -13,14 +13,14 @@ from pathlib import Path
 import pytest
 from conftest import refused_line
 from fmpy import read_model_description
-from jointfmu_fmus import checks, pipeline
-from jointfmu_fmus.building import FLAVOURS, build
-from jointfmu_fmus.partners import PARTNERS
-from jointfmu_fmus.systems import SYSTEMS
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src import checks, pipeline
+from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.systems import SYSTEMS
 from pythonfmu import FmuBuilder
 
 from jointfmu import cli, ramp
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default, dump
 
 Capture = pytest.CaptureFixture[str]

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from conftest import Fmu, unpack
 from fmpy import platform, sharedLibraryExtension
-from jointfmu_fmus.building import build
-from jointfmu_fmus.python import build as python_build
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.python import build as python_build
 
 from jointfmu import ramp
-from jointfmu.joints.gear_contact import GearContactSpring
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import default
 
 Host = Callable[..., Fmu]
@@ -147,13 +147,16 @@ def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def doubled_sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """FMUs of a package whose gear contact is twice as stiff."""
-    out, sources = tmp_path_factory.mktemp("doubled_sources"), python_build.runtime_sources()
-    sources["joints/gear_contact.py"] += """
+    out, sources = (
+        tmp_path_factory.mktemp("doubled_sources"),
+        python_build.runtime_sources(KINDS["gear_contact"]),
+    )
+    sources["joints/gear_contact/spring.py"] += """
 _single = GearContactSpring.approach
 GearContactSpring.approach = lambda self, f: _single(self, f) | {"K_N": 2.0 * _single(self, f)["K_N"]}
 """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(python_build, "runtime_sources", lambda: sources)
+        patch.setattr(python_build, "runtime_sources", lambda kind: sources)
         build(["GearContact", "BoltedJoint"], ["python"], None, out)
     return out / "python"
 
@@ -293,7 +296,7 @@ def test_a_host_with_only_numpy_gets_the_numbers(fmu: Host, fmus: Path, only_num
     assert seen["status"] == [0] * 7
     instance = fmu(name).start({driven: value})
     assert dict(zip(instance.outputs, seen["outputs"], strict=True)) == instance.get()
-    assert not {m.split(".")[0] for m in seen["modules"]} & {"jointfmu", "jointfmu_fmus", "scipy", "fmpy"}
+    assert not {m.split(".")[0] for m in seen["modules"]} & {"jointfmu", "jointfmu_fmu_src", "scipy", "fmpy"}
 
 
 def test_a_host_ends_cleanly(fmus: Path, only_numpy: Path) -> None:

@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 from conftest import Fmu
 from fmpy import simulate_fmu
-from jointfmu_fmus.building import build
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
 from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu import ramp
 from jointfmu.curve import MAX_ERROR
 from jointfmu.interface import at_pressure, stiffness_curve
-from jointfmu.joints.bolted_joint import BoltedJointSpring, pressures, shear_ratio
-from jointfmu.joints.gear_contact import GearContactSpring
-from jointfmu.joints.harmonic_drive import HarmonicDriveSpring, drive_stiffness
+from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures, shear_ratio
+from jointfmu.joints.gear_contact.spring import GearContactSpring
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, drive_stiffness
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten

@@ -12,8 +12,8 @@ from jointfmu.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pr
 from jointfmu.footprint.lobes import two_lobes
 from jointfmu.footprint.nodes import Footprint
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint import pressures, row_forces
-from jointfmu.joints.harmonic_drive import footprint, pair_stiffness, peak_pressure
+from jointfmu.joints.bolted_joint.spring import pressures, row_forces
+from jointfmu.joints.harmonic_drive.spring import footprint, pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
@@ -448,6 +448,6 @@ def test_translation_and_mean():
 
 def test_calibrated_values_are_marked():
     """What the published pressures fixed says so in the parameter file."""
-    kinds = default("bolted_joint").kinds
+    kinds = default("bolted_joint").origins
     fitted = {name for name in flatten(JOINT) if kinds[name] == "calibration"}
     assert fitted == {"pattern.decay_length", "pattern.decay_exponent"}

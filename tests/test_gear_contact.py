@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from jointfmu.curve import CLOSING_RATIO, MAX_ERROR
 from jointfmu.interface import at_pressure
-from jointfmu.joints.gear_contact import GearContact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from jointfmu.curve import MAX_ERROR
-from jointfmu.joints.harmonic_drive import (
+from jointfmu.joints.harmonic_drive.spring import (
     HarmonicDrive,
     HarmonicDriveSpring,
     drive_stiffness,

@@ -15,16 +15,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmus.modelica import library, tables
-from jointfmu_fmus.modelica.text import identifier
-from jointfmu_fmus.systems import system
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.modelica import library, tables
+from jointfmu_fmu_src.modelica.text import identifier
+from jointfmu_fmu_src.systems import system
 from scipy.integrate import solve_ivp
 
 from jointfmu.cli import main
-from jointfmu.joints.bolted_joint import BoltedJointSpring
-from jointfmu.joints.gear_contact import GearContactSpring
-from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
+from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.gear_contact.spring import GearContactSpring
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import ForceProfile, TorqueProfile
 

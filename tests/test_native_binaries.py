@@ -15,9 +15,10 @@ import fmpy
 import lief
 import pytest
 from conftest import run_host
-from jointfmu_fmus.building import build
-from jointfmu_fmus.native import compiler
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import compiler
+
+from jointfmu.joints import MODELS
 
 lief.logging.disable()
 VERSIONS = ("fmi2", "fmi3")
@@ -249,7 +250,7 @@ def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.Monk
     def fail(*arguments: object) -> None:
         raise RuntimeError("law.c:1:1: error: no")
 
-    monkeypatch.setattr("jointfmu_fmus.native.build.libraries", fail)
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.libraries", fail)
     with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
         build(["GearContact"], ["fmi3"], None, tmp_path)
     assert sorted(tmp_path.rglob("*")) == [built.parent, built]
@@ -260,7 +261,7 @@ def test_an_unwritable_place_is_refused_before_anything_is_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setattr("jointfmu_fmus.native.build.libraries", lambda *arguments: pytest.fail("compiled"))
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.libraries", lambda *arguments: pytest.fail("compiled"))
     with pytest.raises(ValueError, match="cannot be written") as raised:
         build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
     assert "\n" not in str(raised.value)

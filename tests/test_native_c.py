@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import fmpy
 import pytest
-from jointfmu_fmus.native.generate import RUNTIME, sources, token
-from jointfmu_fmus.partners import PARTNERS
-from jointfmu_fmus.partners import parameters as partner_parameters
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.native.generate import RUNTIME, sources, token
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.partners import parameters as partner_parameters
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 
 HOSTS = Path(__file__).parent / "native"

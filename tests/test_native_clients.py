@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Fmu, run_host, unpack
-from jointfmu_fmus.variables import MODELS
 from natives import DIFFERENCE, JUMPS, NAMES, TUNED, VERSIONS, close, differences, jacobian
 from test_fmu_values import law, parameters, random_inputs
+
+from jointfmu.joints import MODELS
 
 ROUND_OFF = 1e-12
 """What a client may add [1]: CasADi scales by nominal values."""

@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from jointfmu_fmus.variables import MODELS
 from natives import DIFFERENCE, JUMPS, NAMES, VERSIONS, Host, close, differences, jacobian
 from test_fmu_values import RANGES, STATE, parameters, random_inputs
+
+from jointfmu.joints import MODELS
 
 
 @pytest.fixture(params=NAMES)

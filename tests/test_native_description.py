@@ -15,18 +15,18 @@ import numpy as np
 import pytest
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
-from jointfmu_fmus.native import licence as licence_module
-from jointfmu_fmus.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmus.native.icon import icon
-from jointfmu_fmus.native.licence import licence
-from jointfmu_fmus.native.page import documentation
-from jointfmu_fmus.native.terminals import terminals_and_icons
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.native import licence as licence_module
+from jointfmu_fmu_src.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
+from jointfmu_fmu_src.native.icon import icon
+from jointfmu_fmu_src.native.licence import licence
+from jointfmu_fmu_src.native.page import documentation
+from jointfmu_fmu_src.native.terminals import terminals_and_icons
 from lxml import etree
 from PIL import Image
 from test_fmu_description import PUBLIC, dimension, si_value
 
 from jointfmu import __version__
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
@@ -252,10 +252,13 @@ def test_bounds_are_those_of_the_parameters(name: str, version: int) -> None:
         if node["type"] == "Boolean":
             continue
         low, high = float(node.get("min", "-inf")), float(node.get("max", "inf"))
-        ends = (max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"]))
-        assert (low, high) == pytest.approx(ends, rel=1e-15, abs=sys.float_info.min)
-        for bound, open_end in ((low, meta["gt"]), (high, meta["lt"])):
-            assert bound != open_end or np.isinf(bound), variable  # an open end itself is not allowed
+        allowed = meta["interval"]
+        assert (low, high) == pytest.approx((allowed.low, allowed.high), rel=1e-15, abs=sys.float_info.min)
+        for bound, end, is_open in (
+            (low, allowed.low, allowed.low_open),
+            (high, allowed.high, allowed.high_open),
+        ):
+            assert (bound == end) != is_open or np.isinf(bound), variable  # an open end is not allowed
         assert low <= float(node["start"]) <= high
         # std::stod of C++ throws at a denormal number
         assert all(v == 0.0 or abs(v) >= sys.float_info.min for v in (low, high))
@@ -426,10 +429,10 @@ def test_there_is_a_date_only_if_it_is_given(
 DIGEST = """
 import hashlib
 from jointfmu.parameters import default
-from jointfmu_fmus.native.description import build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmus.native.page import documentation
-from jointfmu_fmus.native.terminals import terminals_and_icons
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.native.description import build_description, fmi2_xml, fmi3_xml
+from jointfmu_fmu_src.native.page import documentation
+from jointfmu_fmu_src.native.terminals import terminals_and_icons
+from jointfmu.joints import MODELS
 
 for model in MODELS.values():
     file = default(model.joint)
@@ -604,7 +607,7 @@ def test_the_page_lists_every_variable_and_every_parameter(name: str) -> None:
     for parameter, value in flatten(file.values).items():
         shown, _, allowed, _, kind, source = rows[parameter]
         assert allowed
-        assert kind == file.kinds.get(parameter, "user")
+        assert kind == file.origins.get(parameter, "user")
         assert source == file.sources.get(parameter, "default choice")
         if isinstance(value, float):
             assert float(shown) == pytest.approx(value, rel=1e-5)  # six digits

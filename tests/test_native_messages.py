@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
-from jointfmu_fmus.variables import MODELS
 from natives import NAMES, SAME, VERSIONS, Host, attempt, close, jacobian, package, settle
 from test_fmu_refusals import BEYOND, GOOD, REFUSED
 from test_fmu_values import RANGES, parameters
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten
@@ -86,7 +86,7 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
         meta = item.metadata
         if "unit" not in meta:
             continue
-        ends = [x for x in (meta["gt"], meta["ge"], meta["lt"], meta["le"]) if math.isfinite(x)]
+        ends = [x for x in (meta["interval"].low, meta["interval"].high) if math.isfinite(x)]
         beside = [math.nextafter(x, side) for x in ends for side in (-math.inf, math.inf) if x or side < 0.0]
         for value in (math.nan, math.inf, -math.inf, *ends, *beside):
             instance.reset()

@@ -18,7 +18,9 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy import read_model_description
-from jointfmu_fmus.variables import MODELS, Model
+
+from jointfmu.joints import MODELS
+from jointfmu.joints.model import Model
 
 LIBM_TOLERANCE = 1e-12
 """Largest relative difference that another mathematical library may make [1]."""

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_fmus.variables import MODELS
 
 from jointfmu import ramp
+from jointfmu.joints import MODELS
 
 COMPILER_TOLERANCE = 1e-9
 """Largest relative difference that another compiler may make, which may contract a*b + c [1]."""

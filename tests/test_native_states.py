@@ -7,10 +7,10 @@ from threading import Barrier
 
 import pytest
 from conftest import run_host
-from jointfmu_fmus.variables import MODELS
 from natives import NAMES, TUNED, VERSIONS, Host, close, numbers, package, settle, slope
 from test_fmu_values import STATE, random_inputs
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 

@@ -15,13 +15,13 @@ from conftest import Fmu
 from fmpy import platform_tuple, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
-from jointfmu_fmus.building import build
-from jointfmu_fmus.native import build as native_build
-from jointfmu_fmus.native import compiler
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import build as native_build
+from jointfmu_fmu_src.native import compiler
 from natives import NAMES, TUNED, VERSIONS, Host, attempt, close, package, settle, slope
 from test_fmu_values import DRIVE_BASE, RANGES, STATE, WITHOUT_EFFECT, law, random_inputs
 
+from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten
@@ -93,7 +93,7 @@ def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
         elif meta["whole"]:
             changes[parameter] = value + float(rng.integers(-1, 2))
         else:
-            low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
+            low, high = meta["interval"].low, meta["interval"].high
             width = 0.05 * (high - low)
             if math.isfinite(width):
                 changes[parameter] = float(rng.uniform(max(low, value - width), min(high, value + width)))

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.parameters import JOINTS, KINDS, default, dump, load, parse_setting, write_text
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ORIGINS, default, dump, load, parse_setting, write_text
 from jointfmu.quantity import flat_fields, flatten
 
-each_joint = pytest.mark.parametrize("joint", JOINTS)
+each_joint = pytest.mark.parametrize("joint", KINDS)
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def test_round_trip(joint, file):
     assert again.values == original.values
     assert (again.joint, again.name) == (joint, original.name)
     for name in flatten(original.values):
-        assert again.kinds[name] == original.kinds.get(name, "user")
+        assert again.origins[name] == original.origins.get(name, "user")
         assert again.sources[name] == original.sources.get(name, "default choice")
     assert dump(again) == dump(original)
 
@@ -50,22 +51,24 @@ def test_round_trip(joint, file):
 @each_joint
 def test_defaults_say_where_every_value_comes_from(joint):
     file = default(joint)
-    assert isinstance(file.values, JOINTS[joint])
-    declared = dict(flat_fields(JOINTS[joint]))
+    assert isinstance(file.values, KINDS[joint].parameters)
+    declared = dict(flat_fields(KINDS[joint].parameters))
     numbers = {name for name in flatten(file.values) if "unit" in declared[name].metadata}
-    assert numbers <= set(file.kinds)
-    for name in file.kinds:
-        assert file.kinds[name] in KINDS
+    assert numbers <= set(file.origins)
+    for name in file.origins:
+        assert file.origins[name] in ORIGINS
         assert len(file.sources[name]) >= 5, name
-        if file.kinds[name] == "published":
+        if file.origins[name] == "published":
             assert any(word in file.sources[name] for word in ("Hu 2023", "Zhao 2018", "Yu 2022")), name
 
 
 @each_joint
 def test_calibrated_values_are_those_the_code_marks(joint):
     file = default(joint)
-    fitted = {name for name, kind in file.kinds.items() if kind == "calibration"}
-    declared = {name for name, item in flat_fields(JOINTS[joint]) if item.metadata.get("calibration")}
+    fitted = {name for name, kind in file.origins.items() if kind == "calibration"}
+    declared = {
+        name for name, item in flat_fields(KINDS[joint].parameters) if item.metadata.get("calibration")
+    }
     assert declared <= fitted
     # radial_deformation is fitted as the paper's unpublished nominal one, though a user may choose it
     assert fitted - declared <= {"radial_deformation"}
@@ -106,7 +109,7 @@ def test_with_values():
     file = default("gear_contact")
     other = file.with_values({"lambda": 0.5, "surface1.D": 1.5}, "user", "measured")
     assert (other.values.lambda_, other.values.surface1.D) == (0.5, 1.5)
-    assert other.kinds["lambda"] == "user"
+    assert other.origins["lambda"] == "user"
     assert other.sources["surface1.D"] == "measured"
     assert other.sources["surface2.D"] == file.sources["surface2.D"]
     assert file.values.lambda_ == 0.9  # the original is untouched
@@ -133,9 +136,9 @@ REFUSED = {
     "schema": ("schema = 1", "schema = 2", ["schema = 2", "allowed is 1"]),
     "no-schema": ("schema = 1\n", "", ["schema = None", "allowed is 1"]),
     "schema-true": ("schema = 1", "schema = true", ["schema = True", "allowed is 1"]),
-    "joint": ('"bolted_joint"', '"bolts"', ["joint = 'bolts'", *JOINTS]),
-    "joint-list": ('"bolted_joint"', '["bolted_joint"]', ["joint = ['bolted_joint']", *JOINTS]),
-    "no-joint": ('joint = "bolted_joint"\n', "", ["joint = None", *JOINTS]),
+    "joint": ('"bolted_joint"', '"bolts"', ["joint = 'bolts'", *KINDS]),
+    "joint-list": ('"bolted_joint"', '["bolted_joint"]', ["joint = ['bolted_joint']", *KINDS]),
+    "no-joint": ('joint = "bolted_joint"\n', "", ["joint = None", *KINDS]),
     "syntax": ("H = {", "H = ", ["TOML", "line 4"]),
     "unknown": ("H = {", "Hardness = {", ["'Hardness'", "missing H", *NAMES]),
     "unknown-in-group": ("D = {", "d = {", ["'surface.d'", "missing surface.D", "surface.G"]),
@@ -154,8 +157,8 @@ REFUSED = {
         ["H", "unit 'MPa'", "expected 'Pa'"],
     ),
     "no-unit": (D, D.replace('unit = "1", ', ""), ["surface.D", "unit None", "expected '1'"]),
-    "kind": (D, D.replace("published", "guess"), ["surface.D", "kind = 'guess'", *KINDS]),
-    "no-kind": (D, D.replace(', kind = "published"', ""), ["surface.D", "kind = None", *KINDS]),
+    "kind": (D, D.replace("published", "guess"), ["surface.D", "kind = 'guess'", *ORIGINS]),
+    "no-kind": (D, D.replace(', kind = "published"', ""), ["surface.D", "kind = None", *ORIGINS]),
     "key": (D, D + ', error = "5 %"', ["surface.D", "'error'", "value", "unit", "kind", "source"]),
     "string": ("value = 1.42", 'value = "1.42"', ["surface.D = '1.42'", "not a number"]),
     "bool": ("value = 1.42", "value = true", ["surface.D = True", "not a number"]),
@@ -196,7 +199,7 @@ def test_every_problem_is_named_at_once(file):
 
 
 @each_joint
-@pytest.mark.parametrize("other", JOINTS)
+@pytest.mark.parametrize("other", KINDS)
 def test_the_file_of_another_joint(file, joint, other):
     path = file(dump(default(joint)))
     if joint == other:

@@ -5,9 +5,9 @@ import shlex
 from pathlib import Path
 
 import pytest
-from jointfmu_fmus.building import build
-from jointfmu_fmus.native.build import build as native_build
-from jointfmu_fmus.partners import parameters as partner_parameters
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.partners import parameters as partner_parameters
 
 from jointfmu import cli, validation
 from jointfmu.fields import csvfile

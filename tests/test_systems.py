@@ -19,14 +19,13 @@ from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
-from jointfmu_fmus import ringing, ssp
-from jointfmu_fmus.building import build
-from jointfmu_fmus.checks import check_ringing
-from jointfmu_fmus.master import Slave, motion
-from jointfmu_fmus.native.terminals import TERMINALS
-from jointfmu_fmus.partners import PARTNERS
-from jointfmu_fmus.systems import SYSTEMS, system
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src import ringing, ssp
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.checks import check_ringing
+from jointfmu_fmu_src.master import Slave, motion
+from jointfmu_fmu_src.native.terminals import TERMINALS
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.systems import SYSTEMS, system
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
@@ -34,8 +33,9 @@ from scipy.interpolate import CubicSpline
 from test_modelica import simulate, top
 
 from jointfmu import cli
-from jointfmu.joints.bolted_joint import BoltedJointSpring
-from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
+from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import flatten

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from jointfmu.parameters import JOINTS, default, dump, load
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default, dump, load
 from jointfmu.topography import fractal, synthesis
 from jointfmu.topography.fit import fit
 from jointfmu.topography.form import without_form
@@ -179,7 +180,7 @@ def test_range_without_values_is_refused():
         identify([gaussian_profile(512, 0.5, 1e-9, 1)], span=(1e-9, 2e-9))
 
 
-@pytest.mark.parametrize("joint", list(JOINTS))
+@pytest.mark.parametrize("joint", list(KINDS))
 def test_joint_gets_its_own_dimension(joint, tmp_path):
     found = identify([synthesis.isotropic(waves(256), 2.45, 1e-9, 20, 1)])
     values = {name: value for name, (value, _) in changes(found, joint).items()}
@@ -193,11 +194,11 @@ def test_joint_gets_its_own_dimension(joint, tmp_path):
     path.write_text(dump(file))
     again = load(path, joint)
     for name in values:
-        assert again.kinds[name] == "user"
+        assert again.origins[name] == "user"
         assert again.sources[name].startswith("identified from synthetic surface by ")
-    untouched = set(again.kinds) - set(values)
-    kinds = default(joint).kinds
-    assert all(again.kinds[name] == kinds.get(name, "user") for name in untouched)
+    untouched = set(again.origins) - set(values)
+    kinds = default(joint).origins
+    assert all(again.origins[name] == kinds.get(name, "user") for name in untouched)
 
 
 def test_gear_of_a_texture_takes_both_directions():

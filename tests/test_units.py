@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from jointfmu_fmus.partners import PARTNERS
-from jointfmu_fmus.systems import SYSTEMS, system
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.systems import SYSTEMS, system
 from scipy import constants
 
 from jointfmu.export import columns
@@ -13,7 +12,7 @@ from jointfmu.export.units import UNITS as SETS
 from jointfmu.fem.geometry import BoxSection, Layer, Plate
 from jointfmu.fields.csvfile import COLUMNS as FIELD
 from jointfmu.fitting import preload, torque_angle
-from jointfmu.parameters import JOINTS
+from jointfmu.joints import KINDS, MODELS
 from jointfmu.quantity import flat_fields
 from jointfmu.topography.csvfile import LENGTHS
 from jointfmu.units import UNITS, base, display_unit, factor, rewritten, size, sizes
@@ -139,7 +138,7 @@ def test_sets_are_consistent():
 
 def declared():
     """Every SI unit that a parameter, a variable, a system or a file declares, by where."""
-    for cls in (*JOINTS.values(), Layer, Plate, BoxSection):
+    for cls in (*(kind.parameters for kind in KINDS.values()), Layer, Plate, BoxSection):
         for name, item in flat_fields(cls):
             if "unit" in item.metadata:
                 yield f"{cls.__name__}.{name}", item.metadata["unit"]

@@ -6,17 +6,25 @@ import numpy as np
 import pytest
 
 from jointfmu import calibration, validation
-from jointfmu.calibration import FITS, calibrate
-from jointfmu.observables import OBSERVABLES
+from jointfmu.calibration import calibrate
+from jointfmu.joints import KINDS
+from jointfmu.joints.published import published
 from jointfmu.parameters import default
 from jointfmu.quantity import flat_fields, flatten
-from jointfmu.reference import CALIBRATION_TOLERANCE, PAPERS, ROLES, Point, points
+from jointfmu.reference import CALIBRATION_TOLERANCE, ROLES, Point, points
 from jointfmu.validation import compare, missed, summary, table, validate
 
 REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
 its parameters moves about ten times as much."""
 
+PAPERS = [paper for kind in KINDS.values() for paper in kind.papers]
+OBSERVABLES = {q: f for kind in KINDS.values() for q, f in published(kind).observables.items()}
+FITS = {
+    name: (kind.papers[0], published(kind).calibration)
+    for name, kind in KINDS.items()
+    if published(kind).calibration
+}
 ALL = [point for paper in PAPERS for point in points(paper)]
 
 
@@ -151,7 +159,7 @@ def test_a_wrong_computed_value_is_a_miss(monkeypatch):
                 off = first.tolerance * (1.0 if first.absolute else abs(first.value))
                 wrong = first.value + sign * 2.0 * off
             assert not compare(first, wrong).passed
-    monkeypatch.setitem(OBSERVABLES, "psi", lambda values, D: 2.0)
+    monkeypatch.setitem(published(KINDS["bolted_joint"]).observables, "psi", lambda values, D: 2.0)
     found = validate()
     wrong = [p.id for p in ALL if p.quantity == "psi"]
     assert "psi.1.5" in wrong
@@ -216,12 +224,17 @@ def test_part_of_every_curve_is_predicted(curve, most):
 def test_fitted_values_are_marked_in_the_code_and_in_the_file(joint):
     unknowns = {name for fit in FITS[joint][1] for name in fit.unknowns}
     file = default(joint)
-    assert unknowns == {name for name, kind in file.kinds.items() if kind == "calibration"}
+    assert unknowns == {name for name, kind in file.origins.items() if kind == "calibration"}
     declared = {name for name, item in flat_fields(type(file.values)) if item.metadata.get("calibration")}
     assert declared <= unknowns
     for fit in FITS[joint][1]:
         for name in fit.unknowns:
             assert all(used in file.sources[name] for used in fit.points)
+
+
+def refitted(monkeypatch, fits):
+    """Let the calibration use other fits."""
+    monkeypatch.setattr(calibration, "published", lambda kind: replace(published(kind), calibration=fits))
 
 
 @pytest.mark.parametrize("joint", FITS)
@@ -241,12 +254,12 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
         for fit in fits
     )
     spoilt = [p if p.role == "calibration" else replace(p, value=np.nan, where={}) for p in points(paper)]
-    monkeypatch.setitem(FITS, joint, (paper, moved))
+    refitted(monkeypatch, moved)
     monkeypatch.setattr(calibration, "points", lambda asked: spoilt if asked == paper else [])
     again = calibrate(start)
     for name in unknowns:
         assert flatten(again.values)[name] == pytest.approx(values[name], rel=REPRODUCED), name
-        assert again.kinds[name] == "calibration"
+        assert again.origins[name] == "calibration"
         assert again.sources[name] == committed.sources[name]
     untouched = {name: value for name, value in values.items() if name not in unknowns}
     assert {name: flatten(again.values)[name] for name in untouched} == untouched
@@ -254,9 +267,9 @@ def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
 
 def test_a_validation_point_cannot_be_fitted(monkeypatch):
     """A fit that names one does not find it."""
-    paper, (fit,) = FITS["bolted_joint"]
+    _, (fit,) = FITS["bolted_joint"]
     peeking = replace(fit, points=("p_max.9kN", "psi.1.5"))
-    monkeypatch.setitem(FITS, "bolted_joint", (paper, (peeking,)))
+    refitted(monkeypatch, (peeking,))
     with pytest.raises(KeyError, match=r"psi\.1\.5"):
         calibrate(default("bolted_joint"))
 

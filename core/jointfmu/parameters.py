@@ -5,8 +5,7 @@ A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter
     [surface]
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
-A bolted joint has either the section [pattern] or the section [field], whose values are lists.
-`kind` is one of KINDS; the unit must be the SI unit that the code declares, nothing is converted.
+`kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
 """
 
 import json
@@ -18,47 +17,39 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from .joints.bolted_joint import BoltedJoint
-from .joints.gear_contact import GearContact
-from .joints.harmonic_drive import HarmonicDrive
-from .quantity import build, flat_fields, flatten
+from .joints import KINDS
+from .quantity import build, changed, flat_fields, flatten
 
 SCHEMA = 1
-KINDS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
+ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
 """Where a value comes from: printed in the paper, computed from printed values, a catalogue,
 an engineering estimate, fitted to calibration points, or set by the user."""
 _PER_LINE = 5
 """Numbers of a list on a line."""
-JOINTS: dict[str, type[Any]] = {
-    "harmonic_drive": HarmonicDrive,
-    "bolted_joint": BoltedJoint,
-    "gear_contact": GearContact,
-}
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterFile:
     """A parameter set with where it comes from.
 
-    joint   : kind, a key of JOINTS
+    joint   : a key of joints.KINDS
     name    : of this parameter set
-    values  : the parameter set, an instance of JOINTS[joint]
-    kinds, sources : {structured name: text}
+    values  : the parameter set, an instance of KINDS[joint].parameters
+    origins, sources : {structured name: one of ORIGINS, text}
     """
 
     joint: str
     name: str
     values: Any
-    kinds: Mapping[str, str]
+    origins: Mapping[str, str]
     sources: Mapping[str, str]
 
-    def with_values(self, changes: Mapping[str, Any], kind: str, source: str) -> "ParameterFile":
+    def with_values(self, changes: Mapping[str, Any], origin: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""
-        values = build(JOINTS[self.joint], flatten(self.values) | dict(changes))
         return replace(
             self,
-            values=values,
-            kinds={**self.kinds, **dict.fromkeys(changes, kind)},
+            values=changed(self.values, changes),
+            origins={**self.origins, **dict.fromkeys(changes, origin)},
             sources={**self.sources, **dict.fromkeys(changes, source)},
         )
 
@@ -73,17 +64,18 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     path = Path(path)
     document = read_document(path, "a parameter file")
     kind = document.get("joint")
-    if not isinstance(kind, str) or kind not in JOINTS:
-        raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(JOINTS)}")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(KINDS)}")
     if joint is not None and kind != joint:
         raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
-    values, kinds, sources = entries(path, JOINTS[kind], body)
+    cls = KINDS[kind].parameters
+    values, origins, sources = entries(path, cls, body)
     try:
-        parameters = build(JOINTS[kind], values)
+        parameters = build(cls, values)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, kinds, sources)
+    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, origins, sources)
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
@@ -107,10 +99,10 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
 def entries(
     path: Path, cls: type[Any], body: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, kinds and sources by structured name; every unit checked against the parameter set `cls`."""
+    """Values, origins and sources by structured name; every unit checked against the parameter set `cls`."""
     declared = dict(flat_fields(cls))
     values: dict[str, Any] = {}
-    kinds: dict[str, str] = {}
+    origins: dict[str, str] = {}
     sources: dict[str, str] = {}
     for name, entry in _leaves(body, ""):
         if not isinstance(entry, Mapping):
@@ -124,13 +116,15 @@ def entries(
             unit = declared[name].metadata.get("unit")
             if entry.get("unit") != unit:
                 raise ValueError(f"{path}: {name}: unit {entry.get('unit')!r}, expected {unit!r}")
-        if entry.get("kind") not in KINDS:
-            raise ValueError(f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(KINDS)}")
+        if entry.get("kind") not in ORIGINS:
+            raise ValueError(
+                f"{path}: {name}: kind = {entry.get('kind')!r}, allowed are {', '.join(ORIGINS)}"
+            )
         source = entry.get("source")
         if not isinstance(source, str) or not source.strip():
             raise ValueError(f"{path}: {name}: source = {source!r}, expected where the value comes from")
-        values[name], kinds[name], sources[name] = entry.get("value"), str(entry["kind"]), source
-    return values, kinds, sources
+        values[name], origins[name], sources[name] = entry.get("value"), str(entry["kind"]), source
+    return values, origins, sources
 
 
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
@@ -155,7 +149,7 @@ def dump(parameters: ParameterFile) -> str:
             section = head
         unit = declared[name].metadata.get("unit")
         fields = [f"value = {_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
-        fields += [f'kind = "{parameters.kinds.get(name, "user")}"']
+        fields += [f'kind = "{parameters.origins.get(name, "user")}"']
         fields += [f"source = {_quoted(parameters.sources.get(name, 'default choice'))}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")
     return "\n".join(lines) + "\n"
@@ -177,11 +171,7 @@ def _quoted(text: str) -> str:
 
 def default(joint: str) -> ParameterFile:
     """The default parameter set of a joint, shipped with the package."""
-    from importlib.resources import files
-
-    folder = files("jointfmu_models") / joint
-    name = next(item.name for item in folder.iterdir() if item.name.endswith(".toml"))
-    return load(Path(str(folder / name)), joint)
+    return load(KINDS[joint].default_file(), joint)
 
 
 def parse_setting(text: str) -> tuple[str, Any]:

@@ -7,7 +7,6 @@ from importlib.resources import files
 from typing import Any
 
 ROLES = ("calibration", "validation")
-PAPERS = ("hu2023", "zhao2018", "yu2022")
 CALIBRATION_TOLERANCE = 1e-6
 """Relative miss of a calibration point [1]: the fits are exact, this leaves room for rounding."""
 

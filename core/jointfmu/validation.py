@@ -5,9 +5,10 @@ from dataclasses import asdict, dataclass
 from math import isfinite
 from typing import Any
 
-from .observables import OBSERVABLES
+from .joints import KINDS
+from .joints.published import published
 from .parameters import ParameterFile, default
-from .reference import PAPERS, Point, points
+from .reference import Point, points
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,13 +47,12 @@ def compare(point: Point, computed: float | bool) -> Row:
 
 def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[Row]:
     """Compute every published point with the default parameter sets, or those given by joint."""
-    rows, known = [], dict(sets or {})
-    for paper in PAPERS:
-        for point in points(paper):
-            if point.joint not in known:
-                known[point.joint] = default(point.joint)
-            computed = OBSERVABLES[point.quantity](known[point.joint].values, **point.where)
-            rows.append(compare(point, computed))
+    given, rows = sets or {}, []
+    for kind in KINDS.values():
+        for paper in kind.papers:
+            values = (given.get(kind.name) or default(kind.name)).values
+            observables = published(kind).observables
+            rows += [compare(p, observables[p.quantity](values, **p.where)) for p in points(paper)]
     return rows
 
 
@@ -89,7 +89,7 @@ def table(rows: list[Row]) -> str:
 def _cells(row: Row) -> tuple[str, ...]:
     p = row.point
     if isinstance(p.value, bool):
-        shown = (published(row), str(row.computed).lower(), "-", "-")
+        shown = (shown_claim(row), str(row.computed).lower(), "-", "-")
     else:
         unit = f" {p.unit}" if p.absolute else ""
         scale, mark = (1.0, unit) if p.absolute else (100.0, " %")
@@ -102,7 +102,7 @@ def _cells(row: Row) -> tuple[str, ...]:
     return (p.paper, p.id, p.unit, *shown, p.role, "pass" if row.passed else "MISS")
 
 
-def published(row: Row) -> str:
+def shown_claim(row: Row) -> str:
     """A claim as text, with the text's own where its equations give the opposite."""
     p = row.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.joints.model import Model, Variable
 from jointfmu.units import UNITS
 
 from ..native.terminals import TERMINALS, Terminal
-from ..variables import Model, Variable
 from .text import number, text
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"

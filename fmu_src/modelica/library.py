@@ -9,11 +9,12 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, PackageLoader, StrictUndefined
 
 from jointfmu import __version__
-from jointfmu.parameters import JOINTS, ParameterFile, default, write_text
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
 
 from ..systems import System, system
-from ..variables import MODELS, Model
 from .blocks import interface, wrapper
 from .records import BASES, record_name, records
 from .tables import DAMPING_TOLERANCE, STRONGEST, TOLERANCE
@@ -65,13 +66,13 @@ def library(
     file: ParameterFile | None = None, tight: Sequence[tuple[float, float]] = TIGHTENED
 ) -> dict[str, str]:
     """{path in the library: text} of every file."""
-    joints = {joint: default(joint) for joint in JOINTS}
+    joints = {joint: default(joint) for joint in KINDS}
     if file is not None:
         joints[file.joint] = file
     column = system("bolted_column")
     struck = (column.values["joint_state.preload"], column.values["joint_state.moment"])
     tables = records(joints, tight)
-    shown = {kind: next(name for name, r in tables.items() if r["base"] == BASES[kind]) for kind in JOINTS}
+    shown = {kind: next(name for name, r in tables.items() if r["base"] == BASES[kind]) for kind in KINDS}
     example = record_name(joints["bolted_joint"].name, struck if struck in tight else tight[0])
     env = _environment()
     common: dict[str, Any] = {"version": __version__, "records": shown}
@@ -111,7 +112,7 @@ def library(
 
 def _environment() -> Environment:
     return Environment(
-        loader=PackageLoader("jointfmu_fmus.modelica"),
+        loader=PackageLoader("jointfmu_fmu_src.modelica"),
         undefined=StrictUndefined,
         variable_start_string="<<",
         variable_end_string=">>",
@@ -133,14 +134,14 @@ def _ends(tables: Mapping[str, dict[str, Any]], shown: Mapping[str, str]) -> dic
 def _meanings(joint: str) -> dict[str, str]:
     return {
         name: text(item.metadata["doc"])
-        for name, item in flat_fields(JOINTS[joint])
+        for name, item in flat_fields(KINDS[joint].parameters)
         if "doc" in item.metadata
     }
 
 
 def _documentation(model: Model) -> dict[str, str]:
     """Parts of the FMU's documentation page, as text of a Modelica annotation."""
-    folder = files("jointfmu_fmus.native")
+    folder = files("jointfmu_fmu_src.native")
     env = Environment(
         loader=FunctionLoader(lambda name: (folder / name).read_text(encoding="utf-8")), autoescape=True
     )

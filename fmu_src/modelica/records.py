@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jointfmu.joints.bolted_joint import BoltedJointSpring
-from jointfmu.joints.gear_contact import GearContactSpring
-from jointfmu.joints.harmonic_drive import HarmonicDriveSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.gear_contact.spring import GearContactSpring
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 
 from .tables import TOLERANCE, Table, Tightened, thinned, tightened

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.curve import Curve
-from jointfmu.joints.bolted_joint import BoltedJointSpring, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, shear_ratio
 from jointfmu.thinning import kept
 
 Array = NDArray[np.float64]

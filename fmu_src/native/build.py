@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from jointfmu.joints import MODELS
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ..archive import pack, workshop
 from ..partners import PARTNERS
-from ..variables import MODELS, Model
 from .compiler import file_name, libraries, universal
 
 

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from jointfmu import __version__
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flatten
 from jointfmu.stamp import fixed_time
 from jointfmu.units import UNITS
 
-from ..variables import Model
 from ..xml_parts import (
     Listed,
     dependencies,

@@ -11,12 +11,13 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from jointfmu.joints import bolted_joint, gear_contact, harmonic_drive
+from jointfmu.joints.bolted_joint import spring as bolted_joint
+from jointfmu.joints.gear_contact import spring as gear_contact
+from jointfmu.joints.harmonic_drive import spring as harmonic_drive
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
 from jointfmu.quantity import Limit, build, flatten
-
-from ..variables import Model
 
 Symbols = Sequence[Any]
 
@@ -116,7 +117,7 @@ def _partner(g: Graph, model: Model) -> None:
 
 
 def _bounds(g: Graph, model: Model) -> None:
-    ends = [end for limit in g.limits for end in (limit.low, limit.high)]
+    ends = [end for limit in g.limits for end in (limit.interval.low, limit.interval.high)]
     g.add("parameter_limits", "-> low, high of every limit that parameters set each other", [], ends)
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
     end = symbols("end", 2)

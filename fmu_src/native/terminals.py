@@ -8,7 +8,8 @@ inflow one that is applied to the element.
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from ..variables import Model
+from jointfmu.joints.model import Model
+
 from .description import serialized
 from .icon import flange_icon, icon
 

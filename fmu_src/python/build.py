@@ -3,19 +3,17 @@
 import re
 import sys
 import zipfile
+from collections.abc import Collection
 from hashlib import sha256
 from pathlib import Path
 
-from jointfmu_fmus.archive import pack, workshop
-from jointfmu_fmus.variables import MODELS
+from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.python.imports import imported
 
-import jointfmu
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, dump
 
-_RUNTIME = (
-    "__init__", "quantity", "surface", "powerlaw", "interface", "curve", "table", "parameters", "stamp",
-    "units", "asperity", "footprint", "joints",
-)  # fmt: skip
 _PRIVATE = "PRIVATE_PACKAGE"
 """Stands for the name that the digest of all sources gives."""
 _ENTRY = '''"""Entry point of {name} for pythonfmu; the code is in the package beside it."""
@@ -44,32 +42,45 @@ except ImportError as error:
     ) from None
 
 import {package}.fmus.python.slave as slave
+from {package}.{kind} import KIND
 
 
 class {name}(slave.JointSlave):
+    kind = KIND
     fmu = "{name}"
     content = "{digest}"
 '''
 
 
-def runtime_sources() -> dict[str, str]:
+def runtime_sources(kind: Kind) -> dict[str, str]:
     """{path inside the private package: text} of all that runs inside the FMU; numpy is its only need.
 
-    Imports of the public package names are rewritten to a private one, so FMUs of different builds
-    live side by side in one process.
+    These are the slave, the joints and what they import. Imports of the public package names are rewritten
+    to a private one, so FMUs of different builds live side by side in one process.
     """
-    core, fmus = Path(jointfmu.__file__).parent, Path(__file__).parent.parent
-    files = {p: p.relative_to(core) for p in sorted(core.rglob("*.py"))}
-    chosen = {p: str(r) for p, r in files.items() if r.parts[0].removesuffix(".py") in _RUNTIME}
-    shared = ("__init__.py", "variables.py", "xml_parts.py")
-    chosen |= {fmus / p: f"fmus/{p}" for p in shared}
-    chosen |= {fmus / "python" / p: f"fmus/python/{p}" for p in ("__init__.py", "slave.py")}
-    return {inside: _private(p.read_text(encoding="utf-8")) for p, inside in sorted(chosen.items())}
+    own = [joint.package for joint in KINDS.values() if joint.own]
+    roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
+    files = imported(["jointfmu_fmu_src.python.slave", *own, kind.package], roots)
+    found = {}
+    for name, path in files.items():
+        inside = _inside(name).replace(".", "/")
+        file = (
+            "/".join(filter(None, (inside, "__init__.py"))) if path.name == "__init__.py" else f"{inside}.py"
+        )
+        found[file] = _private(path.read_text(encoding="utf-8"), roots)
+    return dict(sorted(found.items()))
 
 
-def _private(text: str) -> str:
-    text = re.sub(r"^from jointfmu_fmus\b", f"from {_PRIVATE}.fmus", text, flags=re.MULTILINE)
-    return re.sub(r"^from jointfmu\b", f"from {_PRIVATE}", text, flags=re.MULTILINE)
+def _inside(module: str) -> str:
+    """Name of a public module inside the private package; that of the package itself is empty."""
+    return re.sub(r"^jointfmu\b\.?", "", re.sub(r"^jointfmu_fmu_src\b", "fmus", module))
+
+
+def _private(text: str, roots: Collection[str]) -> str:
+    for root in roots:
+        package = f"{_PRIVATE}.{_inside(root)}".rstrip(".")
+        text = re.sub(rf"^from {root}\b", f"from {package}", text, flags=re.MULTILINE)
+    return text
 
 
 def build(name: str, parameters: ParameterFile, out: Path) -> Path:
@@ -80,14 +91,15 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
     """
     from pythonfmu import FmuBuilder
 
+    kind = KINDS[MODELS[name].joint]
     MODELS[name].check_joint(parameters.joint)
-    sources = runtime_sources() | {"parameters.toml": dump(parameters)}
+    sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
     target = out / f"{name}.fmu"
     with workshop(target) as work:
         script = work / "src" / f"{name}_{digest}.py"
-        _write(script, _ENTRY.format(name=name, package=package, digest=digest))
+        _write(script, _ENTRY.format(name=name, package=package, kind=_inside(kind.package), digest=digest))
         for inside, text in sources.items():
             root = work / "src" if inside == "parameters.toml" else work / "src" / package
             _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)

@@ -11,12 +11,14 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from jointfmu_fmus.variables import MODELS, Model
-from jointfmu_fmus.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
+from jointfmu_fmu_src.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
 from jointfmu import __version__
+from jointfmu.joints import KINDS, MODELS, register
+from jointfmu.joints.kind import Kind
+from jointfmu.joints.model import Model
 from jointfmu.parameters import load
 from jointfmu.quantity import build, flatten
 from jointfmu.stamp import build_time
@@ -50,12 +52,15 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     computed from it when asked for.
     """
 
+    kind: ClassVar[Kind]
     fmu: ClassVar[str]
     content: ClassVar[str]
     """Digest of everything that runs inside; the GUID comes from it."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        if self.kind.name not in KINDS:  # of another package
+            register(self.kind)
         self.model: Model = MODELS[self.fmu]
         self.modelName = self.fmu
         self.description = self.model.doc
@@ -110,10 +115,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """All outputs; refuses inputs that are not finite or out of range."""
         inputs = {v.name: self.values[v.name] for v in self.model.inputs}
         for v in self.model.inputs:
-            if not math.isfinite(inputs[v.name]) or inputs[v.name] < v.low:
-                low = f"[{v.low:g}" if v.low > -math.inf else "(-inf"
+            if not v.interval.contains(inputs[v.name]):
                 unit = "" if v.unit == "1" else f" {v.unit}"
-                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {low}, inf): {v.doc}")
+                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
         try:
             with np.errstate(all="ignore"):
                 found = self.model.evaluate(self.spring(), inputs)

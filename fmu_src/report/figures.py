@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from jointfmu.joints.bolted_joint import BoltedJointSpring, bolt_pattern
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
 from jointfmu.parameters import default
 from jointfmu.ramp import Ramp
 from jointfmu.validation import Row

@@ -1,1 +1,8 @@
-"""Single-spot laws of the three papers, each a table of regimes over the one integral."""
+"""Published contact laws, a file each; LAWS is the only list of them."""
+
+from .hu2023 import Hu2023
+from .yu2022 import Yu2022
+from .zhao2018 import Zhao2018
+
+LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022}
+"""{author and year: parameters of the law}."""

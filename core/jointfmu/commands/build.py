@@ -30,7 +30,7 @@ def add(commands: Any) -> None:
 def _build(args: argparse.Namespace) -> int:
     file = load(args.params) if args.params else None
     try:
-        from jointfmu_fmus import building, ssp
+        from jointfmu_fmu_src import building, ssp
 
         built = []
         if args.names or not args.systems:

@@ -5,10 +5,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..export.kinds import ERROR, KINDS, WHAT
+from ..export.forms import ERROR, FORMS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
-from ..parameters import JOINTS, ParameterFile, check_writable, default, load, write_text
+from ..joints import KINDS
+from ..parameters import ParameterFile, check_writable, default, load, write_text
 from .common import command
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ _SI = {"K_": "N/m", "C_": "N.s/m"}
 def add(commands: Any) -> None:
     """Declare the command."""
     export = command(commands, "export", _export, "write the joint for another solver")
-    export.add_argument("form", choices=list(KINDS), metavar="FORMAT", help=f"one of {', '.join(KINDS)}")
+    export.add_argument("form", choices=list(FORMS), metavar="FORMAT", help=f"one of {', '.join(FORMS)}")
     export.add_argument(
         "what",
         choices=WHAT,
@@ -36,7 +37,7 @@ def add(commands: Any) -> None:
     joint = export.add_mutually_exclusive_group()
     joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
     joint.add_argument(
-        "--joint", choices=list(JOINTS), default="bolted_joint", help="a default joint (bolted_joint)"
+        "--joint", choices=list(KINDS), default="bolted_joint", help="a default joint (bolted_joint)"
     )
     export.add_argument("--preload", type=float, metavar="F", help="bolted joint: preload per bolt [N]")
     export.add_argument("--moment", type=float, metavar="M", help="bolted joint: bending moment [N.m] (0)")
@@ -67,9 +68,9 @@ def add(commands: Any) -> None:
 
 
 def _export(args: argparse.Namespace) -> int:
-    if args.what not in KINDS[args.form]:
+    if args.what not in FORMS[args.form]:
         raise ValueError(
-            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(KINDS[args.form])}"
+            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
         )
     check_writable(args.out)
     file = load(args.params) if args.params else default(args.joint)

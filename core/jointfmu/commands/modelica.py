@@ -27,7 +27,7 @@ def _modelica(args: argparse.Namespace) -> int:
     if args.moment is not None and not args.preload:
         raise ValueError("--moment needs --preload, the force of each bolt [N]")
     try:
-        from jointfmu_fmus.modelica import library
+        from jointfmu_fmu_src.modelica import library
 
         states = [(force, args.moment or 0.0) for force in args.preload]
         written = library.write(args.out, file, states)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..curve import approach_curve
-from ..joints.bolted_joint import shear_ratio
+from ..joints.bolted_joint.spring import shear_ratio
 from ..parameters import check_writable, write_bytes
 from .common import command
 from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem

@@ -46,8 +46,8 @@ def add(commands: Any) -> None:
 def _ring(args: argparse.Namespace) -> int:
     _check(args)
     try:
-        from jointfmu_fmus import ringing
-        from jointfmu_fmus.report.systems import SIZE, draw
+        from jointfmu_fmu_src import ringing
+        from jointfmu_fmu_src.report.systems import SIZE, draw
     except ImportError as error:
         raise without_package(error, "run a system") from None
     found = getattr(ringing, args.system)(args.fmus, args.load, args.inertia)

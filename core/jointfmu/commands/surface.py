@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from .. import plots
-from ..parameters import JOINTS, check_writable, default, dump, load, write_text
+from ..joints import KINDS
+from ..parameters import check_writable, default, dump, load, write_text
 from ..quantity import Number
 from ..topography.figure import draw
 from ..topography.form import FORMS
 from ..topography.fractal import zhao_roughness
 from ..topography.heights import Areal, Heights
 from ..topography.identify import METHODS, identify
-from ..topography.joint import changes, with_surface
+from ..topography.joint import changes, meaning, with_surface
 from ..topography.reading import read
 from ..topography.results import Estimate, Identification, Result
 from . import synthesize
@@ -41,7 +42,7 @@ def add(commands: Any) -> None:
     find.add_argument(
         "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
     )
-    find.add_argument("--joint", choices=list(JOINTS), metavar="JOINT", help=f"one of {', '.join(JOINTS)}")
+    find.add_argument("--joint", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}")
     find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
     find.add_argument("--write", type=Path, metavar="FILE", help="parameter file to write (TOML)")
     find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
@@ -79,6 +80,11 @@ def _identify(args: argparse.Namespace) -> int:
     return 0
 
 
+def _rough() -> list[str]:
+    """Joints with a rough surface."""
+    return [name for name, kind in KINDS.items() if kind.surfaces]
+
+
 def _base(args: argparse.Namespace) -> Any:
     """The parameter file to start from, if one is to be made."""
     if args.params:
@@ -86,7 +92,7 @@ def _base(args: argparse.Namespace) -> Any:
     if args.joint:
         return default(args.joint)
     if args.write:
-        raise ValueError(f"--write {args.write} needs --joint, one of {', '.join(JOINTS)}, or --params")
+        raise ValueError(f"--write {args.write} needs --joint, one of {', '.join(KINDS)}, or --params")
     return None
 
 
@@ -103,11 +109,10 @@ def _print(found: Identification, heights: Sequence[Heights], args: argparse.Nam
     for row in rows:
         print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
     print("brackets: 95 % confidence intervals")
-    for joint in [args.joint] if args.joint else JOINTS:
+    for joint in [args.joint] if args.joint else _rough():
         values = changes(found, joint, args.method)
         text = ", ".join(f"{name} = {value:.6g}" for name, (value, _) in values.items())
-        kind = "D_s of the surface" if joint == "harmonic_drive" else "D of the profile"
-        print(f"{joint} ({kind}, {next(iter(values.values()))[1].method}): {text}")
+        print(f"{joint} ({meaning(joint)}, {next(iter(values.values()))[1].method}): {text}")
     if args.write:
         print(f"wrote {args.write}")
     if args.plot:
@@ -149,7 +154,7 @@ def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.N
         "results": [_result_dict(result, args.gamma) for result in found.results],
         "joints": {
             joint: {name: value for name, (value, _) in changes(found, joint, args.method).items()}
-            for joint in ([args.joint] if args.joint else JOINTS)
+            for joint in ([args.joint] if args.joint else _rough())
         },
         "written": str(args.write) if args.write else None,
         "warnings": list(found.warnings),

@@ -5,7 +5,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..parameters import JOINTS, ParameterFile, check_writable, default, load, write_text
+from ..joints import KINDS
+from ..parameters import ParameterFile, check_writable, default, load, write_text
 from .common import command, settings
 
 SYNTAX = (
@@ -22,7 +23,7 @@ def add(commands: Any) -> None:
     )
     study.epilog = SYNTAX
     study.add_argument(
-        "joint", nargs="?", choices=list(JOINTS), metavar="JOINT", help=f"one of {', '.join(JOINTS)}"
+        "joint", nargs="?", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
     )
     study.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
     study.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
@@ -46,7 +47,7 @@ def add(commands: Any) -> None:
 def chosen(joint: str | None, params: Path | None) -> ParameterFile:
     """The parameter file of JOINT or --params, either of which must be given."""
     if params is None and joint is None:
-        raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(JOINTS)}")
+        raise ValueError(f"JOINT or --params FILE is missing; JOINT is one of {', '.join(KINDS)}")
     return load(params, joint) if params else default(str(joint))
 
 
@@ -74,7 +75,7 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.plot:
         from ..uncertainty import figures
 
-        figures.draw(args.plot, bands, found, f"{task.model.load} [{task.model.unit}]")
+        figures.draw(args.plot, bands, found, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     if args.json:
         print(json.dumps(report.as_json(task, bands, found)))
     else:

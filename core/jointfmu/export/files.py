@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
-from ..joints.bolted_joint import BoltedJointSpring, shear_ratio
-from ..joints.gear_contact import GearContactSpring
-from ..joints.harmonic_drive import HarmonicDriveSpring
+from ..joints.bolted_joint.spring import BoltedJointSpring, shear_ratio
+from ..joints.gear_contact.spring import GearContactSpring
+from ..joints.harmonic_drive.spring import HarmonicDriveSpring
 from ..parameters import ParameterFile
 from . import ansys, columns, keywords, tables
 from .mesh import Mesh

@@ -8,7 +8,7 @@ from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import KDTree
 
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint import BoltedJointSpring, pressures
+from ..joints.bolted_joint.spring import BoltedJointSpring, pressures
 from .mesh import Mesh
 
 Array = NDArray[np.float64]

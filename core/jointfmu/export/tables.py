@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..curve import Curve
-from ..joints.bolted_joint import BoltedJointSpring
+from ..joints.bolted_joint.spring import BoltedJointSpring
 from ..thinning import kept
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..curve import Curve, approach_curve
-from ..joints.bolted_joint import BoltedJoint, shear_ratio
+from ..joints.bolted_joint.spring import BoltedJoint, shear_ratio
 from .assembly import load
 from .assembly_modes import computed, uniform
 from .bolts import BoltGrid

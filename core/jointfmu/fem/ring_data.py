@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints.harmonic_drive import HarmonicDrive, contact_length
+from ..joints.harmonic_drive.spring import HarmonicDrive, contact_length
 from ..quantity import check, quantity
 
 Array = NDArray[np.float64]

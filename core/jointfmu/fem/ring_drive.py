@@ -22,7 +22,7 @@ from ..curve import Curve, approach_curve
 from ..footprint.lobes import HEIGHT_WEIGHTS, HEIGHTS
 from ..footprint.nodes import Footprint
 from ..interface import at_pressure
-from ..joints.harmonic_drive import HarmonicDrive, contact_length, lobe_point
+from ..joints.harmonic_drive.spring import HarmonicDrive, contact_length, lobe_point
 from .ring import Circle, Ring
 from .ring_contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
 from .ring_data import Rings, Traction, ball_stiffness

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint import BoltedJoint
-from ..parameters import KINDS, ParameterFile
+from ..joints.bolted_joint.spring import BoltedJoint
+from ..parameters import ORIGINS, ParameterFile
 from ..quantity import build, flatten
 from .contact import Array, ContactField
 from .reduction import Reduction, reduce
@@ -33,7 +33,7 @@ def with_field(
     file    : of a bolted joint; its `n_bolts`, `row_bolts`, `row_distance` say what the forces mean
     preload : [N] of each bolt, at which the field was computed
     source  : where the field comes from, for the file
-    kind    : of the values, one of parameters.KINDS
+    kind    : of the values, one of parameters.ORIGINS
     tilted  : the field at the same nodes under a bending moment too; without it the pressure grows in
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
@@ -44,8 +44,8 @@ def with_field(
     """
     if file.joint != "bolted_joint":
         raise ValueError(f"joint = {file.joint!r} has no field of pressure; expected 'bolted_joint'")
-    if kind not in KINDS:
-        raise ValueError(f"kind = {kind!r} is not one of {', '.join(KINDS)}")
+    if kind not in ORIGINS:
+        raise ValueError(f"kind = {kind!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload)
     points = reduction.shape
@@ -63,7 +63,7 @@ def with_field(
     return replace(
         file,
         values=build(BoltedJoint, kept | given),
-        kinds={n: k for n, k in file.kinds.items() if n in kept} | dict.fromkeys(given, kind),
+        origins={n: k for n, k in file.origins.items() if n in kept} | dict.fromkeys(given, kind),
         sources={n: s for n, s in file.sources.items() if n in kept}
         | dict.fromkeys(given, text)
         | {"A_0": f"{source}, sum of the nodal areas", "field.tilt": f"{text}; {_rule(tilted, moment)}"},

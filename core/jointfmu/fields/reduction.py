@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint import BoltedJoint
+from ..joints.bolted_joint.spring import BoltedJoint
 from ..progress import track
 from .result import Array, Nodes
 from .sums import PRELOADS, SEED, Load, Row, Sums, balance, first_loads, further_loads, largest_moment

@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 from ..curve import Curve, approach_curve
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint import BoltedJoint, pressures
+from ..joints.bolted_joint.spring import BoltedJoint, pressures
 from .result import Array
 
 PRELOADS = (0.05, 3.0)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..joints.harmonic_drive import HarmonicDrive, torque_curve
+from ..joints.harmonic_drive.spring import HarmonicDrive, torque_curve
 from ..parameters import ParameterFile
 from .least_squares import Array
 

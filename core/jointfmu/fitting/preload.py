@@ -24,7 +24,7 @@ from ..curve import approach_curve
 from ..footprint.bolts import BoltPattern, pressure_shape
 from ..footprint.shape import NodalField
 from ..interface import stiffness_curve
-from ..joints.bolted_joint import BoltedJoint, node_pressure, shear_ratio
+from ..joints.bolted_joint.spring import BoltedJoint, node_pressure, shear_ratio
 from ..parameters import ParameterFile, default
 from ..units import Sizes, factor, sizes
 from .least_squares import Array, Solution, Unknown, solve
@@ -95,7 +95,7 @@ def fit(
 
     def predict(values: Mapping[str, float]) -> Array:
         own = {name: value for name, value in values.items() if name != SERIES}
-        joint = replace(file, kinds={}, sources={}).with_values(own, "calibration", "fit").values
+        joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
         return curve.predicted(joint, values.get(SERIES, series), direction)
 
     def miss(values: Mapping[str, float]) -> Array:

@@ -1,1 +1,35 @@
-"""The joints: a law, a footprint and a curve each."""
+"""The joints, a folder each; KINDS is the only list of them."""
+
+from importlib import import_module
+
+from .kind import Kind
+from .model import Model
+
+_FOLDERS = (
+    "harmonic_drive",
+    "bolted_joint",
+    "gear_contact",
+)
+KINDS: dict[str, Kind] = {name: import_module(f".{name}", __name__).KIND for name in _FOLDERS}
+"""{name: joint}, in the order in which they are shown."""
+MODELS: dict[str, Model] = {model.name: model for kind in KINDS.values() for model in kind.models}
+"""{name: exported model} of all joints."""
+
+
+def register(kind: Kind) -> None:
+    """Add a joint of another package for this process: it is built, checked and listed like the others.
+
+    Raises ValueError if a joint or a model of that name is there.
+    """
+    taken = [name for name in (kind.name, *(model.name for model in kind.models)) if name in KINDS | MODELS]
+    if taken:
+        raise ValueError(f"joint {kind.name!r}: the name {taken[0]!r} is taken; allowed is one of its own")
+    KINDS[kind.name] = kind
+    MODELS.update((model.name, model) for model in kind.models)
+
+
+def unregister(kind: Kind) -> None:
+    """Take back `register`."""
+    del KINDS[kind.name]
+    for model in kind.models:
+        del MODELS[model.name]

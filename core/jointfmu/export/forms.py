@@ -1,6 +1,6 @@
 """What can be written, for the command line; loads nothing."""
 
-KINDS = {
+FORMS = {
     "ansys": ("springs",),
     "calculix": ("springs", "contact"),
     "abaqus": ("springs", "contact"),

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..asperity.yu2022 import Yu2022
-from ..curve import Curve, approach_curve
-from ..interface import at_pressure
-from ..quantity import Number
+from ...asperity.yu2022 import Yu2022
+from ...curve import Curve, approach_curve
+from ...interface import at_pressure
+from ...quantity import Number
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,81 @@
+"""What the published numbers of Zhao 2018 mean for a bolted joint, and which of them calibrate it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...asperity import mindlin
+from ...asperity import zhao2018 as zhao
+from ...footprint.bolts import cells, pressure_shape, unit_pressures
+from ...surface import domain_extension
+from ..published import Fit, Published
+from .spring import BoltedJoint, bolt_pattern, pressures, row_forces
+
+
+def p_max(joint: BoltedJoint, preload: float) -> float:
+    """Largest node pressure [Pa] at a preload [N] per bolt."""
+    return float(np.max(pressures(joint, pressure_shape(joint.pattern), preload, 0.0)))
+
+
+def p_between(joint: BoltedJoint, preload: float) -> float:
+    """Pressure [Pa] midway between a corner bolt and its neighbour off the row, at a preload [N]."""
+    pattern = bolt_pattern(joint)
+    areas, nodes = cells(pattern)
+    middle = pattern.bolts[[0, 3]].mean(axis=0)[None, :]
+    unit = float(unit_pressures(pattern, areas, nodes, middle).sum())
+    return unit * preload * joint.n_bolts / 8.0 * float(areas.sum()) / joint.A_0
+
+
+def row_force(joint: BoltedJoint, preload: float, moment: float, row: int) -> float:
+    """Bolt force [N] in row 1 or 2 under a moment [N.m]."""
+    return row_forces(joint, preload, moment)[row - 1]
+
+
+def critical_area(joint: BoltedJoint, choice: str) -> float:
+    """a'_c [m2] by a named choice."""
+    return float(zhao.critical_area(replace(joint, critical_area=choice)))
+
+
+def spot_stiffness_ratio(joint: BoltedJoint) -> float:
+    """Spot stiffness along the size family over Hertz [1]."""
+    family, hertz = (
+        zhao.normal_stiffness(replace(joint, spot_stiffness=kind), 1e-6) for kind in ("family", "hertz")
+    )
+    return float(family / hertz)
+
+
+def mindlin_function(joint: BoltedJoint, function: str, x: float) -> float:
+    """H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio."""
+    table = {"loop": mindlin.loop, "storage": mindlin.storage, "loss_ratio": mindlin.loss_ratio}
+    return float(table[function](x))
+
+
+def psi(joint: BoltedJoint, D: float) -> float:
+    """Domain extension factor [1] of a profile dimension."""
+    return float(domain_extension(D))
+
+
+def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> float:
+    """Error [%] of a predicted frequency against the experiment."""
+    return 100.0 * (predicted / measured - 1.0)
+
+
+PUBLISHED = Published(
+    observables={
+        "p_max": p_max,
+        "p_between": p_between,
+        "row_force": row_force,
+        "critical_area": critical_area,
+        "spot_stiffness_ratio": spot_stiffness_ratio,
+        "mindlin": mindlin_function,
+        "psi": psi,
+        "frequency_error": frequency_error,
+    },
+    calibration=(
+        Fit(
+            {"pattern.decay_length": 0.01, "pattern.decay_exponent": 1.0},
+            ("p_max.9kN", "p_between.9kN"),
+        ),
+    ),
+)
+"""{quantity of a reference file: function}, and the fits."""

@@ -1,0 +1,84 @@
+"""What the claims of Yu 2022 mean for a gear contact."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...asperity.yu2022 import Yu2022
+from ...interface import at_largest_spot
+from ..published import Published
+from .spring import GearContact
+
+
+def claim(contact: GearContact, of: str, over: str) -> bool:
+    """A claim of Yu 2022, section 5, with the parameters named there.
+
+    Load and stiffness are compared at equal real areas, real areas at an equal largest spot.
+    """
+    if over == "MB":
+        return _below_majumdar_bhushan(contact)
+    if of == "elastic_fraction" and over == "e":
+        shares = [
+            _at_real_area(_varied(contact, D1=1.56, D2=1.56, e=e), 0.01)[of] for e in (0.1, 0.3, 0.5, 0.7)
+        ]
+        return bool(max(shares) - min(shares) < 0.05)
+    if of == "elastic_fraction":
+        share = [_at_real_area(_varied(contact, D1=1.56, D2=D), 0.01)[of] for D in (1.45, 1.55, 1.65)]
+        return bool(share[0] < share[1] and abs(share[2] - share[1]) < 0.2 * (share[1] - share[0]))
+    fine = {"G1": 1e-11, "G2": 1e-11}
+    studies: dict[str, list[Yu2022]] = {
+        "D": [_varied(contact, D1=1.36, D2=D, **fine) for D in (1.36, 1.46, 1.56, 1.66, 1.76)],
+        "G": [_varied(contact, G2=G) for G in (9e-10, 7e-10, 5e-10, 3e-10, 1e-10)],
+        "e": [_varied(contact, e=e, **fine) for e in (0.7, 0.5, 0.3, 0.1)],
+        "lambda": [_varied(contact, lambda_=v, **fine) for v in (0.3, 0.5, 0.7, 0.9)],
+    }
+    if of == "A_r":
+        rows = [[float(at_largest_spot(law, 1e-6)[of]) for law in studies[over]]]
+    else:
+        fractions = np.geomspace(1e-3, 1e-1, 9)
+        rows = [[_at_real_area(law, part)[of] for law in studies[over]] for part in fractions]
+    return bool(np.all(np.diff(rows, axis=1) > 0.0))
+
+
+def _varied(contact: GearContact, **changes: Any) -> GearContact:
+    for key in ("D1", "D2", "G1", "G2"):
+        if key in changes:
+            name = f"surface{key[1]}"
+            surface = replace(getattr(contact, name), **{key[0]: changes.pop(key)})
+            contact = replace(contact, **{name: surface})
+    return replace(contact, **changes)
+
+
+def _at_real_area(law: Yu2022, fraction: float) -> dict[str, float]:
+    """State at a real area that is a fraction of A_0; Eq. 54 gives the largest spot."""
+    spots = law.spots()
+    largest = fraction * law.A_0 * (1.0 - spots.m) / (spots.m * spots.weight)
+    state: dict[str, Any] = law.state(np.log(largest / spots.reference))
+    return {name: float(value) for name, value in state.items()}
+
+
+def _below_majumdar_bhushan(contact: GearContact) -> bool:
+    """Load below that of Majumdar and Bhushan (1991), same D and G, at 1 to 10 % real area.
+
+    Elastic spots above a_c = G^2 (2 E/H)^(2/(D-1)), plastic ones below; profile dimension D.
+    """
+    D, G = contact.surface1.D, contact.surface1.G
+    E, H = contact.side1.E / (1.0 - contact.side1.nu**2), contact.hardness
+    critical = G**2 * (2.0 * E / H) ** (2.0 / (D - 1.0))
+    for fraction in np.geomspace(1e-2, 1e-1, 9):
+        largest = fraction * contact.A_0 * (2.0 - D) / D
+        scale = 4.0 * np.sqrt(np.pi) / 3.0 * E * G ** (D - 1.0) * D / (3.0 - 2.0 * D)
+        elastic = scale * largest ** (0.5 * D) * (largest ** (1.5 - D) - critical ** (1.5 - D))
+        plastic = H * D / (2.0 - D) * largest ** (0.5 * D) * critical ** (1.0 - 0.5 * D)
+        if _at_real_area(contact, fraction)["F"] >= elastic + plastic:
+            return False
+    return True
+
+
+PUBLISHED = Published(
+    observables={
+        "claim": claim,
+    },
+)
+"""{quantity of a reference file: function}, and the fits."""

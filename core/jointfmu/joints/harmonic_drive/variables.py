@@ -1,0 +1,71 @@
+"""Inputs and outputs of the harmonic drive's models."""
+
+from ..model import BEYOND, Model, Outside, Ramp, Variable
+from .spring import HarmonicDrive, HarmonicDriveSpring
+
+_CONTACT = (
+    Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi at the present torque", 5e3),
+    Variable("K_TS", "N.m/rad", "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
+    Variable("K_FTS", "N.m/rad", "its part of circular spline and flexspline", 2e4),
+    Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale: the scale of Hu 2023, Fig. 11", 1e3),
+    Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
+)
+
+_MOTION = ("phi1", "phi2")
+_HIDDEN = ("max_torque", "shear_traction")
+_SPEEDS = {"w1": "parameters", "w2": "parameters"}
+
+MODELS = (
+    Model(
+        name="HarmonicDriveSpring",
+        joint="harmonic_drive",
+        doc="Torsional spring and damper of a harmonic drive: motion in, torque out (Hu 2023)",
+        parameters=HarmonicDrive,
+        spring=HarmonicDriveSpring.of,
+        inputs=(
+            Variable("phi1", "rad", "angle of the wave-generator (motor) flange"),
+            Variable("w1", "rad/s", "speed of the wave-generator (motor) flange"),
+            Variable("phi2", "rad", "angle of the output flange"),
+            Variable("w2", "rad/s", "speed of the output flange"),
+        ),
+        outputs=(
+            Variable("tau1", "N.m", "torque of the element on flange 1, tau/ratio", 0.1),
+            Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
+            Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio", 1e-3),
+            Variable("tau", "N.m", "T(phi_rel) + d der(phi_rel)", 5.0),
+            *_CONTACT,
+        ),
+        evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
+        ramp=Ramp("phi2", 1.5e-3, 3e-6),
+        dependencies={
+            "phi_rel": _MOTION,
+            "K_WTS": _MOTION,
+            "K_TS": _MOTION,
+            "K_FTS": (),
+            "K_TS_pair": _MOTION,
+            "p_max": _MOTION,
+        },
+        linear={
+            "phi_rel": {"phi1": "parameters", "phi2": "constant"},
+            "tau1": _SPEEDS,
+            "tau2": _SPEEDS,
+            "tau": _SPEEDS,
+        },
+        hidden=_HIDDEN,
+    ),
+    Model(
+        name="HarmonicDriveCompliance",
+        joint="harmonic_drive",
+        doc="Wind-up of a harmonic drive with the wave generator locked: torque in, motion out (Hu 2023)",
+        parameters=HarmonicDrive,
+        spring=HarmonicDriveSpring.of,
+        inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
+        outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau)", 1e-3), *_CONTACT),
+        evaluate=lambda s, v: s.windup(v["tau"]),
+        outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
+        ramp=Ramp("tau", 5.0, 0.01),
+        dependencies={"K_FTS": ()},
+        hidden=_HIDDEN,
+    ),
+)

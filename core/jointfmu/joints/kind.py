@@ -1,0 +1,89 @@
+"""What a joint's folder says of the joint; everything that knows joints loops over these."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from .model import Model, Variable
+
+
+@dataclass(frozen=True, slots=True)
+class RoughSurface:
+    """Parameters `PREFIX.D` and `PREFIX.G` that a measured surface decides.
+
+    areal     : they are D_s and G_s of the surface, else D and G of a profile
+    direction : of the profile on a textured surface, "x" or "y"; None: whichever is surer
+    """
+
+    prefix: str
+    areal: bool = False
+    direction: str | None = None
+
+
+def itself(parameters: Any) -> Any:
+    """The interface law of a joint whose parameter set is one."""
+    return parameters
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """A joint.
+
+    A tool finds what it needs beyond this in a file of the tool's name in the joint's folder, see `part`.
+
+    name          : of its folders, and `joint = NAME` in parameter files
+    package       : import name of its folder
+    default       : stem of its default parameter file
+    parameters    : its parameter set
+    law           : its interface law, a value of asperity.LAWS
+    law_of        : the law's parameter set out of the joint's
+    models        : what it is exported as; the first is its component in a system model
+    surfaces      : its rough surfaces
+    working_point : names of inputs that its linearisations need (preload, ...), the first always
+    papers        : files of published numbers in models/reference/ that it is compared with
+    """
+
+    name: str
+    package: str
+    default: str
+    parameters: type[Any]
+    law: type[Any]
+    law_of: Callable[[Any], Any] = itself
+    models: Sequence[Model]
+    surfaces: Sequence[RoughSurface] = ()
+    working_point: Sequence[str] = ()
+    papers: Sequence[str] = ()
+
+    @property
+    def title(self) -> str:
+        """Its name as words."""
+        return self.name.replace("_", " ")
+
+    @property
+    def variables(self) -> dict[str, Variable]:
+        """Inputs and outputs of all its models by name."""
+        return {v.name: v for model in self.models for v in (*model.inputs, *model.outputs)}
+
+    @property
+    def own(self) -> bool:
+        """Whether it comes with this package, and not from another one."""
+        return self.package.startswith(f"{__package__}.")
+
+    def spring(self, parameters: Any) -> Any:
+        """The tabulated joint of a parameter set."""
+        return self.models[0].spring(parameters)
+
+    def default_file(self) -> Path:
+        """Its default parameter file, models/NAME/DEFAULT.toml; of another package models/ in its folder."""
+        folder = files("jointfmu_models") / self.name if self.own else files(self.package) / "models"
+        return Path(str(folder / f"{self.default}.toml"))
+
+    def part(self, tool: str) -> ModuleType | None:
+        """What a tool finds in the joint's folder, the module of the tool's name; None if there is none."""
+        name = f"{self.package}.{tool}"
+        return import_module(name) if find_spec(name) else None

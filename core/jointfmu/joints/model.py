@@ -1,0 +1,119 @@
+"""What a joint is exported as: inputs and outputs with unit and meaning, and what is computed.
+
+Parameters are those of the joint's parameter set, whose units, intervals and meanings are declared there.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..quantity import Interval, Number, flat_fields
+
+Values = Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An input or output."""
+
+    name: str
+    unit: str
+    doc: str
+    nominal: float = 1.0
+    low: float = -math.inf
+
+    @property
+    def interval(self) -> Interval:
+        """What an input may be: finite, and not below its least value."""
+        return Interval.of(ge=self.low)
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """Load ramp: the default experiment, one step per interval [s]."""
+
+    input: str
+    end: float
+    step: float
+    interval: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Outside:
+    """A way to leave the tables, worth a warning: a variable outside its interval.
+
+    interval : (joint, (x, y) at the end of the curve, inputs) -> (low, high); numbers or symbols
+    doc      : what happens there
+    """
+
+    variable: str
+    interval: Callable[[Any, tuple[Number, Number], Mapping[str, Number]], tuple[Number, Number]]
+    doc: str
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """One exported model of a joint, later an FMU.
+
+    joint    : kind of the parameter file
+    spring   : makes the tabulated joint of a parameter set
+    evaluate : (spring, inputs) -> outputs
+    outside  : warnings about a state outside the tables
+    dependencies : inputs that an output depends on, where not on all
+    linear   : {output: {input: what the factor depends on}} where an output is linear in an input with a
+        factor of parameters only ("parameters") or of none ("constant")
+    hidden   : prefixes of parameters that are baked in
+    states   : continuous states, the first outputs; the rate of each is the output after it
+    moves    : outputs change with time, while inputs rest
+    """
+
+    name: str
+    joint: str
+    doc: str
+    parameters: type[Any]
+    spring: Callable[[Any], Any]
+    inputs: Sequence[Variable]
+    outputs: Sequence[Variable]
+    evaluate: Callable[[Any, Values], Mapping[str, Any]]
+    outside: Sequence[Outside]
+    ramp: Ramp
+    dependencies: Mapping[str, Sequence[str]]
+    linear: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    hidden: Sequence[str] = ()
+    states: int = 0
+    moves: bool = False
+
+    def parameter_fields(self) -> dict[str, Any]:
+        """Structured names and fields of the parameters that the FMU exposes."""
+        return {
+            name: item
+            for name, item in flat_fields(self.parameters)
+            if not any(name == h or name.startswith(f"{h}.") for h in self.hidden)
+            and not isinstance(item.metadata.get("allowed", (0,))[0], str)
+        }
+
+    def check_joint(self, joint: str) -> None:
+        """Raise ValueError if a parameter file is of another joint than this FMU's."""
+        if joint != self.joint:
+            raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
+
+    def warnings(self, spring: Any, values: Values) -> dict[int, str]:
+        """Warnings about a state of inputs and outputs outside the tables, by number."""
+        units = {v.name: v.unit for v in (*self.inputs, *self.outputs)}
+        messages = {}
+        for i, o in enumerate(self.outside):
+            value, unit = values[o.variable], units[o.variable]
+            low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
+            inside = Interval.of(ge=low, le=high)
+            if not inside.contains(value):
+                messages[i] = f"{o.variable} = {value:.6g} {unit} is outside {inside} {unit}: {o.doc}"
+        return messages
+
+    def depends(self, output: str) -> Sequence[str]:
+        """Inputs and states on which an output depends."""
+        return self.dependencies.get(output, [v.name for v in self.inputs])
+
+
+BEYOND = "beyond the tabulated law the last tangent is continued"
+"""What happens outside a table."""

@@ -1,0 +1,1 @@
+"""Bolted joint, for the FMU builder."""

@@ -1,0 +1,1 @@
+"""Gear contact, for the FMU builder."""

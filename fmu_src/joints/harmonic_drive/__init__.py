@@ -1,0 +1,1 @@
+"""Harmonic drive, for the FMU builder."""
