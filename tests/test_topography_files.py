@@ -152,7 +152,9 @@ def test_form_is_removed(area, form, order):
             "# profile: x [m], z [m]\n" + "".join(f"{i},nan\n" for i in range(200)),
             "all 200 heights",
         ),
-        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "text.csv: is no surface"),
+        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "is no surface: line 2: 'abc' is no number"),
+        ("short.csv", "# profile: x [m], z [m]\n1,2\n\n3\n", "short.csv: line 4 has 1 columns, expected 2"),
+        ("head.csv", "# profile: x [m], z [m]\n", "head.csv: is no surface: it holds no numbers"),
         ("cols.csv", "# profile: x [m], z [m]\n1,2,3\n", "has 3 columns, its header declares 2"),
         ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x repeats values"),
         (
@@ -187,6 +189,16 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
 def test_options_are_refused_by_name(folder, capsys, options, says):
     assert says in refused_line(capsys, "surface", "line.csv", *options)
     assert not (folder / "x.toml").exists()
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t", " "])
+def test_cells_of_numbers(folder, mark):
+    """An empty cell is a gap, what follows # is a comment; without a separator blanks divide."""
+    gap = "nan" if mark == " " else ""
+    lines = ["# x", f"1{mark} 2.5{mark}3  # here", "", f"{gap}{mark}-1e-3{mark} {gap}"]
+    (folder / "n.csv").write_text("\n".join(lines))
+    expected = [[1.0, 2.5, 3.0], [np.nan, -1e-3, np.nan]]
+    np.testing.assert_array_equal(csvfile.table(folder / "n.csv"), expected)
 
 
 def test_bare_columns_take_the_unit(folder, line, capsys):

@@ -10,6 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ..curve import Curve
 from ..joints.bolted_joint.spring import BoltedJointSpring
+from ..thinning import kept
 
 Array = NDArray[np.float64]
 
@@ -116,22 +117,9 @@ def thinned(
         line = y[i] + (y[j] - y[i]) / (x[j] - x[i]) * (x[i : j + 1] - x[i])
         return float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1]))
 
-    last = x.size - 1
-    stops = sorted({*keep, last})
-    nodes = [0]
-    while nodes[-1] < last:
-        i = nodes[-1]
-        stop = next(s for s in stops if s > i)
-        j, step = i + 1, 1
-        while step:  # gallop, then bisect
-            further = min(j + step, stop)
-            if further > j and off(i, further) <= error:
-                j, step = further, 2 * step
-            else:
-                step //= 2
-        nodes.append(j)
-    index = np.array(nodes)
-    between = np.diff(index)[~np.isin(index[1:], stops)]
+    stops = {*keep, x.size - 1}
+    index = kept(stops, lambda i, j: off(i, j) <= error)
+    between = np.diff(index)[~np.isin(index[1:], list(stops))]
     if np.any(between < _FEWEST):
         raise ValueError(
             f"error = {error:g} is too small for a table; it would have {index.size} rows or more"

@@ -11,25 +11,21 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import columns
 from ..parameters import ParameterFile, default
-from . import columns, drive, loop
+from ..units import Sizes, sizes
+from . import drive, loop
 from .least_squares import Array, solve
 from .outcome import Outcome, Picture, fitted, model, unknowns
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
-COLUMNS: Mapping[str, columns.Units] = {
-    "torque": {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3},
-    "angle": {
-        "rad": 1.0,
-        "mrad": 1e-3,
-        "deg": np.pi / 180.0,
-        "arcmin": np.pi / 10800.0,
-        "arcsec": np.pi / 648000.0,
-    },
+COLUMNS: Mapping[str, Sizes] = {
+    "torque": sizes("N.m", "mN.m", "kN.m"),
+    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
 LEAST = 10
 """Fewest points of a curve."""
-ARCMIN = np.pi / 10800.0
+ARCMIN = COLUMNS["angle"]["arcmin"]
 ALIKE = 0.5
 """Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
