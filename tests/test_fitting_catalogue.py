@@ -9,8 +9,8 @@ import pytest
 from conftest import refused_line
 
 from jointfmu import cli, ramp
-from jointfmu.fitting import catalogue
-from jointfmu.fitting.drive import windup
+from jointfmu.joints.harmonic_drive.fit import catalogue
+from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import load
 
 SIZE_14 = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}

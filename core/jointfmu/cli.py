@@ -22,7 +22,8 @@ from .commands import (
     uncertainty,
     validate,
 )
-from .commands.common import Parser
+from .commands.common import Parser, flag
+from .refusal import Refusal
 
 COMMANDS = (
     law,
@@ -57,7 +58,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(args.run(args))
     except (ValueError, RuntimeError) as error:
-        print(f"jointfmu {args.command}:", *str(error).splitlines(), file=sys.stderr)
+        hint = [f"({flag(error.setting)})"] if isinstance(error, Refusal) else []
+        print(f"jointfmu {args.command}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:
         print(f"jointfmu {args.command}: interrupted", file=sys.stderr)

@@ -19,15 +19,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ..curve import approach_curve
-from ..footprint.bolts import BoltPattern, pressure_shape
-from ..footprint.shape import NodalField
-from ..interface import stiffness_curve
-from ..joints.bolted_joint.spring import BoltedJoint, node_pressure, shear_ratio
-from ..parameters import ParameterFile, default
-from . import columns
-from .least_squares import Array, Solution, Unknown, solve
-from .outcome import Outcome, Picture, fitted, unknowns
+from ....curve import approach_curve
+from ....fitting import columns
+from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.outcome import Outcome, Picture, fitted, unknowns
+from ....footprint.bolts import BoltPattern, pressure_shape
+from ....footprint.shape import NodalField
+from ....interface import stiffness_curve
+from ....parameters import ParameterFile, default
+from ..spring import BoltedJoint, node_pressure, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -219,6 +219,6 @@ def _notes(names: Sequence[str], mass: bool) -> list[str]:
     if mass and "mass" in names and "surface.G" not in names:
         return [
             "frequencies without a stated mass give K/mass only: the level is in mass, surface.G is kept; "
-            "state --modal-mass to fit surface.G"
+            "state the modal mass to fit surface.G"
         ]
     return []
