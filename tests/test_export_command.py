@@ -131,7 +131,7 @@ E = [
     (("csv", "contact", "--normal", "x"), "--normal has no meaning for a contact"),
     (("csv", "springs", "--preload", 9e3, "--error", 0.1), "--error has no meaning for springs"),
     (("csv", "contact", "--error", -1), "error = -1 is outside (0, 0.5)"),
-    (("calculix", "contact", "--error", 1e-4), "CalculiX holds 200"),
+    (("calculix", "contact", "--error", 1e-4), "holds 200; allow a larger error (--error)"),
     (("abaqus", "springs", "--nodes", "own.csv"), "--nodes needs --first, a number above all elements"),
     (("ansys", "springs", "--nodes", "own.csv", "--first", 9), "--nodes needs --first-set, a number above"),
     (("calculix", "springs", "--preload", 9e3, "--first-set", 9), "--first-set has no meaning for calculix"),
