@@ -151,7 +151,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
     out, picture = tmp_path / "drive.toml", tmp_path / "fit.png"
     assert (
-        cli.main(["fit", "torque-angle", str(loops), "--write", str(out), "--plot", str(picture), "--json"])
+        cli.main(["fit", "torque-angle", str(loops), "--out", str(out), "--plot", str(picture), "--json"])
         == 0
     )
     document = json.loads(capsys.readouterr().out)
