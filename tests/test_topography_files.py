@@ -177,7 +177,7 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
         (["--unit", "um"], "states its units itself"),
         (["--range", "2", "1"], "expected 0 < LOW < HIGH"),
         (["--range", "1", "2"], "holds 0 values"),
-        (["--write", "x.toml"], "needs --joint"),
+        (["--out", "x.toml"], "needs --joint"),
         (["--joint", "glue"], "invalid choice: 'glue'"),
         (["--plot", "x.pdf"], "suffix '.pdf' is no picture, allowed are .png, .svg"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
@@ -235,6 +235,21 @@ def test_json_is_one_object(folder, capsys):
         assert one["G_eq30"] < one["profile"]["G"]["value"]  # ln 1.5 < 1
 
 
+def test_help_shows_both_sub_commands(capsys):
+    for words, shown in ((["--help"], "synthesize"), (["a.csv", "--help"], "--range LOW HIGH")):
+        with pytest.raises(SystemExit) as end:
+            cli.main(["surface", *words])
+        assert end.value.code == 0
+        said = capsys.readouterr().out
+        assert "identify" in said
+        assert shown in said
+
+
+def test_sub_command_may_be_named(folder, capsys):
+    named = run(capsys, "surface", "identify", "line.csv", "--json").out
+    assert named == run(capsys, "surface", "--json", "line.csv").out
+
+
 @pytest.mark.parametrize("suffix", ["png", "svg"])
 def test_plot(folder, capsys, suffix):
     run(capsys, "surface", "line.csv", "--plot", f"p.{suffix}")
@@ -243,7 +258,7 @@ def test_plot(folder, capsys, suffix):
 
 
 def test_written_parameters_build(folder, capsys):
-    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--write", "gear.toml")
+    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--out", "gear.toml")
     file = load("gear.toml", "gear_contact")
     assert file.sources["surface1.D"].startswith("identified from line.csv by ")
     assert file.values.e == default("gear_contact").values.e
@@ -252,10 +267,12 @@ def test_written_parameters_build(folder, capsys):
 
 
 def test_params_choose_the_start(folder, capsys):
-    run(capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml")
+    run(
+        capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml"
+    )  # the other name of --out
     changed = (folder / "a.toml").read_text().replace("H = { value = 1960000000.0", "H = { value = 2.5e9")
     (folder / "a.toml").write_text(changed)
-    run(capsys, "surface", "area.csv", "--params", "a.toml", "--write", "b.toml")
+    run(capsys, "surface", "area.csv", "--params", "a.toml", "--out", "b.toml")
     file = load("b.toml", "bolted_joint")
     assert file.values.H == 2.5e9
     assert "area.csv" in file.sources["surface.G"]

@@ -19,16 +19,16 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import columns
-from ..curve import approach_curve
-from ..footprint.bolts import BoltPattern, pressure_shape
-from ..footprint.shape import NodalField
-from ..interface import stiffness_curve
-from ..joints.bolted_joint.spring import BoltedJoint, node_pressure, shear_ratio
-from ..parameters import ParameterFile, default
-from ..units import Sizes, factor, sizes
-from .least_squares import Array, Solution, Unknown, solve
-from .outcome import Outcome, Picture, fitted, unknowns
+from .... import columns
+from ....curve import approach_curve
+from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.outcome import Outcome, Picture, fitted, unknowns
+from ....footprint.bolts import BoltPattern, pressure_shape
+from ....footprint.shape import NodalField
+from ....interface import stiffness_curve
+from ....parameters import ParameterFile, default
+from ....units import Sizes, factor, sizes
+from ..spring import BoltedJoint, node_pressure, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -221,6 +221,6 @@ def _notes(names: Sequence[str], mass: bool) -> list[str]:
     if mass and "mass" in names and "surface.G" not in names:
         return [
             "frequencies without a stated mass give K/mass only: the level is in mass, surface.G is kept; "
-            "state --modal-mass to fit surface.G"
+            "state the modal mass to fit surface.G"
         ]
     return []
