@@ -24,7 +24,7 @@ from .emit import HELPERS, function
 from .graph import Graph, graph
 
 RUNTIME = Path(__file__).parent / "runtime"
-_COMMON = ("text", "instance", "values", "evaluate", "state", "states")
+COMMON = ("text", "instance", "values", "evaluate", "state", "states")
 _TABLES = ("tables", "curve", "spots")
 _KINDS = {
     "harmonic_drive": ("drive", (*_TABLES, "drive", "blocks")),
@@ -49,7 +49,7 @@ def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
     kind, modules = _KINDS[model.joint]
     files = {} if name in PARTNERS else {"kind.h": f'#include "{kind}.h"\n'}
     for path in sorted(RUNTIME.iterdir()):
-        shared = path.stem in (*_COMMON, *modules, "joint", "variables", "fmi2", "fmi3")
+        shared = path.stem in (*COMMON, *modules, "joint", "variables", "fmi2", "fmi3")
         if path.suffix in (".c", ".h") and shared:
             files[path.name] = path.read_text(encoding="utf-8")
     g = graph(model, parameters)
