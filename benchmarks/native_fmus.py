@@ -92,14 +92,20 @@ def pass_through(name: str) -> dict[str, str]:
     inputs, outputs = PASS_THROUGH[name]
     shared = (*generate.COMMON, "joint", "variables", *NATIVE)
     files = {p.name: p.read_text(encoding="utf-8") for p in generate.RUNTIME.iterdir() if p.stem in shared}
-    rows = [("time", 0.0), *((f"u{i}", 0.0) for i in range(inputs)), *((f"y{i}", 0.0) for i in range(outputs))]
+    rows = [
+        ("time", 0.0),
+        *((f"u{i}", 0.0) for i in range(inputs)),
+        *((f"y{i}", 0.0) for i in range(outputs)),
+    ]
     any_number = '"1", "", "(-inf, inf)"'
     texts = [
-        f'{{"{v}", {any_number}, {start}, -INFINITY, INFINITY, 1, 1, 0, 0}}' for v, start in (*rows, ("gain", 1.0))
+        f'{{"{v}", {any_number}, {start}, -INFINITY, INFINITY, 1, 1, 0, 0}}'
+        for v, start in (*rows, ("gain", 1.0))
     ]
     return files | {
         "joint.c": (HOSTS / "passthrough" / "joint.c").read_text(encoding="utf-8"),
-        "model.h": f'#define MODEL_NAME "{name}"\n#define MODEL_TOKEN "{{{name}}}"\n#define MODEL_VERSION "1"\n'
+        "model.h": f'#define MODEL_NAME "{name}"\n#define MODEL_TOKEN "{{{name}}}"\n'
+        '#define MODEL_VERSION "1"\n'
         f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
         "variables.c": '#include "variables.h"\n\n#include <math.h>\n\n'
         f"const Variable variables[N_VALUES] = {{{', '.join(texts)}}};\n"
@@ -214,7 +220,9 @@ def report(times: dict[tuple[str, str], Times]) -> None:
             value = times[name, flavour][key]
             verdict = "met" if value <= most else "MISSED"
             heading = COLUMNS[key][0]
-            print(f"{name:24} {flavour:7} {heading:>13} {value * 1e6:9.3f} us of {most * 1e6:7.3f} us {verdict}")
+            print(
+                f"{name:24} {flavour:7} {heading:>13} {value * 1e6:9.3f} us of {most * 1e6:7.3f} us {verdict}"
+            )
 
 
 def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str, str, float]]:

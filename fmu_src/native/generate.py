@@ -24,10 +24,10 @@ from .emit import HELPERS, function
 from .graph import Graph, graph
 
 RUNTIME = Path(__file__).parent / "runtime"
-COMMON = ("text", "instance", "values", "evaluate", "state", "states")
-_TABLES = ("tables", "curve", "spots")
+COMMON = ("text", "instance", "evaluate", "values", "continuous", "step", "derivative", "snapshot")
+_TABLES = ("tabulated", "curve", "spots")
 _KINDS = {
-    "harmonic_drive": ("drive", (*_TABLES, "drive", "blocks")),
+    "harmonic_drive": ("drive", (*_TABLES, "drive", "table")),
     "bolted_joint": ("bolted", (*_TABLES, "bolted", "approach")),
     "gear_contact": ("gear", (*_TABLES, "gear", "approach")),
     "partner": ("system", ("system",)),
