@@ -97,7 +97,8 @@ def _variables(model: Model, parameters: ParameterFile) -> str:
     rows = [_row("time", "s", "time", "(-inf, inf)", 0.0)]
     for v in model.inputs:
         text = f"{'[' if v.low > -math.inf else '('}{v.low:g}, inf)"
-        rows.append(_row(v.name, v.unit, v.doc, text, 0.0, v.low, low_open=v.low == -math.inf))
+        start = parameters.start(v.name)
+        rows.append(_row(v.name, v.unit, v.doc, text, start, v.low, low_open=v.low == -math.inf))
     rows += [_row(v.name, v.unit, v.doc, "(-inf, inf)", 0.0) for v in model.outputs]
     for name, item in model.parameter_fields().items():
         meta = item.metadata

@@ -59,7 +59,7 @@ def _partner_page(model: Model, parameters: ParameterFile) -> str:
     return _template(model).render(
         model=model,
         version=__version__,
-        variables=listed(model, flatten(parameters.values)),
+        variables=listed(model, parameters),
         terminals=terminals(model),
     )
 
@@ -71,7 +71,8 @@ def _template(model: Model) -> Template:
 
 def _page(model: Model, parameters: ParameterFile) -> str:
     spring = model.spring(parameters.values)
-    variables = listed(model, flatten(parameters.values))
+    rest = {v.name: parameters.start(v.name) for v in model.inputs}
+    variables = listed(model, parameters)
     exposed = model.parameter_fields()
     rows = _rows(parameters)
     return _template(model).render(
@@ -84,8 +85,8 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         exposed=[row for row in rows if row.name in exposed],
         hidden=[row for row in rows if row.name not in exposed],
         terminals=terminals(model),
-        messages=_messages(model, spring),
-        figure=_figure(model, spring),
+        messages=_messages(model, spring, rest),
+        figure=_figure(model, spring, rest),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 
@@ -105,7 +106,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
     return rows
 
 
-def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
+def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of what an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
@@ -130,13 +131,14 @@ def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
         ),
     ]
     return found + [
-        ("warning", text, "Logged once until reset; the call succeeds.") for text in _warnings(model, spring)
+        ("warning", text, "Logged once until reset; the call succeeds.")
+        for text in _warnings(model, spring, rest)
     ]
 
 
-def _warnings(model: Model, spring: Any) -> list[str]:
+def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]:
     """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
-    inputs = {v.name: 0.0 for v in model.inputs} | {model.ramp.input: model.ramp.end}
+    inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | _evaluated(model, spring, inputs)
     found = []
     for i, outside in enumerate(model.outside):
@@ -156,11 +158,10 @@ def _panels(model: Model) -> tuple[Panel, ...]:
     return own.PANELS[model.name] if own else (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
 
-def _figure(model: Model, spring: Any) -> str:
-    """The load ramp, evaluated by the package."""
-    rest = {v.name: 0.0 for v in model.inputs}
+def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
+    """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
     ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
-    points = [rest | {model.ramp.input: float(x)} for x in ramp]
+    points = [{**rest, model.ramp.input: float(x)} for x in ramp]
     rows = [point | _evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 

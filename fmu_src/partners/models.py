@@ -8,7 +8,7 @@ from typing import Any
 from jointfmu.joints.model import Model, Ramp, Variable
 from jointfmu.parameters import ParameterFile, entries, read_document
 from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
-from jointfmu.quantity import build
+from jointfmu.quantity import build, flat_fields
 
 
 def _model(
@@ -102,7 +102,7 @@ def parameters(name: str) -> ParameterFile:
         raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {name!r}")
     cls = PARTNERS[name].parameters
     body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
-    values, origins, sources = entries(path, cls, body)
+    values, origins, sources = entries(path, dict(flat_fields(cls)), body)
     try:
         return ParameterFile("partner", name, build(cls, values), origins, sources)
     except ValueError as error:
