@@ -8,7 +8,7 @@ import numpy as np
 from jointfmu.joints.model import Model, Variable
 from jointfmu.units import UNITS
 
-from ..native.terminals import TERMINALS, Terminal
+from ..native.terminals import Terminal, terminals
 from .text import number, text
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
@@ -49,9 +49,9 @@ def interface(model: Model) -> dict[str, Any]:
 
 def wrapper(model: Model) -> dict[str, Any]:
     """Content of the model that puts an FMU between flanges."""
-    terminals = TERMINALS[model.name]
-    members = {variable for t in terminals for variable, _ in t.members.values()}
-    motion_in = all(kind != "inflow" for t in terminals for _, kind in t.members.values())
+    flanges = terminals(model)
+    members = {variable for t in flanges for variable, _ in t.members.values()}
+    motion_in = all(kind != "inflow" for t in flanges for _, kind in t.members.values())
     note = _TAKES_MOTION if motion_in else _TAKES_FORCE.format(other=_OTHER.get(model.name, ""))
     parameters = [
         {
@@ -68,7 +68,7 @@ def wrapper(model: Model) -> dict[str, Any]:
         "doc": text(f"{model.name} as an imported FMU, between flanges"),
         "note": note,
         "parameters": parameters,
-        "terminals": [_flange(t, _ports(model)) for t in terminals],
+        "terminals": [_flange(t, _ports(model)) for t in flanges],
     }
 
 

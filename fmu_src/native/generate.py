@@ -95,7 +95,7 @@ enum {{
 def _variables(model: Model, parameters: ParameterFile) -> str:
     values = flatten(parameters.values)
     rows = [_row("time", "s", "time", 0.0, Interval())]
-    rows += [_row(v.name, v.unit, v.doc, 0.0, v.interval) for v in model.inputs]
+    rows += [_row(v.name, v.unit, v.doc, parameters.start(v.name), v.interval) for v in model.inputs]
     rows += [_row(v.name, v.unit, v.doc, 0.0, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
         meta, start = item.metadata, float(values[name])
