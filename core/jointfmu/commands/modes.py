@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..curve import approach_curve
-from ..joints.bolted_joint.spring import shear_ratio
+from ..joints.clamped import clamping
 from ..parameters import check_writable, write_bytes
 from .common import command
 from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem
@@ -47,8 +47,8 @@ def run(args: argparse.Namespace) -> int:
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)
-    joint = with_assembly(joint_file(args.joint), assembly, whole=False).values
-    law, shear = approach_curve(joint), float(shear_ratio(joint))
+    file = with_assembly(joint_file(args.joint), assembly, whole=False)
+    law, shear = approach_curve(file.values), float(clamping(file.joint).shear_ratio(file.values))
     try:
         contact = BoltedContact.of(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
