@@ -34,6 +34,16 @@ def joint_file(path: Path | None) -> ParameterFile:
     return file
 
 
+def beyond_law(peak: float, hardness: float) -> list[str]:
+    """The warning if the greatest pressure [Pa] is one that no interface law has."""
+    if peak <= hardness:
+        return []
+    return [
+        f"the greatest pressure, {peak:.4g} Pa, is above the hardness of the softer body, {hardness:.4g} Pa, "
+        "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
+    ]
+
+
 def without_fem(error: Exception) -> ValueError:
     """The refusal where a package, or a system library of gmsh, is missing."""
     return ValueError(
