@@ -17,7 +17,6 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.modelica import library, tables
 from jointfmu_fmu_src.modelica.text import identifier
-from jointfmu_fmu_src.systems import system
 from scipy.integrate import solve_ivp
 
 from jointfmu.cli import main
@@ -27,6 +26,7 @@ from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import ForceProfile, TorqueProfile
+from jointfmu.systems import system
 
 REPOSITORY = Path(__file__).parent.parent
 COMMITTED = REPOSITORY / "models/modelica"

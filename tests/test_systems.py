@@ -22,10 +22,10 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import ringing, ssp
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.checks import check_ringing
+from jointfmu_fmu_src.joints.harmonic_drive.ringing import LOADING
 from jointfmu_fmu_src.master import Slave, motion
 from jointfmu_fmu_src.native.terminals import TERMINALS
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.systems import SYSTEMS, system
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
@@ -39,6 +39,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import flatten
+from jointfmu.systems import names, system
 
 Array = NDArray[np.float64]
 Values = dict[str, float]
@@ -256,7 +257,7 @@ def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -
 # Archives
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", names())
 def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) -> None:
     path = built / "ssp" / f"{name}.ssp"
     found = read_ssd(str(path))  # checked against the schema of SSP
@@ -283,7 +284,7 @@ def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) 
         assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} < set(archive.namelist())
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", names())
 def test_parameters_come_from_the_files(built: Path, name: str) -> None:
     path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
     every = {p.name: float(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
@@ -733,7 +734,7 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     folder = ["--fmus", str(built / "fmi2"), "--json"]
     assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in ringing.LOADING]
+    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in LOADING]
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0

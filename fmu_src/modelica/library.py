@@ -13,8 +13,8 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
+from jointfmu.systems import System, system
 
-from ..systems import System, system
 from .blocks import interface, wrapper
 from .records import BASES, record_name, records
 from .tables import DAMPING_TOLERANCE, STRONGEST, TOLERANCE
