@@ -3,10 +3,13 @@
 import ctypes
 import json
 import math
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import tostring
@@ -39,7 +42,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import flatten
-from jointfmu.systems import names, system
+from jointfmu.systems import names, system, systems
 
 Array = NDArray[np.float64]
 Values = dict[str, float]
@@ -692,6 +695,47 @@ def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+
+
+# The list of systems
+
+
+def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Path(str(files("jointfmu_models"))) / "systems"
+    copy = tmp_path / "systems"
+    shutil.copytree(folder, copy)
+    monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
+    shipped = names()
+    assert set(shipped) == {path.stem for path in folder.glob("*.toml")}
+    text = (folder / "robot_joint.toml").read_text(encoding="utf-8")
+    (copy / "a_second_arm.toml").write_text(text.replace("value = 0.05", "value = 0.07"), encoding="utf-8")
+    assert set(names()) == {"a_second_arm", *shipped}
+    assert systems()["a_second_arm"].inertia == 0.07
+    assert next(iter(systems())) == "a_second_arm"  # a drive's before a bolted joint's
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"link.J"', '"link.I"', "body = 'link.I', allowed are motor.J, link.J"),
+        ('"tau"', '"preload"', "load = 'preload', allowed are phi1, w1"),
+    ],
+)
+def test_a_system_refuses_names_that_are_not_there(
+    old: str, new: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
+    (tmp_path / "systems").mkdir()
+    (tmp_path / "systems" / "arm.toml").write_text(text.replace(old, new), encoding="utf-8")
+    monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
+    with pytest.raises(ValueError, match=re.escape(said)):
+        system("arm")
+
+
+def test_a_joint_that_does_not_ring_is_refused() -> None:
+    said = "joint 'gear_contact' does not say how it rings, allowed are harmonic_drive, bolted_joint"
+    with pytest.raises(ValueError, match=said):
+        ringing.body_on("gear_contact")
 
 
 # jointfmu ring
