@@ -62,7 +62,7 @@ def main():
             build(KINDS[joint].parameters, propagate.one_sample(task, points, i)[0]) for i in range(OBVIOUS)
         ]
         start = process_time()
-        exact = [task.model.exact(one, task.loads) for one in parameters]
+        exact = [task.reduced.exact(one, task.loads) for one in parameters]
         slow = (process_time() - start) * SAMPLES / OBVIOUS
         worst = difference(task, outcome, exact)
         print(f"{joint:16} {fast:8.1f} {slow:10.0f} {slow / fast:8.0f} {worst:12.1e}")

@@ -1,12 +1,12 @@
 """What the model descriptions of all flavours say alike: variables, units, dependencies."""
 
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
+from jointfmu.quantity import Interval
 
 from .units import UNITS, display_unit
 
@@ -55,9 +55,7 @@ def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
     found: list[Listed] = []
     for causality, start, group in (("input", 0.0, model.inputs), ("output", None, model.outputs)):
         for i, v in enumerate(group):
-            attributes = _shown(v.unit, v.nominal)
-            if v.low > -math.inf:
-                attributes["min"] = repr(v.low)
+            attributes = _shown(v.unit, v.nominal) | _bounds(v.interval)
             state = causality == "output" and i < model.states
             rate_of = len(found) if causality == "output" and 0 < i <= model.states else None
             attributes["nominal"] = repr(v.nominal)
@@ -69,7 +67,7 @@ def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
             doc += " (calibration parameter: fitted to published points)"
         attributes = {}
         if "unit" in meta:
-            attributes = _shown(meta["unit"], value) | _bounds(meta)
+            attributes = _shown(meta["unit"], value) | _bounds(meta["interval"])
             if value:
                 attributes["nominal"] = repr(abs(value))
         found.append(Listed(name, "parameter", doc, value, attributes))
@@ -147,13 +145,7 @@ def _shown(unit: str, typical: float) -> dict[str, str]:
     return {"unit": unit, "displayUnit": display_unit(unit, typical)}
 
 
-def _bounds(meta: Mapping[str, Any]) -> dict[str, str]:
-    """FMI bounds are closed; an open bound is narrowed to the next normal number."""
-    low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
-    found = {}
-    if low > -math.inf:
-        beyond = sys.float_info.min if low == 0.0 else math.nextafter(low, math.inf)
-        found["min"] = repr(low if low == meta["ge"] else beyond)
-    if high < math.inf:
-        found["max"] = repr(high if high == meta["le"] else math.nextafter(high, -math.inf))
-    return found
+def _bounds(interval: Interval) -> dict[str, str]:
+    """The attributes min and max, where there is an end."""
+    bounds = zip(("min", "max"), interval.closed_bounds(), strict=True)
+    return {name: repr(bound) for name, bound in bounds if math.isfinite(bound)}

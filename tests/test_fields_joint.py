@@ -167,6 +167,16 @@ def test_broken_field_is_refused(imported, change, message):
         imported[0].with_values(change, "user", "test")
 
 
+def test_a_file_with_both_sections_is_refused(imported, tmp_path):
+    path = tmp_path / "joint.toml"
+    lines = dump(FILE).partition("[pattern]\n")[2].splitlines()
+    path.write_text(dump(imported[0]) + "\n".join(["[pattern]", *lines]) + "\n")
+    with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
+        load(path, "bolted_joint")
+    assert str(error.value).endswith(": allowed is one of [pattern], [field]")
+    assert "\n" not in str(error.value)
+
+
 def test_unbalanced_field_is_refused():
     even = {"share": (0.5, 0.5), "x": (-1.0, 1.0), "y": (0.0, 0.0), "equal": (1.0, 1.0), "tilt": (1.0, -1.0)}
     NodalField(**even)

@@ -220,10 +220,14 @@ def test_bounds_are_those_of_the_parameters(root: Any, name: str) -> None:
         low, high = float(real.get("min", "-inf")), float(real.get("max", "inf"))
         start = float(real.get("start"))
         assert low <= start <= high
-        assert low >= meta["ge"]
-        assert high <= meta["le"]
-        for bound, open_end in ((low, meta["gt"]), (high, meta["lt"])):
-            assert bound != open_end or math.isinf(bound), variable  # an open end itself is not allowed
+        allowed = meta["interval"]
+        assert allowed.low <= low
+        assert high <= allowed.high
+        for bound, end, is_open in (
+            (low, allowed.low, allowed.low_open),
+            (high, allowed.high, allowed.high_open),
+        ):
+            assert (bound == end) != is_open or math.isinf(bound), variable  # an open end is not allowed
 
 
 def test_bounds_are_numbers_that_every_reader_takes(root: Any) -> None:

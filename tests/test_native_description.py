@@ -252,10 +252,13 @@ def test_bounds_are_those_of_the_parameters(name: str, version: int) -> None:
         if node["type"] == "Boolean":
             continue
         low, high = float(node.get("min", "-inf")), float(node.get("max", "inf"))
-        ends = (max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"]))
-        assert (low, high) == pytest.approx(ends, rel=1e-15, abs=sys.float_info.min)
-        for bound, open_end in ((low, meta["gt"]), (high, meta["lt"])):
-            assert bound != open_end or np.isinf(bound), variable  # an open end itself is not allowed
+        allowed = meta["interval"]
+        assert (low, high) == pytest.approx((allowed.low, allowed.high), rel=1e-15, abs=sys.float_info.min)
+        for bound, end, is_open in (
+            (low, allowed.low, allowed.low_open),
+            (high, allowed.high, allowed.high_open),
+        ):
+            assert (bound == end) != is_open or np.isinf(bound), variable  # an open end is not allowed
         assert low <= float(node["start"]) <= high
         # std::stod of C++ throws at a denormal number
         assert all(v == 0.0 or abs(v) >= sys.float_info.min for v in (low, high))

@@ -86,7 +86,7 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
         meta = item.metadata
         if "unit" not in meta:
             continue
-        ends = [x for x in (meta["gt"], meta["ge"], meta["lt"], meta["le"]) if math.isfinite(x)]
+        ends = [x for x in (meta["interval"].low, meta["interval"].high) if math.isfinite(x)]
         beside = [math.nextafter(x, side) for x in ends for side in (-math.inf, math.inf) if x or side < 0.0]
         for value in (math.nan, math.inf, -math.inf, *ends, *beside):
             instance.reset()

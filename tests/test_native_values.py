@@ -93,7 +93,7 @@ def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
         elif meta["whole"]:
             changes[parameter] = value + float(rng.integers(-1, 2))
         else:
-            low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
+            low, high = meta["interval"].low, meta["interval"].high
             width = 0.05 * (high - low)
             if math.isfinite(width):
                 changes[parameter] = float(rng.uniform(max(low, value - width), min(high, value + width)))

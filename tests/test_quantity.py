@@ -1,14 +1,15 @@
 """Every refusal is one line that names the thing, the value with its unit, and what is allowed."""
 
+import re
 from dataclasses import dataclass, fields
 
 import numpy as np
 import pytest
-from laws import HU, LAWS, YU, ZHAO, changed
+from laws import HU, LAWS, YU, ZHAO
 
 from jointfmu.asperity.yu2022 import Yu2022
 from jointfmu.asperity.zhao2018 import Zhao2018
-from jointfmu.quantity import build, check, choice, flat_fields, flatten, group, interval, problem, quantity
+from jointfmu.quantity import build, changed, check, choice, flat_fields, flatten, group, problem, quantity
 from jointfmu.surface import Elastic, ElasticPlastic, FlankSurface, ProfileSurface
 
 
@@ -148,6 +149,78 @@ def test_a_large_array_of_other_things_is_still_one_line():
     assert "lambda" in refusal(VALUES | {"lambda": np.zeros((3, 3), dtype=bool)})
 
 
+@dataclass(frozen=True, kw_only=True)
+class Round:
+    radius: float = quantity("m", "radius", gt=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Square:
+    side: float = quantity("m", "side", gt=0.0)
+    corner: float = quantity("m", "radius of the corners", ge=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hole:
+    depth: float = quantity("m", "depth", gt=0.0)
+    outline: Round | Square = group("outline", round=Round, square=Square)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    hole: Hole = group("the hole")
+
+
+ROUND = {"depth": 1.0, "round.radius": 2.0}
+SQUARE = {"depth": 1.0, "square.side": 2.0, "square.corner": 0.0}
+
+
+def nested(values):
+    return {f"hole.{name}": value for name, value in values.items()}
+
+
+@pytest.mark.parametrize("values", [ROUND, SQUARE])
+def test_a_set_has_one_of_the_alternatives(values):
+    hole = build(Hole, values)
+    assert flatten(hole) == values
+    assert flatten(build(Part, nested(values))) == nested(values)
+    assert list(dict(flat_fields(Hole))) == ["depth", "round.radius", "square.side", "square.corner"]
+    assert list(dict(flat_fields(Hole, names=values))) == list(values)
+
+
+@pytest.mark.parametrize("most", [ROUND, SQUARE])
+def test_names_of_two_alternatives_are_refused_whatever_their_number(most):
+    values = most | {"round.radius": 2.0, "square.side": 2.0}
+    corner = ", square.corner" if most is SQUARE else ""
+    text = f"round.radius beside square.side{corner}: allowed is one of [round], [square]"
+    with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
+        build(Hole, values)
+    with pytest.raises(
+        ValueError, match=r"^hole.round.radius beside .* one of \[hole.round\], \[hole.square\]$"
+    ):
+        build(Part, nested(values))
+
+
+def test_changes_of_an_alternative_that_is_not_there_are_refused():
+    hole, part = build(Hole, SQUARE), build(Part, nested(SQUARE))
+    assert changed(hole, {"square.side": 3}) == build(Hole, SQUARE | {"square.side": 3.0})
+    allowed = "allowed are depth, square.side, square.corner"
+    text = f"round.radius is no parameter of a set that has [square]; {allowed}"
+    with pytest.raises(ValueError, match=f"^{re.escape(text)}$"):
+        changed(hole, {"round.radius": 1.0})
+    with pytest.raises(
+        ValueError, match=r"^hole.round.radius is no .* that has \[hole.square\]; allowed are hole.d"
+    ):
+        changed(part, {"hole.round.radius": 1.0})
+    with pytest.raises(ValueError, match=r"^unknown name 'width'; allowed are depth, square.side"):
+        changed(hole, {"width": 1.0})
+
+
+def test_missing_alternatives_are_named():
+    with pytest.raises(ValueError, match=r"^missing round.radius$"):
+        build(Hole, {"depth": 1.0})
+
+
 def test_construction_checks_as_well():
     with pytest.raises(ValueError, match=r"^E = -1 Pa is outside \(0, inf\): Young's modulus$"):
         Elastic(E=-1.0, nu=0.3)
@@ -219,7 +292,8 @@ def test_problem_and_interval():
     share = next(item for item in fields(Inner) if item.name == "share")
     stress = next(item for item in fields(Inner) if item.name == "stress")
     length = next(item for item in fields(Outer) if item.name == "lambda_")
-    assert (interval(share), interval(stress), interval(length)) == ("[0, 1)", "(0, 1e+09]", "(-inf, inf)")
+    texts = [str(item.metadata["interval"]) for item in (share, stress, length)]
+    assert texts == ["[0, 1)", "(0, 1e+09]", "(-inf, inf)"]
     assert problem("x", 0.5, share) is None
     assert problem("x", np.float64(0.5), share) is None
     assert problem("x", 1.0, share) == "x = 1 is outside [0, 1): some share"

@@ -17,7 +17,7 @@ from xml.etree.ElementTree import tostring
 import fmpy
 import numpy as np
 import pytest
-from conftest import Fmu, refused_line
+from conftest import Fmu, made_once, refused_line
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
@@ -55,10 +55,12 @@ LINK = system("robot_joint").values["link.J"]
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What `jointfmu build --systems` makes, and the drive with torque in."""
-    out = tmp_path_factory.mktemp("systems")
-    build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-    assert cli.main(["build", "--systems", "--out", str(out)]) == 0
-    return out
+
+    def make(out: Path) -> None:
+        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+
+    return made_once(tmp_path_factory, "systems", make)
 
 
 @pytest.fixture

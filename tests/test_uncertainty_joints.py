@@ -10,10 +10,10 @@ from conftest import refused_line
 
 from jointfmu import cli
 from jointfmu.joints import KINDS
+from jointfmu.joints.reduced import reduced
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 from jointfmu.uncertainty import propagate
-from jointfmu.uncertainty.models import MODELS
 from jointfmu.uncertainty.problem import pose
 
 REDUCED = 1e-4
@@ -87,7 +87,7 @@ def test_reduced_evaluation_against_the_springs(name):
     assert np.all(outcome.good)
     for i in range(count):
         values, factor, _ = propagate.one_sample(task, points, i)
-        exact = task.model.exact(build(KINDS[joint].parameters, values), factor * task.loads)
+        exact = task.reduced.exact(build(KINDS[joint].parameters, values), factor * task.loads)
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
             assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
@@ -95,7 +95,7 @@ def test_reduced_evaluation_against_the_springs(name):
                 assert found[0] == 0.0
 
 
-@pytest.mark.parametrize("joint", MODELS)
+@pytest.mark.parametrize("joint", KINDS)
 def test_one_sample_does_not_see_its_neighbours(joint):
     """Blocks share places of interpolation: the order of the error, not more."""
     names = {"harmonic_drive": "surface.D", "bolted_joint": "surface.D", "gear_contact": "surface1.D"}
@@ -118,7 +118,7 @@ def test_nominal_is_the_parameter_file():
     task = pose(default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
     changed = default("gear_contact").with_values({"surface1.G": 3e-10}, "user", "")
     found = propagate.bands(task, propagate.design(task, 4, 0)[0])
-    exact = MODELS["gear_contact"].exact(changed.values, task.loads)
+    exact = reduced(KINDS["gear_contact"]).exact(changed.values, task.loads)
     assert found.nominal["K_N"] == pytest.approx(exact["K_N"], rel=REDUCED)
 
 
@@ -140,7 +140,7 @@ def test_samples_that_only_the_law_refuses():
     for i in np.flatnonzero(~outcome.good):
         values, _, _ = propagate.one_sample(task, points, int(i))
         with pytest.raises(ValueError, match=r"representable|no stiffness"):
-            MODELS["bolted_joint"].exact(build(KINDS["bolted_joint"].parameters, values), task.loads)
+            reduced(KINDS["bolted_joint"]).exact(build(KINDS["bolted_joint"].parameters, values), task.loads)
     refused = propagate.refusals(task, points, outcome.good)
     assert 0 < refused.count == np.count_nonzero(~outcome.good) < 200
     assert "D" in refused.reason
@@ -219,7 +219,7 @@ def test_study_file(tmp_path, capsys):
     assert cli.main(["uncertainty", "harmonic_drive", "--study", str(path), "--samples", "16", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["parameters"] == {"surface.D": "2.45..2.6"}
-    base = MODELS["harmonic_drive"].exact(default("harmonic_drive").values, np.array([5.0]))
+    base = reduced(KINDS["harmonic_drive"]).exact(default("harmonic_drive").values, np.array([5.0]))
     assert found["outputs"]["K_WTS"]["nominal"][-1] < base["K_WTS"][0]
 
 
@@ -267,7 +267,7 @@ def test_refused_study_files(text, words, tmp_path, capsys):
 
 def test_every_parameter_can_be_uncertain():
     """+-1 % of any number that is not counted or zero, in one study per joint."""
-    for joint in MODELS:
+    for joint in KINDS:
         values = flatten(default(joint).values)
         skipped = ("n_bolts", "row_bolts")
         names = [n for n, v in values.items() if isinstance(v, float) and v and n not in skipped]

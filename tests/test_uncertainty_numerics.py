@@ -1,14 +1,18 @@
 """Distributions, quadrature, bands and indices against closed forms and scipy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 from scipy.special import roots_jacobi
 
+from jointfmu.batch import chebyshev
+from jointfmu.joints.gear_contact import reduced as gear
+from jointfmu.joints.harmonic_drive import reduced as drive
 from jointfmu.parameters import default
-from jointfmu.uncertainty import chebyshev, drive, propagate, sensitivity, study
+from jointfmu.uncertainty import propagate, sensitivity, study
 from jointfmu.uncertainty.distributions import parse
-from jointfmu.uncertainty.models import MODELS
 from jointfmu.uncertainty.problem import pose
 
 P = np.array([0.001, 0.05, 0.3, 0.5, 0.9, 0.999])
@@ -119,15 +123,11 @@ def linear(values, loads, factor):
 
 @pytest.fixture
 def linear_gear(monkeypatch):
-    old = MODELS["gear_contact"]
-    exact = lambda joint, loads: {  # noqa: E731
-        "K_N": loads * (2.0 * joint.mu + joint.traction_ratio), "s_rel": np.ones_like(loads)
-    }  # fmt: skip
-    from dataclasses import replace
-
-    model = replace(old, outputs={"K_N": "N/m"}, evaluate=lambda *a: {"K_N": linear(*a)["K_N"]}, exact=exact)
-    model = replace(model, exact=lambda joint, loads: {"K_N": exact(joint, loads)["K_N"]})
-    monkeypatch.setitem(MODELS, "gear_contact", model)
+    exact = lambda joint, loads: {"K_N": loads * (2.0 * joint.mu + joint.traction_ratio)}  # noqa: E731
+    stiffness = tuple(v for v in gear.REDUCED.outputs if v.name == "K_N")
+    evaluate = lambda *given: {"K_N": linear(*given)["K_N"]}  # noqa: E731
+    line = replace(gear.REDUCED, outputs=stiffness, evaluate=evaluate, exact=exact)
+    monkeypatch.setattr(gear, "REDUCED", line)
 
 
 @pytest.mark.usefixtures("linear_gear")

@@ -111,7 +111,7 @@ def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, nativ
     task = pose(default(joint), given, to, 7)
     for entry in journal.entries(tmp_path):
         values = {**task.values, **entry["parameters"]}
-        found = task.model.evaluate(values, task.loads, np.ones((1, 1)))
+        found = task.reduced.evaluate(values, task.loads, np.ones((1, 1)))
         for output in set(found) & set(entry["columns"]):
             fmu_values = np.array(entry["columns"][output])
             assert found[output][0, 1:] == pytest.approx(fmu_values[1:], rel=1e-4)  # as stated

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from .joints import KINDS
-from .quantity import build, flat_fields, flatten
+from .quantity import build, changed, flat_fields, flatten
 
 SCHEMA = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -46,10 +46,9 @@ class ParameterFile:
 
     def with_values(self, changes: Mapping[str, Any], origin: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""
-        values = build(KINDS[self.joint].parameters, flatten(self.values) | dict(changes))
         return replace(
             self,
-            values=values,
+            values=changed(self.values, changes),
             origins={**self.origins, **dict.fromkeys(changes, origin)},
             sources={**self.sources, **dict.fromkeys(changes, source)},
         )

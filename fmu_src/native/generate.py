@@ -18,7 +18,7 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive import spring as harmonic_drive
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
-from jointfmu.quantity import flatten, interval
+from jointfmu.quantity import Interval, flatten
 
 from ..partners import PARTNERS
 from .emit import HELPERS, function
@@ -94,24 +94,15 @@ enum {{
 
 def _variables(model: Model, parameters: ParameterFile) -> str:
     values = flatten(parameters.values)
-    rows = [_row("time", "s", "time", "(-inf, inf)", 0.0)]
-    for v in model.inputs:
-        text = f"{'[' if v.low > -math.inf else '('}{v.low:g}, inf)"
-        rows.append(_row(v.name, v.unit, v.doc, text, 0.0, v.low, low_open=v.low == -math.inf))
-    rows += [_row(v.name, v.unit, v.doc, "(-inf, inf)", 0.0) for v in model.outputs]
+    rows = [_row("time", "s", "time", 0.0, Interval())]
+    rows += [_row(v.name, v.unit, v.doc, 0.0, v.interval) for v in model.inputs]
+    rows += [_row(v.name, v.unit, v.doc, 0.0, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
-        meta = item.metadata
+        meta, start = item.metadata, float(values[name])
         if "allowed" in meta:
-            rows.append(
-                _row(name, "1", meta["doc"], "", float(values[name]), 0.0, 1.0, False, False, boolean=True)
-            )
-            continue
-        low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
-        low_open, high_open = low != meta["ge"] or low == -math.inf, high != meta["le"] or high == math.inf
-        start = float(values[name])
-        whole = bool(meta["whole"])
-        text = interval(item)
-        rows.append(_row(name, meta["unit"], meta["doc"], text, start, low, high, low_open, high_open, whole))
+            rows.append(_row(name, "1", meta["doc"], start, Interval.of(ge=0.0, le=1.0), boolean=True))
+        else:
+            rows.append(_row(name, meta["unit"], meta["doc"], start, meta["interval"], meta["whole"]))
     states = model.outputs[: model.states]
     links = [
         "{" + ", ".join(str(int(i.name in model.depends(o.name))) for i in (*model.inputs, *states)) + "}"
@@ -131,18 +122,15 @@ def _row(
     name: str,
     unit: str,
     doc: str,
-    text: str,
     start: float,
-    low: float = -math.inf,
-    high: float = math.inf,
-    low_open: bool = True,
-    high_open: bool = True,
+    allowed: Interval,
     whole: bool = False,
     boolean: bool = False,
 ) -> str:
-    flags = ", ".join(str(int(flag)) for flag in (low_open, high_open, whole, boolean))
-    numbers = ", ".join(_number(x) for x in (start, low, high))
-    texts = ", ".join(_string(x) for x in (name, "" if unit == "1" else unit, doc, text))
+    flags = ", ".join(str(int(flag)) for flag in (allowed.low_open, allowed.high_open, whole, boolean))
+    numbers = ", ".join(_number(x) for x in (start, allowed.low, allowed.high))
+    interval = "" if boolean else str(allowed)
+    texts = ", ".join(_string(x) for x in (name, "" if unit == "1" else unit, doc, interval))
     return f"{{{texts}, {numbers}, {flags}}}"
 
 
@@ -251,7 +239,7 @@ def _law(g: Graph, model: Model) -> tuple[str, str]:
         bodies.append(_array(f"Law *const {name}[N_LAW_SWITCHES + 1]", rows))
     place = {name: i for i, name in enumerate(g.theta)}
     rows = [
-        f"{{{place[m.name]}, {int(m.ends[0] == '(')}, {int(m.ends[1] == ')')}, {_string(m.doc)}}}"
+        f"{{{place[m.name]}, {int(m.interval.low_open)}, {int(m.interval.high_open)}, {_string(m.doc)}}}"
         for m in g.limits
     ]
     bodies.append(_array(f"const Limit limits[{max(len(rows), 1)}]", rows or ['{0, 0, 0, ""}']))

@@ -117,7 +117,7 @@ def _partner(g: Graph, model: Model) -> None:
 
 
 def _bounds(g: Graph, model: Model) -> None:
-    ends = [end for limit in g.limits for end in (limit.low, limit.high)]
+    ends = [end for limit in g.limits for end in (limit.interval.low, limit.interval.high)]
     g.add("parameter_limits", "-> low, high of every limit that parameters set each other", [], ends)
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
     end = symbols("end", 2)

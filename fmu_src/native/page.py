@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields, flatten, interval, problem
+from jointfmu.quantity import flat_fields, flatten, problem
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..templates import template
@@ -86,7 +86,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
         if "allowed" in meta:
             allowed = ", ".join(str(a).lower() for a in meta["allowed"])
         else:
-            allowed = "1, 2, 3, ..." if meta.get("whole") else interval(fields[name])
+            allowed = "1, 2, 3, ..." if meta.get("whole") else str(meta["interval"])
         if isinstance(value, tuple):
             value = f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}"
         kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
@@ -99,12 +99,11 @@ def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
     wrong = problem(name, np.nan, item) or ""
-    low = "(-inf" if v.low == -np.inf else f"[{v.low:g}"
     found = [
         ("error", wrong, "A parameter is outside its interval, not a number or infinite."),
         (
             "error",
-            f"{v.name} = nan {v.unit} is outside {low}, inf): {v.doc}",
+            f"{v.name} = nan {v.unit} is outside {v.interval}: {v.doc}",
             "An input is not a number, infinite or outside its interval.",
         ),
         (

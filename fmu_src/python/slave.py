@@ -115,10 +115,9 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         """All outputs; refuses inputs that are not finite or out of range."""
         inputs = {v.name: self.values[v.name] for v in self.model.inputs}
         for v in self.model.inputs:
-            if not math.isfinite(inputs[v.name]) or inputs[v.name] < v.low:
-                low = f"[{v.low:g}" if v.low > -math.inf else "(-inf"
+            if not v.interval.contains(inputs[v.name]):
                 unit = "" if v.unit == "1" else f" {v.unit}"
-                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {low}, inf): {v.doc}")
+                self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
         try:
             with np.errstate(all="ignore"):
                 found = self.model.evaluate(self.spring(), inputs)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..powerlaw import Power, Smooth, Spots
-from ..quantity import Number, check, choice, either, group, quantity
+from ..quantity import Number, check, choice, group, quantity, where
 from ..surface import (
     Elastic,
     FlankSurface,
@@ -83,7 +83,7 @@ class Yu2022:
 def modulus(law: Yu2022) -> Number:
     """E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
     alone = law.side1.E / (1.0 - law.side1.nu**2)
-    return either(law.rigid_flat, alone, contact_modulus(law.side1, law.side2))
+    return where(law.rigid_flat, alone, contact_modulus(law.side1, law.side2))
 
 
 def shape_factors(e: Number) -> tuple[Number, Number]:

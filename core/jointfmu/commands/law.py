@@ -8,19 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..asperity.hu2023 import Hu2023
-from ..asperity.yu2022 import Yu2022
-from ..asperity.zhao2018 import Zhao2018
+from ..asperity import LAWS
 from ..interface import at_largest_spot, at_pressure
+from ..joints import KINDS
 from ..parameters import ParameterFile, default, load
 from ..quantity import build, flat_fields, flatten
 from .common import command, settings
 
-LAWS: dict[str, tuple[type[Any], str]] = {
-    "zhao2018": (Zhao2018, "bolted_joint"),
-    "hu2023": (Hu2023, "harmonic_drive"),
-    "yu2022": (Yu2022, "gear_contact"),
-}
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
 
@@ -39,17 +33,27 @@ def add(commands: Any) -> None:
 
 
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
-    """The law's parameter set from a joint's parameter file (default: the joint's own) and settings."""
-    cls, joint = LAWS[law]
-    values = (file or default(joint)).values
-    known = flatten(values.law if law == "hu2023" else values)
+    """The law's parameter set from a joint's parameter file (default: of the first joint with this law)
+    and settings."""
+    cls = LAWS[law]
+    file = file or default(next(name for name, kind in KINDS.items() if kind.law is cls))
+    known = flatten(KINDS[file.joint].law_of(file.values))
     names = {name for name, _ in flat_fields(cls)}
     return build(cls, {k: v for k, v in known.items() if k in names} | settings)
 
 
+def _file(path: Path, law: str) -> ParameterFile:
+    """A parameter file of a joint that has the law."""
+    file = load(path)
+    allowed = [name for name, kind in KINDS.items() if kind.law is LAWS[law]]
+    if file.joint not in allowed:
+        expected = " or ".join(repr(name) for name in allowed)
+        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {expected}")
+    return file
+
+
 def _law(args: argparse.Namespace) -> int:
-    joint = LAWS[args.law][1]
-    file = load(args.params, joint) if args.params else None
+    file = _file(args.params, args.law) if args.params else None
     law = law_parameters(args.law, file, dict(args.settings))
     with np.errstate(over="ignore"):
         if args.pressure is not None:

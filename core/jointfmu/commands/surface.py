@@ -16,7 +16,7 @@ from ..topography.form import FORMS
 from ..topography.fractal import zhao_roughness
 from ..topography.heights import Areal, Heights
 from ..topography.identify import METHODS, identify
-from ..topography.joint import changes, with_surface
+from ..topography.joint import changes, meaning, with_surface
 from ..topography.reading import read
 from ..topography.results import Estimate, Identification, Result
 from . import synthesize
@@ -80,6 +80,11 @@ def _identify(args: argparse.Namespace) -> int:
     return 0
 
 
+def _rough() -> list[str]:
+    """Joints with a rough surface."""
+    return [name for name, kind in KINDS.items() if kind.surfaces]
+
+
 def _base(args: argparse.Namespace) -> Any:
     """The parameter file to start from, if one is to be made."""
     if args.params:
@@ -104,11 +109,10 @@ def _print(found: Identification, heights: Sequence[Heights], args: argparse.Nam
     for row in rows:
         print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
     print("brackets: 95 % confidence intervals")
-    for joint in [args.joint] if args.joint else KINDS:
+    for joint in [args.joint] if args.joint else _rough():
         values = changes(found, joint, args.method)
         text = ", ".join(f"{name} = {value:.6g}" for name, (value, _) in values.items())
-        kind = "D_s of the surface" if joint == "harmonic_drive" else "D of the profile"
-        print(f"{joint} ({kind}, {next(iter(values.values()))[1].method}): {text}")
+        print(f"{joint} ({meaning(joint)}, {next(iter(values.values()))[1].method}): {text}")
     if args.write:
         print(f"wrote {args.write}")
     if args.plot:
@@ -150,7 +154,7 @@ def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.N
         "results": [_result_dict(result, args.gamma) for result in found.results],
         "joints": {
             joint: {name: value for name, (value, _) in changes(found, joint, args.method).items()}
-            for joint in ([args.joint] if args.joint else KINDS)
+            for joint in ([args.joint] if args.joint else _rough())
         },
         "written": str(args.write) if args.write else None,
         "warnings": list(found.warnings),

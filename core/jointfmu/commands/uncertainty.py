@@ -75,7 +75,7 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.plot:
         from ..uncertainty import figures
 
-        figures.draw(args.plot, bands, found, f"{task.model.load} [{task.model.unit}]")
+        figures.draw(args.plot, bands, found, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     if args.json:
         print(json.dumps(report.as_json(task, bands, found)))
     else:

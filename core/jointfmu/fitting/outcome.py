@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..joints import KINDS
 from ..parameters import ParameterFile
-from ..quantity import flat_fields, flatten
+from ..quantity import Interval, flat_fields, flatten
 from ..stamp import build_time
 from .identifiability import combinations, undetermined
 from .least_squares import Array, Solution, Unknown
@@ -114,7 +114,7 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, found = flatten(start.values), []
+    values, wanted = flatten(start.values), []
     declared = {
         n: f for n, f in flat_fields(KINDS[start.joint].parameters) if isinstance(values.get(n), float)
     }
@@ -124,11 +124,9 @@ def unknowns(
         if names.count(name) > 1:
             raise ValueError(f"{name!r} is given twice; allowed is once")
         meta = declared[name].metadata
-        low, high = max(meta["gt"], meta["ge"]), min(meta["lt"], meta["le"])
-        narrow = bounds.get(name, (low, high))
-        low, high = max(low, narrow[0]), min(high, narrow[1])
-        found.append(Unknown(name, meta["unit"], float(values[name]), low, high))
-    return found
+        narrow = meta["interval"].intersection(Interval(*bounds.get(name, ())))
+        wanted.append(Unknown(name, meta["unit"], float(values[name]), narrow.low, narrow.high))
+    return wanted
 
 
 def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Mapping[str, float]], Array]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..quantity import Number, flat_fields
+from ..quantity import Interval, Number, flat_fields
 
 Values = Mapping[str, float]
 
@@ -22,6 +22,11 @@ class Variable:
     doc: str
     nominal: float = 1.0
     low: float = -math.inf
+
+    @property
+    def interval(self) -> Interval:
+        """What an input may be: finite, and not below its least value."""
+        return Interval.of(ge=self.low)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,16 +101,14 @@ class Model:
     def warnings(self, spring: Any, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""
         units = {v.name: v.unit for v in (*self.inputs, *self.outputs)}
-        found = {}
+        messages = {}
         for i, o in enumerate(self.outside):
-            value = values[o.variable]
+            value, unit = values[o.variable], units[o.variable]
             low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
-            if not low <= value <= high:
-                unit = units[o.variable]
-                left, right = "(" if low == -math.inf else "[", ")" if high == math.inf else "]"
-                ends = f"{left}{low:.6g}, {high:.6g}{right}"
-                found[i] = f"{o.variable} = {value:.6g} {unit} is outside {ends} {unit}: {o.doc}"
-        return found
+            inside = Interval.of(ge=low, le=high)
+            if not inside.contains(value):
+                messages[i] = f"{o.variable} = {value:.6g} {unit} is outside {inside} {unit}: {o.doc}"
+        return messages
 
     def depends(self, output: str) -> Sequence[str]:
         """Inputs and states on which an output depends."""

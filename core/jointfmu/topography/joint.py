@@ -1,49 +1,55 @@
 """Which parameters of a joint a surface decides, and a parameter file with them."""
 
 from ..joints import KINDS
+from ..joints.kind import RoughSurface
 from ..parameters import ParameterFile
-from .results import Identification, Result
+from .results import Estimate, Identification, Result
 
 
 def changes(found: Identification, joint: str, method: str | None = None) -> dict[str, tuple[float, Result]]:
-    """{structured name: (value, result it comes from)} of a joint, a key of joints.KINDS.
+    """{structured name: (value, result it comes from)} of the rough surfaces of a joint, a key of KINDS.
 
-    harmonic_drive : surface.D = D_s of the surface (2 < D_s < 3), surface.G = G_s
-    bolted_joint   : surface.D = D of the profile (1 < D < 2), surface.G
-    gear_contact   : surface1 = profile along x, surface2 = profile along y; both alike from a profile or
-        an isotropic map
+    Profiles are those along the surface's direction where the measured one is textured.
     """
     if joint not in KINDS:
         raise ValueError(f"joint = {joint!r} is not one of {', '.join(KINDS)}")
-    main = found.best(method=method)
-    if joint == "harmonic_drive":
-        areal = main.areal
-        return {"surface.D": (areal.D_s.value, main), "surface.G": (areal.G_s.value, main)}
-    if joint == "bolted_joint":
-        return {"surface.D": (main.profile.D.value, main), "surface.G": (main.profile.G.value, main)}
-    textured = found.textured
-    pair = [found.best(direction, method) for direction in ("x", "y")] if textured else [main, main]
-    return {
-        f"surface{i}.{name}": (getattr(one.profile, name).value, one)
-        for i, one in enumerate(pair, start=1)
-        for name in ("D", "G")
-    }
+    values: dict[str, tuple[float, Result]] = {}
+    for surface in KINDS[joint].surfaces:
+        direction = surface.direction if found.textured else None
+        result = found.best(direction, method) if direction else found.best(method=method)
+        D, G = _dimension_and_roughness(result, surface)
+        values |= {f"{surface.prefix}.D": (D.value, result), f"{surface.prefix}.G": (G.value, result)}
+    return values
+
+
+def _dimension_and_roughness(result: Result, surface: RoughSurface) -> tuple[Estimate, Estimate]:
+    if surface.areal:
+        return result.areal.D_s, result.areal.G_s
+    return result.profile.D, result.profile.G
+
+
+def meaning(joint: str) -> str:
+    """What D of the joint's first rough surface is."""
+    return "D_s of the surface" if KINDS[joint].surfaces[0].areal else "D of the profile"
 
 
 def with_surface(file: ParameterFile, found: Identification, method: str | None = None) -> ParameterFile:
     """The parameter file with D and G of the surface, each with its source."""
+    surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
     for name, (value, result) in changes(found, file.joint, method).items():
-        file = file.with_values({name: value}, "user", _source(found, result, file.joint, name))
+        prefix, _, which = name.rpartition(".")
+        source = _source(found, result, surfaces[prefix], which)
+        file = file.with_values({name: value}, "user", source)
     return file
 
 
-def _source(found: Identification, result: Result, joint: str, name: str) -> str:
+def _source(found: Identification, result: Result, surface: RoughSurface, which: str) -> str:
     how = {"structure": "structure function, lags", "psd": "power spectral density, wavelengths"}
-    if joint == "harmonic_drive":
-        shown = result.areal.D_s if name.endswith("D") else result.areal.G_s
+    D, G = _dimension_and_roughness(result, surface)
+    shown = D if which == "D" else G
+    if surface.areal:
         kind = "of the surface"
     else:
-        shown = result.profile.D if name.endswith("D") else result.profile.G
         kind = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
     files = " and ".join(found.names) + (" (equivalent surface)" if len(found.names) == 2 else "")
     return (

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..quantity import check, quantity
+from ..quantity import Interval, Limit, check, quantity
 from .fractal import wave_power
 from .heights import Areal, Array, Profile
 
@@ -131,5 +131,5 @@ def periodic(size: float, points: int, D: float, G: float, band: tuple[float, fl
 
 
 def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:
-    if not low < value < high:
-        raise ValueError(f"{name} = {value:g} is outside ({low:g}, {high:g}): {doc}")
+    if text := Limit(name, Interval(low, high), doc).problem(value, "1"):
+        raise ValueError(text)

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..joints import KINDS
+from ..joints.reduced import Reduced, reduced
 from ..parameters import ParameterFile
-from ..quantity import flat_fields, flatten, problem
+from ..quantity import Interval, flat_fields, flatten, problem
 from .distributions import Uncertain, is_relative
-from .models import MODELS, Model
 from .study import samples_of, split
 
 Array = NDArray[np.float64]
@@ -36,14 +36,14 @@ class Problem:
     relative: bool | None = None
 
     @property
-    def model(self) -> Model:
-        """The joint's model."""
-        return MODELS[self.joint]
+    def reduced(self) -> Reduced:
+        """How the joint's curves are computed."""
+        return reduced(KINDS[self.joint])
 
     def sampled(self, points: Array) -> tuple[dict[str, Any], Array]:
         """Values with samples (n) among them, and factors (n) on the load, from points of the unit cube."""
         drawn = samples_of(self.uncertain, points)
-        load = drawn.pop(self.model.load, None)
+        load = drawn.pop(self.reduced.load.name, None)
         factor = np.ones(len(points)) if load is None else load if self.relative else load / self.loads[-1]
         return {**self.values, **drawn}, factor
 
@@ -53,27 +53,28 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
 
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
     """
-    model, declared = MODELS[file.joint], dict(flat_fields(KINDS[file.joint].parameters))
+    kind = KINDS[file.joint]
+    curves, declared = reduced(kind), dict(flat_fields(kind.parameters))
     base = flatten(file.values)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
-    known = [*(base.keys() - lists), model.load]
+    known = [*(base.keys() - lists), curves.load.name]
     if unknown := [name for name in given if name not in known]:
-        allowed = ", ".join(name for name in [*declared, model.load] if name in known)
+        allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
-    load_text = given.get(model.load)
+    load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
-    plain, uncertain = split(given, base | ({model.load: 1.0} if relative else {}))
-    fixed = plain.pop(model.load, None)
+    plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
+    fixed = plain.pop(curves.load.name, None)
     values = file.with_values(plain, "user", "--set").values
     for one in uncertain:
-        if one.name != model.load:
+        if one.name != curves.load.name:
             _check(one, declared[one.name])
-    order = tuple(sorted(uncertain, key=lambda one: one.name == model.load))
+    order = tuple(sorted(uncertain, key=lambda one: one.name == curves.load.name))
     if not order:
         raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
-    load = next((one for one in order if one.name == model.load), None)
+    load = next((one for one in order if one.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
-    loads = _ramp(model, values, at, to, points, load)
+    loads = _ramp(curves, values, at, to, points, load)
     return Problem(file.joint, flatten(values), order, loads, relative if load else None)
 
 
@@ -84,28 +85,30 @@ def _check(one: Uncertain, item: Any) -> None:
     if item.metadata["whole"]:
         raise ValueError(f"{one.name} = {one.text}: is a whole number and cannot be uncertain")
     for value in (*(end for end in one.support if np.isfinite(end)), float(one.law.median())):
-        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["gt"] == 0.0
+        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["interval"].low == 0.0
         if not tolerated and (text := problem(one.name, value, item)):
             raise ValueError(f"{one.name} = {one.text}: {text}")
 
 
-def _ramp(model: Model, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None) -> Array:
+def _ramp(
+    curves: Reduced, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None
+) -> Array:
     """The loads: a ramp from 0 to `to`, or the one load that was set."""
-    most = model.most(values)
+    allowed = Interval.of(gt=0.0, le=curves.most(values))
     if at is not None:
         if to is not None:
-            raise ValueError(f"{model.load} is set and cannot be ramped as well; drop to = {to:g}")
+            raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
         if not isinstance(at, int | float) or isinstance(at, bool):
-            raise ValueError(f"{model.load} = {at!r} is not a number in {model.unit}")
+            raise ValueError(f"{curves.load.name} = {at!r} is not a number in {curves.load.unit}")
         ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
         for value in (float(at), *ends):
-            if not 0.0 < value <= most:
-                allowed = f"(0, {most:.6g}]: {LOAD_END}"
-                raise ValueError(f"{model.load} = {value:g} {model.unit} is outside {allowed}")
+            if not allowed.contains(value):
+                given = f"{curves.load.name} = {value:g} {curves.load.unit}"
+                raise ValueError(f"{given} is outside {allowed}: {LOAD_END}")
         return np.array([float(at)])
-    end = model.to(values) if to is None else to
-    if not 0.0 < end <= most:
-        raise ValueError(f"to = {end:g} {model.unit} is outside (0, {most:.6g}]: {LOAD_END}")
+    end = curves.to(values) if to is None else to
+    if not allowed.contains(end):
+        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_END}")
     if not 2 <= points <= 10_000:
         raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
     return np.linspace(0.0, end, points)

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..batch.samples import columns, inside
 from ..joints import KINDS
 from ..progress import track
-from ..quantity import build
+from ..quantity import Interval, build
 from .problem import LOAD_END, Problem
-from .samples import columns, inside
 from .study import Refused, samples_of, unit_design
 
 Array = NDArray[np.float64]
@@ -40,9 +40,9 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
     values, factor = task.sampled(points)
     n = len(points)
     joint = columns(KINDS[task.joint].parameters, values)
-    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.model.most(joint))
+    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.reduced.most(joint))
     outputs: dict[str, Singles] = {
-        name: np.full((loads.size, n), np.nan, np.float32) for name in task.model.outputs
+        name: np.full((loads.size, n), np.nan, np.float32) for name in task.reduced.units
     }
     index = np.flatnonzero(good)
     blocks = [index[i : i + BLOCK] for i in range(0, index.size, BLOCK)]
@@ -62,7 +62,7 @@ def _evaluated(
     some = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            found = task.model.evaluate(some, loads, factor[block][:, None])
+            found = task.reduced.evaluate(some, loads, factor[block][:, None])
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
@@ -104,7 +104,7 @@ def bands(task: Problem, points: Array) -> Bands:
     if not np.any(outcome.good):
         raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
     error = check(task, points, outcome)
-    nominal = task.model.evaluate(task.values, task.loads, np.ones((1, 1)))
+    nominal = task.reduced.evaluate(task.values, task.loads, np.ones((1, 1)))
     spread = {
         name: np.stack([_spread(row, outcome.good) for row in value], axis=1)
         for name, value in outcome.outputs.items()
@@ -118,7 +118,7 @@ def bands(task: Problem, points: Array) -> Bands:
         samples=len(points),
         refused=refused,
         error=error,
-        units=task.model.outputs,
+        units=task.reduced.units,
     )
 
 
@@ -144,14 +144,12 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
         return Refused(0, {}, "")
     values, factor, drawn = one_sample(task, points, int(bad[0]))
     reason = "the law gives no finite value"
-    load, most = (
-        factor * float(task.loads[-1]),
-        task.model.most(columns(KINDS[task.joint].parameters, values)),
-    )
-    if not 0.0 < load <= most:
-        reason = f"{task.model.load} = {load:g} {task.model.unit} is outside (0, {most:.6g}]: {LOAD_END}"
+    load, ramped = factor * float(task.loads[-1]), task.reduced.load
+    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(KINDS[task.joint].parameters, values)))
+    if not allowed.contains(load):
+        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_END}"
     try:
-        task.model.exact(build(KINDS[task.joint].parameters, values), load * np.ones(1))
+        task.reduced.exact(build(KINDS[task.joint].parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
     return Refused(int(bad.size), drawn, reason)
@@ -167,7 +165,7 @@ def check(task: Problem, points: Array, outcome: Outcome) -> float:
     worst = 0.0
     for i in np.flatnonzero(outcome.good)[:CHECKED]:
         values, factor, drawn = one_sample(task, points, int(i))
-        exact = task.model.exact(build(KINDS[task.joint].parameters, values), factor * task.loads[few])
+        exact = task.reduced.exact(build(KINDS[task.joint].parameters, values), factor * task.loads[few])
         for name, value in exact.items():
             miss = float(np.max(np.abs(outcome.outputs[name][few, i] / value - 1.0)))
             if not miss <= ACCURACY:

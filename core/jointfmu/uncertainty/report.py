@@ -16,7 +16,7 @@ SHOWN = 6
 
 def bands_csv(task: Problem, bands: Bands) -> str:
     """One row per load: nominal, mean, standard deviation and quantiles of every output, exact numbers."""
-    head, columns = [f"{task.model.load} [{task.model.unit}]"], [bands.loads]
+    head, columns = [f"{task.reduced.load.name} [{task.reduced.load.unit}]"], [bands.loads]
     for name, unit in bands.units.items():
         plain = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
         for kind, values in plain:
@@ -46,11 +46,11 @@ def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str,
         }
         for name, unit in bands.units.items()
     }
-    refused = bands.refused
+    refused, load = bands.refused, task.reduced.load
     return {
         "joint": task.joint,
         "parameters": {one.name: one.text for one in task.uncertain},
-        "load": {"name": task.model.load, "unit": task.model.unit, "values": bands.loads.tolist()},
+        "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.samples,
         "refused": {
             "count": refused.count,
@@ -84,7 +84,7 @@ def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
     picked = np.unique(np.linspace(0, bands.loads.size - 1, SHOWN).astype(int))
     at = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name, unit in bands.units.items():
-        head = f"{task.model.load} [{task.model.unit}]"
+        head = f"{task.reduced.load.name} [{task.reduced.load.unit}]"
         lines.append(f"{name} [{unit}]")
         lines.append("".join(f"{x:>16}" for x in (head, "parameter file", "5 %", "50 %", "95 %")))
         for j in picked:
@@ -105,7 +105,7 @@ def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
 
 
 def _indices_table(task: Problem, found: Sensitivity) -> list[str]:
-    load = f"{task.model.load} = {found.loads[-1]:g} {task.model.unit}"
+    load = f"{task.reduced.load.name} = {found.loads[-1]:g} {task.reduced.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
     width = max(len(name) for name in found.names) + 2
     lines.append(" " * width + "".join(f"{name:>32}" for name in found.outputs))

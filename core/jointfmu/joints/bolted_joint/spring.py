@@ -12,7 +12,7 @@ from ...curve import Curve, approach_curve
 from ...footprint.bolts import BoltPattern, pressure_shape
 from ...footprint.shape import NodalField, PressureShape
 from ...interface import largest_spot
-from ...quantity import Limit, Number, check_limits, group, quantity
+from ...quantity import Interval, Limit, Number, check_limits, group, quantity
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ class BoltedJoint(Zhao2018):
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
         why = "two rows cannot hold more bolts than the joint has"
-        return [Limit(name="row_bolts", low=1.0, high=0.5 * self.n_bolts, ends="[]", doc=why)]
+        return [Limit("row_bolts", Interval.of(ge=1.0, le=0.5 * self.n_bolts), why)]
 
 
 def bolt_pattern(joint: BoltedJoint) -> BoltPattern:

@@ -20,7 +20,7 @@ from ...footprint.lobes import (
 )
 from ...footprint.nodes import Footprint
 from ...interface import checked_spots, largest_spot
-from ...quantity import Limit, Number, check, check_limits, choice, either, group, quantity
+from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
 from ...surface import ArealSurface, Elastic, ElasticPlastic
 from ...table import Blocks, stiffness_tables
 
@@ -95,33 +95,32 @@ class HarmonicDrive:
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
             reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
         return [
-            Limit(name="rated_pressure", low=zero, doc="it must exceed zero_torque_pressure"),
+            Limit("rated_pressure", Interval.of(gt=zero), "it must exceed zero_torque_pressure"),
             Limit(
-                name="A_0",
-                low=0.0,
-                high=2.0 * np.pi * self.radius * self.cup_length,
-                doc="the contact must be shorter than the cup (2 pi radius cup_length)",
+                "A_0",
+                Interval.of(gt=0.0, lt=2.0 * np.pi * self.radius * self.cup_length),
+                "the contact must be shorter than the cup (2 pi radius cup_length)",
             ),
-            Limit(name="radial_deformation", low=best - reach, high=best + reach, doc=no_contact),
-            Limit(name="eccentricity", low=0.0, high=reserve, ends="[)", doc=no_contact),
+            Limit("radial_deformation", Interval.of(gt=best - reach, lt=best + reach), no_contact),
+            Limit("eccentricity", Interval.of(ge=0.0, lt=reserve), no_contact),
         ]
 
     def table_limits(self) -> list[Limit]:
         """Intervals that the tabulated law needs beside."""
         highest = peak_pressure(self, self.max_torque)[0]
         meet = "the two lobes would meet below max_torque"
-        return [Limit(name="mismatch_pressure", low=highest, doc=meet)]
+        return [Limit("mismatch_pressure", Interval.of(gt=highest), meet)]
 
     @property
     def law(self) -> Hu2023:
         """Interface law of the pair; `side1` is the body with the lower yield strength."""
         one, other = self.flexspline, self.bearing
         swap = other.sigma_y < one.sigma_y
-        E, nu = either(swap, other.E, one.E), either(swap, other.nu, one.nu)
+        E, nu = where(swap, other.E, one.E), where(swap, other.nu, one.nu)
         return Hu2023(
             surface=self.surface,
             side1=Elastic(E=E, nu=nu),
-            side2=Elastic(E=either(swap, one.E, other.E), nu=either(swap, one.nu, other.nu)),
+            side2=Elastic(E=where(swap, one.E, other.E), nu=where(swap, one.nu, other.nu)),
             sigma_y=np.minimum(one.sigma_y, other.sigma_y),
             mu=self.mu,
             traction_ratio=self.traction_ratio,

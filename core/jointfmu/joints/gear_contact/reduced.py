@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints.gear_contact.spring import GearContact
-from .approach import held, tabulate
-from .samples import columns
+from ...batch.approach import held, tabulate
+from ...batch.samples import columns
+from ..reduced import Reduced
+from . import KIND
+from .spring import GearContact, GearContactSpring
 
 Array = NDArray[np.float64]
 
@@ -26,3 +28,19 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
     K, s = np.zeros((2, factor.size, loads.size))
     K[:, touching], s[:, touching] = contact.A_0 * np.exp(found["k"]), np.exp(found["s"])
     return {"K_N": K, "s_rel": s}
+
+
+def exact(joint: GearContact, loads: Array) -> dict[str, Array]:
+    """K_N and s_rel (m) of the exported spring at forces (m) [N]; no stiffness without force."""
+    found = GearContactSpring.of(joint).approach(loads)
+    return {name: np.where(loads > 0.0, found[name], 0.0) for name in REDUCED.units}
+
+
+REDUCED = Reduced(
+    load=KIND.variables["f"],
+    outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
+    to=lambda contact: 3e3,
+    most=lambda contact: contact.hardness * contact.A_0,
+    evaluate=evaluate,
+    exact=exact,
+)

@@ -12,17 +12,20 @@ from numpy.polynomial import chebyshev as series
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from ..interface import largest_spot
-from ..joints.harmonic_drive.spring import (
+from ...batch import chebyshev
+from ...batch.samples import columns
+from ...interface import largest_spot
+from ..reduced import Reduced
+from . import KIND
+from .spring import (
     HarmonicDrive,
+    HarmonicDriveSpring,
     contact_length,
     in_series,
     lobe_point,
     local,
     peak_pressure,
 )
-from . import chebyshev
-from .samples import columns
 
 Array = NDArray[np.float64]
 
@@ -92,3 +95,19 @@ def _between(deep: HarmonicDrive, peak: Array) -> Array:
     return np.asarray(
         np.exp(series.chebval(where, (logs @ chebyshev.coefficients(count)).T[:, :, None], False))
     )
+
+
+def exact(joint: HarmonicDrive, loads: Array) -> dict[str, Array]:
+    """K_WTS and phi_rel (m) of the exported spring at torques (m) [N.m]."""
+    found = HarmonicDriveSpring.of(joint).windup(loads)
+    return {name: found[name] for name in REDUCED.units}
+
+
+REDUCED = Reduced(
+    load=KIND.variables["tau"],
+    outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
+    to=lambda drive: float(drive.rated_torque),
+    most=lambda drive: drive.max_torque,
+    evaluate=evaluate,
+    exact=exact,
+)

@@ -1,13 +1,12 @@
 """Parameter sets whose numbers are columns of samples, and which samples lie inside all intervals."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import Limit, chosen, flat_fields, flatten, label, sections
+from ..quantity import Limit, assemble, flat_fields, flatten
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -20,22 +19,15 @@ def columns(cls: type[T], values: Mapping[str, Any], axes: int = 0) -> T:
     Unchecked: `inside` tells the samples apart.
     """
     shaped = {k: v.reshape(-1, *[1] * axes) if isinstance(v, np.ndarray) else v for k, v in values.items()}
-    return _columns(cls, shaped, "")
+    return assemble(cls, shaped, _unchecked)
 
 
-def _columns(cls: type[T], values: Mapping[str, Any], prefix: str) -> T:
-    hints = get_type_hints(cls)
-    one = object.__new__(cls)
-    for item in fields(cls):  # type: ignore[arg-type]
-        name = prefix + label(item)
-        if "group" in item.metadata:
-            own = hints[item.name]
-            section = chosen(item, own, prefix, values)
-            inner = _columns(sections(item, own)[section], values, f"{prefix}{section}.")
-            object.__setattr__(one, item.name, inner)
-        else:
-            object.__setattr__(one, item.name, values[name])
-    return one
+def _unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
+    """A frozen instance without its checks, which take no samples."""
+    instance = object.__new__(cls)
+    for name, value in arguments.items():
+        object.__setattr__(instance, name, value)
+    return instance
 
 
 def inside(joint: Any, count: int) -> Mask:
@@ -46,8 +38,7 @@ def inside(joint: Any, count: int) -> Mask:
         meta, value = item.metadata, values.get(name)
         if "allowed" in meta or not isinstance(value, np.ndarray):
             continue
-        good &= np.isfinite(value) & (value > meta["gt"]) & (value >= meta["ge"])
-        good &= (value < meta["lt"]) & (value <= meta["le"])
+        good &= meta["interval"].contains(value)
         if meta["whole"]:
             good &= value % 1.0 == 0.0
     with np.errstate(all="ignore"):
@@ -61,7 +52,5 @@ def within(values: Mapping[str, Any], limits: Iterable[Limit], count: int) -> Ma
     """Which samples lie between the limits that other parameters decide."""
     good = np.ones(count, dtype=bool)
     for limit in limits:
-        value = np.asarray(values[limit.name])
-        good &= value >= limit.low if limit.ends[0] == "[" else value > limit.low
-        good &= value <= limit.high if limit.ends[1] == "]" else value < limit.high
+        good &= limit.interval.contains(np.asarray(values[limit.name]))
     return good

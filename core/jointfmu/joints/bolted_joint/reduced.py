@@ -15,14 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ..asperity import mindlin
-from ..footprint.bolts import BoltPattern, pressure_shape
-from ..footprint.shape import NodalField
-from ..joints.bolted_joint.spring import BoltedJoint, shear_ratio
-from ..quantity import flatten
-from .approach import held, tabulate
-from .chebyshev import discrete_gauss
-from .samples import columns
+from ...asperity import mindlin
+from ...batch.approach import held, tabulate
+from ...batch.chebyshev import discrete_gauss
+from ...batch.samples import columns
+from ...footprint.bolts import BoltPattern, pressure_shape
+from ...footprint.shape import NodalField
+from ...quantity import flatten
+from ..model import Variable
+from ..reduced import Reduced
+from . import KIND
+from .spring import BoltedJoint, BoltedJointSpring, node_pressure, shear_ratio
 
 Array = NDArray[np.float64]
 
@@ -143,3 +146,47 @@ def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[st
         return found
     zero = np.zeros((factor.size, int(np.sum(~touching))))
     return {name: np.concatenate([zero, value], axis=1) for name, value in found.items()}
+
+
+def exact(joint: BoltedJoint, loads: Array) -> dict[str, Array]:
+    """Stiffness, damping and approach (m) of the exported spring at preloads (m) [N]."""
+    spring, rest = BoltedJointSpring.of(joint), (0.0, 0.0, 0.0)
+    states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
+    found = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
+    return found | {"approach": approach(spring, loads)}
+
+
+def approach(spring: BoltedJointSpring, loads: Array) -> Array:
+    """Integral of dF/K_zz over the force of all bolts from 0 to preloads (m) [N].
+
+    Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
+    equal are taken together.
+    """
+    joint, shape = spring.joint, spring.shape
+    equal, place = np.unique(np.round(shape.equal, 12), return_inverse=True)
+    shares = np.bincount(place, shape.share)
+    lowest = 1e-9 * spring.curve.closed * joint.A_0 / joint.n_bolts
+    ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
+    places, weights = np.polynomial.legendre.leggauss(3)
+    half, middle = 0.5 * np.diff(np.log(ends)), 0.5 * np.log(ends[1:] * ends[:-1])
+    preload = np.concatenate([ends[:1], np.exp(middle[:, None] + half[:, None] * places).ravel()])
+    node = spring.curve.inverse(node_pressure(joint, equal, 0.0, preload[:, None], 0.0))
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shares
+    rate = joint.n_bolts * preload / K
+    panels = half * (rate[1:].reshape(-1, 3) @ weights)
+    integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])
+    return np.where(loads > lowest, integral[np.clip(np.searchsorted(ends, loads), 0, ends.size - 1)], 0.0)
+
+
+_OUTPUTS = ("K_zz", "K_xx", "C_zz", "C_xx")
+REDUCED = Reduced(
+    load=KIND.variables["preload"],
+    outputs=(
+        *(KIND.variables[name] for name in _OUTPUTS),
+        Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),
+    ),
+    to=lambda joint: 30e3,
+    most=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    evaluate=evaluate,
+    exact=exact,
+)

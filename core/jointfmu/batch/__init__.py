@@ -1,0 +1,1 @@
+"""Laws and parameter sets for many samples at once: rows of samples, columns of loads."""

@@ -1,0 +1,24 @@
+"""The one place where a physical field declares its SI unit, open or closed interval and meaning."""
+
+from .declaration import check, choice, group, problem, quantity, series
+from .interval import Interval, Number, where
+from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
+
+__all__ = [
+    "Interval",
+    "Limit",
+    "Number",
+    "assemble",
+    "build",
+    "changed",
+    "check",
+    "check_limits",
+    "choice",
+    "flat_fields",
+    "flatten",
+    "group",
+    "problem",
+    "quantity",
+    "series",
+    "where",
+]

@@ -1,0 +1,110 @@
+"""A physical field declares its SI unit, open or closed interval and meaning, and is checked against them."""
+
+from dataclasses import Field, field, fields
+from typing import Any
+
+import numpy as np
+
+from .interval import Interval, is_symbol
+
+
+def quantity(
+    unit: str,
+    doc: str,
+    *,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+    calibration: bool = False,
+    whole: bool = False,
+) -> Any:
+    """Declare a number [unit] inside an interval, see `Interval.of`.
+
+    `calibration` marks a value that was fitted, `whole` one that counts.
+    """
+    meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
+    return field(metadata={**meta, "calibration": calibration, "whole": whole})
+
+
+def series(
+    unit: str,
+    doc: str,
+    *,
+    gt: float | None = None,
+    ge: float | None = None,
+    lt: float | None = None,
+    le: float | None = None,
+) -> Any:
+    """Declare a tuple of numbers [unit], every one inside an interval, see `Interval.of`."""
+    meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
+    return field(metadata={**meta, "calibration": False, "whole": False, "series": True})
+
+
+def choice(*allowed: str | bool, doc: str) -> Any:
+    """Declare a named choice; the first is the default."""
+    return field(default=allowed[0], metadata={"allowed": allowed, "doc": doc})
+
+
+def group(doc: str, **alternatives: type[Any]) -> Any:
+    """Declare a nested group of quantities (`surface`, `side1`, ...).
+
+    alternatives : names and classes of which a parameter set has one, instead of the field's own
+    """
+    return field(metadata={"group": True, "doc": doc, "alternatives": alternatives})
+
+
+def label(item: Field[Any]) -> str:
+    """Public name of a field (`lambda_` is `lambda`, a Python keyword)."""
+    return item.name.rstrip("_")
+
+
+def problem(name: str, value: Any, item: Field[Any]) -> str | None:
+    """One line that names the thing, the value with its unit, and what is allowed; None if fine."""
+    meta = item.metadata
+    if is_symbol(value):
+        return None
+    if "allowed" in meta:
+        if any(value is option or (type(value) is str and value == option) for option in meta["allowed"]):
+            return None
+        return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
+    if "series" in meta:
+        return _series_problem(name, value, item)
+    unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
+    number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
+    array = np.asarray(value)
+    if not number or array.dtype.kind not in "fiu":
+        kind = "real number" if number else "number"
+        return f"{name} = {_shown(value)} is not a {kind}{unit and f' in{unit}'}: {meta['doc']}"
+    inside = meta["interval"].contains(array)
+    if not np.all(inside):
+        first = array[~inside].flat[0]
+        return f"{name} = {first:.10g}{unit} is outside {meta['interval']}: {meta['doc']}"
+    if meta["whole"] and np.any(broken := array % 1.0 != 0.0):
+        return f"{name} = {array[broken].flat[0]:g} is no whole number, allowed are 1, 2, 3, ..."
+    return None
+
+
+def _series_problem(name: str, values: Any, item: Field[Any]) -> str | None:
+    """As `problem`, of the first of some numbers that is wrong."""
+    if not isinstance(values, list | tuple) or not values:
+        return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
+    number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})
+    problems = (problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
+    return next((text for text in problems if text), None)
+
+
+def _shown(value: Any) -> str:
+    """A value of any type on one short line."""
+    return " ".join(repr(value).split())[:80]
+
+
+def check(obj: Any) -> None:
+    """Raise ValueError naming every field of `obj` outside its interval (NaN and infinity included)."""
+    problems = (
+        problem(label(item), getattr(obj, item.name), item)
+        for item in fields(obj)
+        if "group" not in item.metadata
+    )
+    if texts := [text for text in problems if text]:
+        raise ValueError("; ".join(texts))

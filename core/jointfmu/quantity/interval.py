@@ -1,0 +1,101 @@
+"""Intervals of numbers with open and closed ends, and what lets floats, arrays and symbols pass alike."""
+
+import sys
+from dataclasses import dataclass
+from math import inf, nextafter
+from typing import Any, TypeAlias
+
+import numpy as np
+
+Number: TypeAlias = Any
+"""A float, an array of floats, or a symbol of a computer-algebra tool: what a law accepts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """Numbers between two ends, each of which is open (outside itself) or closed.
+
+    low, high : floats, arrays of them or symbols; an infinite float is an open end
+    """
+
+    low: Number = -inf
+    high: Number = inf
+    low_open: bool = True
+    high_open: bool = True
+
+    def __post_init__(self) -> None:
+        if isinstance(self.low, float) and self.low == -inf:
+            object.__setattr__(self, "low_open", True)
+        if isinstance(self.high, float) and self.high == inf:
+            object.__setattr__(self, "high_open", True)
+
+    @classmethod
+    def of(
+        cls,
+        *,
+        gt: Number | None = None,
+        ge: Number | None = None,
+        lt: Number | None = None,
+        le: Number | None = None,
+    ) -> "Interval":
+        """Numbers greater than `gt` or at least `ge`, less than `lt` or at most `le`.
+
+        Raises ValueError if an end is given twice.
+        """
+        for open_end, closed_end, names in ((gt, ge, "gt and ge"), (lt, le, "lt and le")):
+            if open_end is not None and closed_end is not None:
+                raise ValueError(f"{names} = {open_end}, {closed_end} are the same end; allowed is one")
+        low = gt if ge is None else ge
+        high = lt if le is None else le
+        return cls(-inf if low is None else low, inf if high is None else high, ge is None, le is None)
+
+    def contains(self, value: Number) -> Any:
+        """Whether values lie inside, elementwise; NaN and infinity do not.
+
+        True if a value or an end is a symbol: it has no value yet.
+        """
+        if any(is_symbol(number) for number in (value, self.low, self.high)):
+            return True
+        above = value > self.low if self.low_open else value >= self.low
+        below = value < self.high if self.high_open else value <= self.high
+        return above & below
+
+    def intersection(self, other: "Interval") -> "Interval":
+        """Numbers inside both; an end that both share is open if one of them is."""
+        low, low_open = max((self.low, self.low_open), (other.low, other.low_open))
+        high, high_closed = min((self.high, not self.high_open), (other.high, not other.high_open))
+        return Interval(low, high, low_open, not high_closed)
+
+    def closed_bounds(self) -> tuple[float, float]:
+        """Least and greatest float inside, infinite where there is no end, as FMI's min and max want them.
+
+        Beside an open end at zero it is a normal number: not every reader takes a denormal one.
+        """
+        low, high = float(self.low), float(self.high)
+        return (
+            _beside(low, inf) if self.low_open and low > -inf else low,
+            _beside(high, -inf) if self.high_open and high < inf else high,
+        )
+
+    def __str__(self) -> str:
+        left, right = "(" if self.low_open else "[", ")" if self.high_open else "]"
+        return f"{left}{self.low:g}, {self.high:g}{right}"
+
+
+def _beside(end: float, towards: float) -> float:
+    """The next float from an end; a normal one beside zero."""
+    if end == 0.0:
+        return sys.float_info.min if towards > 0.0 else -sys.float_info.min
+    return nextafter(end, towards)
+
+
+def is_symbol(value: Any) -> bool:
+    """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
+    return type(value).__module__.startswith("casadi")
+
+
+def where(condition: Any, value: Number, otherwise: Number) -> Number:
+    """`value` where the condition holds, else `otherwise`; plain values stay as they are."""
+    if isinstance(condition, bool | np.bool_):
+        return value if condition else otherwise
+    return np.where(condition, value, otherwise)

@@ -1,0 +1,167 @@
+"""Parameter sets: dataclasses of declared quantities and groups of them <-> {structured name: value}."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
+from typing import Any, TypeVar, get_type_hints
+
+from .declaration import label, problem
+from .interval import Interval, Number
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """An interval of a parameter that other parameters decide; `doc` says why."""
+
+    name: str
+    interval: Interval
+    doc: str
+
+    def problem(self, value: Number, unit: str) -> str | None:
+        """One line as from `declaration.problem`; None if the value is inside, or a symbol."""
+        if self.interval.contains(value):
+            return None
+        unit = "" if unit == "1" else f" {unit}"
+        return f"{self.name} = {value:g}{unit} is outside {self.interval}: {self.doc}"
+
+
+def check_limits(obj: Any, limits: Iterable[Limit]) -> None:
+    """Raise ValueError for the first parameter of `obj` outside an interval that others decide."""
+    units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
+    values = flatten(obj)
+    for limit in limits:
+        if text := limit.problem(values[limit.name], units[limit.name]):
+            raise ValueError(text)
+
+
+def flat_fields(
+    cls: type[Any], prefix: str = "", names: Collection[str] | None = None
+) -> Iterator[tuple[str, Field[Any]]]:
+    """Structured names and fields of every number and choice of `cls`, groups opened.
+
+    names : of a parameter set that has one of a group's alternatives; without them all are opened
+    """
+    hints = get_type_hints(cls)
+    for item in fields(cls):
+        if "group" in item.metadata:
+            sections = _sections(item, hints[item.name])
+            if names is not None:
+                section = _section(sections, prefix, names)
+                sections = {section: sections[section]}
+            for name, inner in sections.items():
+                yield from flat_fields(inner, f"{prefix}{name}.", names)
+        elif item.metadata:
+            yield prefix + label(item), item
+
+
+def flatten(obj: Any) -> dict[str, Any]:
+    """{structured name: value} of a parameter set."""
+    values: dict[str, Any] = {}
+    for item in fields(obj):
+        value = getattr(obj, item.name)
+        if is_dataclass(value) and "group" in item.metadata:
+            values |= {f"{_present(item, value)}.{name}": v for name, v in flatten(value).items()}
+        elif item.metadata:
+            values[label(item)] = value
+    return values
+
+
+def build(cls: type[T], values: Mapping[str, Any]) -> T:
+    """Make the parameter set `cls` from {structured name: value}.
+
+    Raises ValueError, one line, naming every unknown or missing name and every value that is no
+    number or lies outside its interval; or the names of two alternatives of a group.
+    """
+    known = dict(flat_fields(cls, names=values))
+    required = {name for name, item in known.items() if item.default is MISSING}
+    texts = [f"unknown name {name!r}" for name in values if name not in known]
+    if texts:
+        texts.append(f"allowed are {', '.join(known)}")
+    if missing := sorted(required - values.keys()):
+        texts.append(f"missing {', '.join(missing)}")
+    problems = (problem(name, value, known[name]) for name, value in values.items() if name in known)
+    texts += [text for text in problems if text]
+    if texts:
+        raise ValueError("; ".join(texts))
+    plain = {name: _plain(value) for name, value in values.items()}
+    return assemble(cls, plain, lambda kind, arguments: kind(**arguments))
+
+
+def changed(obj: T, changes: Mapping[str, Any]) -> T:
+    """A parameter set with some values changed, by structured name.
+
+    Raises ValueError as `build`, and for names of an alternative that `obj` does not have.
+    """
+    values = flatten(obj)
+    everything = {name for name, _ in flat_fields(type(obj))}
+    if beside := [name for name in changes if name in everything and name not in values]:
+        texts = [f"{name} is no parameter of a set that has [{_instead(obj, name)}]" for name in beside]
+        raise ValueError("; ".join([*texts, f"allowed are {', '.join(values)}"]))
+    return build(type(obj), values | dict(changes))
+
+
+def assemble(
+    cls: type[T],
+    values: Mapping[str, Any],
+    make: Callable[[type[Any], dict[str, Any]], Any],
+    prefix: str = "",
+) -> T:
+    """The parameter set `cls` of {structured name: value}, unchecked.
+
+    make : (class, {name of a field: value}) -> instance
+    """
+    hints = get_type_hints(cls)
+    arguments: dict[str, Any] = {}
+    for item in fields(cls):  # type: ignore[arg-type]
+        name = prefix + label(item)
+        if "group" in item.metadata:
+            sections = _sections(item, hints[item.name])
+            section = _section(sections, prefix, values)
+            arguments[item.name] = assemble(sections[section], values, make, f"{prefix}{section}.")
+        elif name in values:
+            arguments[item.name] = values[name]
+    instance: T = make(cls, arguments)
+    return instance
+
+
+def _sections(item: Field[Any], own: Any) -> dict[str, type[Any]]:
+    """Names and classes that a group may have; `own` is the field's type."""
+    return item.metadata["alternatives"] or {label(item): own}
+
+
+def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> str:
+    """The one of a group's alternatives that parameter names speak of; the first if there are none.
+
+    Raises ValueError naming them if they speak of two.
+    """
+    spoken = {
+        section: [name for name in names if name.startswith(f"{prefix}{section}.")] for section in sections
+    }
+    present = [section for section, own in spoken.items() if own]
+    if len(present) > 1:
+        beside = " beside ".join(", ".join(spoken[section]) for section in present)
+        raise ValueError(f"{beside}: allowed is one of {', '.join(f'[{prefix}{name}]' for name in spoken)}")
+    return (present or list(spoken))[0]
+
+
+def _present(item: Field[Any], value: Any) -> str:
+    """Name of a group that is there."""
+    alternatives = item.metadata["alternatives"].items()
+    return next((name for name, cls in alternatives if isinstance(value, cls)), label(item))
+
+
+def _instead(obj: Any, name: str) -> str:
+    """The section that a parameter set has in place of that of a name."""
+    head, _, rest = name.partition(".")
+    groups = [item for item in fields(obj) if "group" in item.metadata]
+    sections = {_present(item, getattr(obj, item.name)): item for item in groups}
+    if head in sections:
+        return f"{head}.{_instead(getattr(obj, sections[head].name), rest)}"
+    return next(name for name, item in sections.items() if head in item.metadata["alternatives"])
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list | tuple):
+        return tuple(float(number) for number in value)
+    return float(value) if type(value) is int else value
