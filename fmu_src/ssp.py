@@ -11,13 +11,13 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flatten
 from jointfmu.systems import System, system, systems
+from jointfmu.units import UNITS
 
 from .archive import pack, workshop
 from .native.build import build
 from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
-from .units import UNITS
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {

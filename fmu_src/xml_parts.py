@@ -7,8 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 from jointfmu.quantity import Interval
-
-from .units import UNITS, display_unit
+from jointfmu.units import UNITS, display_unit
 
 
 class Listed(NamedTuple):

@@ -2,6 +2,7 @@
 
 import importlib.util
 import platform
+import re
 import sys
 from pathlib import Path
 
@@ -46,3 +47,12 @@ def test_native_fmus(native, fmus, tmp_path, monkeypatch, capsys):
     assert [tuple(row[:2]) for row in rows] == [*flavours, ("PassThrough", "fmi2"), ("PassThrough", "fmi3")]
     assert all(float(row[2].replace(",", "")) > 0.0 for row in rows)
     assert [row[3] for row in rows[-2:]] == ["1.0", "1.0"]
+
+
+def test_the_readme_names_every_file():
+    """Each file or folder once as a row's subject, and no row of a file that is gone."""
+    text = (BENCHMARKS / "README.md").read_text()
+    cells = [line.split(" | ")[0] for line in text.splitlines() if line.startswith("| `")]
+    named = {name for cell in cells for name in re.findall(r"`([a-z_]+(?:\.py|\.c|/))", cell)}
+    there = {path.name + "/" * path.is_dir() for path in BENCHMARKS.iterdir() if path.name[0].isalpha()}
+    assert named == there - {"README.md"}

@@ -7,6 +7,7 @@ import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
+from jointfmu.units import UNITS
 
 from ..native.terminals import TERMINALS, Terminal
 from .text import number, text
@@ -18,7 +19,6 @@ _ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor
     (False, True): f"{_TRANSLATIONAL}.Components.GeneralForceToPositionAdaptor",
     (False, False): f"{_TRANSLATIONAL}.Components.GeneralPositionToForceAdaptor",
 }
-_TYPES = {"N": "Modelica.Units.SI.Force", "N.m": "Modelica.Units.SI.Torque"}
 _TAKES_FORCE = (
     "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "
     "right at the flange: an inertia there would need the inverse of the FMU. "
@@ -55,7 +55,7 @@ def wrapper(model: Model) -> dict[str, Any]:
     parameters = [
         {
             "name": v.name,
-            "type": _TYPES[v.unit],
+            "type": f"Modelica.Units.SI.{UNITS[v.unit].quantity}",
             "modifier": f"(min={number(v.low)}, start=0)" if v.low > -np.inf else "=0",
             "doc": text(v.doc),
         }

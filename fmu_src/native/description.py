@@ -11,8 +11,8 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flatten
 from jointfmu.stamp import fixed_time
+from jointfmu.units import UNITS
 
-from ..units import UNITS
 from ..xml_parts import (
     Listed,
     dependencies,

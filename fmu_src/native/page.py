@@ -11,10 +11,10 @@ from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, flatten, problem
+from jointfmu.units import UNITS, display_unit
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..templates import template
-from ..units import UNITS, display_unit
 from ..xml_parts import listed
 from .licence import licence
 from .terminals import TERMINALS

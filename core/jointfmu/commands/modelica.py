@@ -8,7 +8,7 @@ from typing import Any
 from ..joints import KINDS
 from ..joints.kind import Kind
 from ..parameters import load
-from .common import command, without_package
+from .common import command, flag, without_package
 
 
 def add(commands: Any) -> None:
@@ -18,7 +18,7 @@ def add(commands: Any) -> None:
     for name, kinds in _inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
         make.add_argument(
-            _option(name),
+            flag(name),
             type=float,
             nargs="+" if first else None,
             metavar="VALUE",
@@ -50,10 +50,6 @@ def _inputs() -> dict[str, list[Kind]]:
     return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
 
 
-def _option(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
-
-
 def _meaning(kind: Kind, name: str) -> str:
     variable = kind.variables[name]
     return f"{variable.doc} [{variable.unit}]"
@@ -65,6 +61,6 @@ def _points(kind: Kind, args: argparse.Namespace) -> list[tuple[float, ...]]:
     given = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
     values: list[float] = getattr(args, first) or []
     if given and not values:
-        needed = f"{_option(first)}, the {_meaning(kind, first)}"
-        raise ValueError(f"{_option(next(iter(given)))} needs {needed}")
+        needed = f"{flag(first)}, the {_meaning(kind, first)}"
+        raise ValueError(f"{flag(next(iter(given)))} needs {needed}")
     return [(value, *(given.get(name, 0.0) for name in others)) for value in values]

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.optimize import brentq
 
+from .contact import Contact, Spring, equilibrium, linear_contact
 from .ring import Circle, Ring
-from .ring_contact import Contact, Spring, equilibrium, linear_contact
 
 Array = NDArray[np.float64]
 

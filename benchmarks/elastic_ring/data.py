@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints.harmonic_drive.spring import HarmonicDrive, contact_length
-from ..quantity import check, quantity
+from jointfmu.joints.harmonic_drive.spring import HarmonicDrive, contact_length
+from jointfmu.quantity import check, quantity
 
 Array = NDArray[np.float64]
 Traction = Callable[[Array], tuple[Array, Array]]

@@ -18,14 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ..curve import Curve, approach_curve
-from ..footprint.lobes import HEIGHT_WEIGHTS, HEIGHTS
-from ..footprint.nodes import Footprint
-from ..interface import at_pressure
-from ..joints.harmonic_drive.spring import HarmonicDrive, contact_length, lobe_point
+from jointfmu.curve import Curve, approach_curve
+from jointfmu.footprint.lobes import HEIGHT_WEIGHTS, HEIGHTS
+from jointfmu.footprint.nodes import Footprint
+from jointfmu.interface import at_pressure
+from jointfmu.joints.harmonic_drive.spring import HarmonicDrive, contact_length, lobe_point
+
+from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
+from .data import Rings, Traction, ball_stiffness
 from .ring import Circle, Ring
-from .ring_contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
-from .ring_data import Rings, Traction, ball_stiffness
 
 Array = NDArray[np.float64]
 _PRESSED = 5e-6

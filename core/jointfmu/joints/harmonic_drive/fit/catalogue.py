@@ -18,11 +18,11 @@ from itertools import pairwise, product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..parameters import ParameterFile, default
-from ..quantity import check, quantity
+from ....fitting.least_squares import Array, Solution, solve
+from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from ....parameters import ParameterFile, default
+from ....quantity import check, quantity
 from . import drive
-from .least_squares import Array, Solution, solve
-from .outcome import Outcome, Picture, fitted, model, unknowns
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 FURTHER = "torque_smoothing"

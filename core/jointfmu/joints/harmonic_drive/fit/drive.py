@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ..joints.harmonic_drive.spring import HarmonicDrive, torque_curve
-from ..parameters import ParameterFile
-from .least_squares import Array
+from ....fitting.least_squares import Array
+from ....parameters import ParameterFile
+from ..spring import HarmonicDrive, torque_curve
 
 LEVEL = ("K_FTS0", "drive_scale")
 """The two stiffnesses of Eq. 46: scaled together they scale K_WTS."""

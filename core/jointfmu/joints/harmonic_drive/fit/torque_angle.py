@@ -11,25 +11,23 @@ from pathlib import Path
 
 import numpy as np
 
-from ..parameters import ParameterFile, default
-from . import columns, drive, loop
-from .least_squares import Array, solve
-from .outcome import Outcome, Picture, fitted, model, unknowns
+from .... import columns
+from ....fitting import loop
+from ....fitting.least_squares import Array, solve
+from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from ....parameters import ParameterFile, default
+from ....refusal import Refusal
+from ....units import Sizes, sizes
+from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
-COLUMNS: Mapping[str, columns.Units] = {
-    "torque": {"N.m": 1.0, "mN.m": 1e-3, "kN.m": 1e3},
-    "angle": {
-        "rad": 1.0,
-        "mrad": 1e-3,
-        "deg": np.pi / 180.0,
-        "arcmin": np.pi / 10800.0,
-        "arcsec": np.pi / 648000.0,
-    },
+COLUMNS: Mapping[str, Sizes] = {
+    "torque": sizes("N.m", "mN.m", "kN.m"),
+    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 }
 LEAST = 10
 """Fewest points of a curve."""
-ARCMIN = np.pi / 10800.0
+ARCMIN = COLUMNS["angle"]["arcmin"]
 ALIKE = 0.5
 """Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
@@ -99,9 +97,10 @@ def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path)
         factor = drive_.max_torque / drive_.rated_torque
         start = drive.resized(start, rated, factor, "user", "stated with the torque-angle curve")
     if reach > start.values.max_torque:
-        raise ValueError(
+        raise Refusal(
             f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start.values.max_torque:g} N.m of "
-            f"{start.name}: state the drive's rated torque (--rated-torque), max_torque is scaled with it"
+            f"{start.name}: state the drive's rated torque, max_torque is scaled with it",
+            "rated_torque",
         )
     return start
 

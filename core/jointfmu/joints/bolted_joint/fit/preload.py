@@ -19,22 +19,23 @@ from pathlib import Path
 
 import numpy as np
 
-from ..curve import approach_curve
-from ..footprint.bolts import BoltPattern, pressure_shape
-from ..footprint.shape import NodalField
-from ..interface import stiffness_curve
-from ..joints.bolted_joint.spring import BoltedJoint, node_pressure, shear_ratio
-from ..parameters import ParameterFile, default
-from . import columns
-from .least_squares import Array, Solution, Unknown, solve
-from .outcome import Outcome, Picture, fitted, unknowns
+from .... import columns
+from ....curve import approach_curve
+from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.outcome import Outcome, Picture, fitted, unknowns
+from ....footprint.bolts import BoltPattern, pressure_shape
+from ....footprint.shape import NodalField
+from ....interface import stiffness_curve
+from ....parameters import ParameterFile, default
+from ....units import Sizes, factor, sizes
+from ..spring import BoltedJoint, node_pressure, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
-COLUMNS: Mapping[str, columns.Units] = {
-    "preload": {"N": 1.0, "kN": 1e3},
-    "stiffness": {"N/m": 1.0, "N/um": 1e6, "kN/mm": 1e6, "N/mm": 1e3},
-    "frequency": {"Hz": 1.0, "kHz": 1e3},
+COLUMNS: Mapping[str, Sizes] = {
+    "preload": sizes("N", "kN"),
+    "stiffness": sizes("N/m", "N/um", "kN/mm", "N/mm"),
+    "frequency": sizes("Hz", "kHz"),
 }
 DIRECTIONS = ("normal", "tangential")
 LEAST = 4
@@ -107,12 +108,13 @@ def fit(
     stiffness = found.values.get(SERIES, series)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
-    unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", 1e-6)
+    unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
+    kN = COLUMNS["preload"]["kN"]
     picture = Picture(
-        x=curve.preload / 1e3,
+        x=curve.preload / kN,
         y=curve.value * size,
         misfit=100.0 * np.expm1(-found.residuals),
-        line=(grid / 1e3, finer.predicted(result.values, stiffness, direction) * size),
+        line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
     return Outcome(result, found, _facts(curve, found), picture, notes=_notes(names, mass))
@@ -219,6 +221,6 @@ def _notes(names: Sequence[str], mass: bool) -> list[str]:
     if mass and "mass" in names and "surface.G" not in names:
         return [
             "frequencies without a stated mass give K/mass only: the level is in mass, surface.G is kept; "
-            "state --modal-mass to fit surface.G"
+            "state the modal mass to fit surface.G"
         ]
     return []
