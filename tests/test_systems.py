@@ -27,7 +27,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.checks import check_ringing
 from jointfmu_fmu_src.joints.harmonic_drive.ringing import LOADING
 from jointfmu_fmu_src.master import Slave, motion
-from jointfmu_fmu_src.native.terminals import TERMINALS
+from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from lxml import etree
 from numpy.typing import NDArray
@@ -114,7 +114,7 @@ def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) ->
         (flow,) = [m for m in members.values() if m["variableKind"] != "signal"]
         assert flow["variableKind"] == "inflow"
         joint = {"phi": "HarmonicDriveSpring", "s": "BoltedJoint"}[next(iter(members))]
-        assert any(t.members.keys() == members.keys() for t in TERMINALS[joint])
+        assert any(t.members.keys() == members.keys() for t in terminals(MODELS[joint]))
     motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
     expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
     assert found == (expected if PARTNERS[name].states else {})

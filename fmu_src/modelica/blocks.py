@@ -9,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
 from jointfmu.units import UNITS
 
-from ..native.terminals import TERMINALS, Terminal
+from ..native.terminals import Terminal, terminals
 from .text import number, text
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
@@ -49,8 +49,8 @@ def interface(model: Model) -> dict[str, Any]:
 
 def wrapper(model: Model) -> dict[str, Any]:
     """Content of the model that puts an FMU between flanges."""
-    terminals = TERMINALS[model.name]
-    members = {variable for t in terminals for variable, _ in t.members.values()}
+    flanges = terminals(model)
+    members = {variable for t in flanges for variable, _ in t.members.values()}
     note = _TAKES_MOTION if _takes_motion(model) else _TAKES_FORCE.format(other=_other(model))
     parameters = [
         {
@@ -67,12 +67,12 @@ def wrapper(model: Model) -> dict[str, Any]:
         "doc": text(f"{model.name} as an imported FMU, between flanges"),
         "note": note,
         "parameters": parameters,
-        "terminals": [_flange(t, _ports(model)) for t in terminals],
+        "terminals": [_flange(t, _ports(model)) for t in flanges],
     }
 
 
 def _takes_motion(model: Model) -> bool:
-    return all(kind != "inflow" for t in TERMINALS[model.name] for _, kind in t.members.values())
+    return all(kind != "inflow" for t in terminals(model) for _, kind in t.members.values())
 
 
 def _other(model: Model) -> str:

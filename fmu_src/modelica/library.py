@@ -1,13 +1,11 @@
 """All files of the Modelica library: templates filled with tables, variables, terminals and numbers."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader
+from jinja2 import Environment
 
 from jointfmu import __version__
 from jointfmu.joints import KINDS, MODELS
@@ -17,12 +15,14 @@ from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
 from jointfmu.systems import System, systems
 
+from ..folders import asset
 from ..joints import folder as joint_folder
 from ..joints import part
+from ..templates import template
 from .blocks import interface, wrapper
 from .records import Component, Record, WorkingPoint
 from .tables import TOLERANCE
-from .text import number, templates, text
+from .text import environment, number, text
 
 NAME = "JointStiffness"
 _PARTNERS = ("LinkWeight", "Load")
@@ -76,7 +76,7 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
         for kind in KINDS.values()
         if (module := part(kind, "modelica"))
     ]
-    shared = templates()
+    shared = environment()
     block, model = (shared.get_template(name) for name in ("Interfaces/block.mo", "Wrappers/wrapper.mo"))
     packages = {
         "Examples": _examples(joints),
@@ -105,7 +105,7 @@ def _joint(
     own = file if file and file.joint == kind.name else default(kind.name)
     wanted = points or component.points
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
-    return _Joint(kind, component, records, templates(joint_folder(kind) / "modelica"))
+    return _Joint(kind, component, records, environment(joint_folder(kind) / "modelica"))
 
 
 def _order(names: Mapping[str, Any]) -> str:
@@ -113,9 +113,9 @@ def _order(names: Mapping[str, Any]) -> str:
     return "\n".join(names) + "\n"
 
 
-def _plain(environment: Environment, package: str, names: Sequence[str]) -> dict[str, str]:
+def _plain(shared: Environment, package: str, names: Sequence[str]) -> dict[str, str]:
     """{class: text} of classes that nothing is filled in."""
-    return {name: environment.get_template(f"{package}/{name}.mo").render() for name in names}
+    return {name: shared.get_template(f"{package}/{name}.mo").render() for name in names}
 
 
 def _components(joints: Sequence[_Joint]) -> dict[str, str]:
@@ -137,11 +137,11 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
     bases, tables = {}, {}
     for joint in joints:
         base = joint.component.base
-        template = joint.templates.get_template(f"Data/{base}.mo")
-        bases[base] = template.render(meta=_meanings(joint.kind))
-        template = joint.templates.get_template("Data/record.mo")
+        extended = joint.templates.get_template(f"Data/{base}.mo")
+        bases[base] = extended.render(meta=_meanings(joint.kind))
+        filled = joint.templates.get_template("Data/record.mo")
         for record in joint.records.values():
-            tables[record.name] = template.render(record.content(base), version=__version__)
+            tables[record.name] = filled.render(record.content(base), version=__version__)
     return bases | tables
 
 
@@ -172,18 +172,9 @@ def _meanings(kind: Kind) -> dict[str, str]:
 
 def _documentation(model: Model) -> dict[str, str]:
     """Parts of the FMU's documentation page, as text of a Modelica annotation."""
-    folder = files("jointfmu_fmu_src.native")
-    env = Environment(
-        loader=FunctionLoader(lambda name: (folder / name).read_text(encoding="utf-8")), autoescape=True
-    )
-    page = env.get_template(f"{model.joint}.html")
-    context = page.new_context({"model": model, "spring": True})
-    parts = {name: "".join(page.blocks[name](context)).strip() for name in ("what", "law", "trust", "paper")}
-    for name, html in parts.items():
-        html = re.sub(r'<span class="from">(.*?)</span>', r"(\1)", html)
-        parts[name] = re.sub(r"\n\s*\n", "\n", re.sub(r' class="[a-z]+"|</?span>', "", html))
-    parts["what"] = re.sub(r"(?<=\.) (?:Give it|For the spring)[^.]*\.", "", parts["what"])
-    return {name: text(html) for name, html in parts.items()}
+    page = template(asset(model, "page.html"), Path(__file__).parent)
+    names = ("what", "law", "trust", "paper")
+    return {name: text(page.render(model=model, fmu=False, part=name).strip()) for name in names}
 
 
 def _sources(system: System) -> str:

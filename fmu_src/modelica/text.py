@@ -29,7 +29,7 @@ def identifier(name: str) -> str:
     return words[0].upper() + words[1:] if words[:1].isalpha() else f"Joint_{words}"
 
 
-def templates(*folders: Path) -> Environment:
+def environment(*folders: Path) -> Environment:
     """Templates of the folders, then those of the library; an unknown name is an error."""
     return Environment(
         loader=FileSystemLoader([*folders, Path(__file__).parent / "templates"]),

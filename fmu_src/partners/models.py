@@ -1,35 +1,33 @@
 """The partners' FMUs: inertia, mass and loads that a system model needs beside a joint."""
 
 from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from jointfmu.joints.model import Model, Ramp, Variable
-from jointfmu.parameters import ParameterFile
+from jointfmu.parameters import ParameterFile, entries, read_document
 from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
-from jointfmu.quantity import flatten
-
-_SOURCE = "typical of the example systems"
-_LOAD = {"ramp_start": 0.0, "ramp_duration": 1.0, "pulse_start": 0.0, "pulse_rise": 1e-3, "pulse_hold": 1e-3}
-_DEFAULTS: dict[str, Any] = {
-    "RotationalInertia": RotationalInertia(J=0.05, m=0.0, l=0.0, lag_a=0.0, lag_b=0.0),
-    "TranslationalMass": TranslationalMass(m=100.0, lag_a=0.0, lag_b=0.0),
-    "TorqueProfile": TorqueProfile(ramp_height=0.0, pulse_height=1.0, **_LOAD),
-    "ForceProfile": ForceProfile(ramp_height=0.0, pulse_height=1e3, **_LOAD),
-}
+from jointfmu.quantity import build, flat_fields
 
 
 def _model(
-    name: str, doc: str, inputs: Sequence[Variable], outputs: Sequence[Variable], states: int, ramp: Ramp
+    parameters: type[Any],
+    doc: str,
+    inputs: Sequence[Variable],
+    outputs: Sequence[Variable],
+    states: int,
+    ramp: Ramp,
 ) -> Model:
     return Model(
-        name=name,
+        name=parameters.__name__,
         joint="partner",
         doc=doc,
-        parameters=type(_DEFAULTS[name]),
-        spring=lambda parameters: parameters,
+        parameters=parameters,
+        spring=lambda partner: partner,
         inputs=inputs,
         outputs=outputs,
-        evaluate=lambda parameters, values: parameters.outputs(values),
+        evaluate=lambda partner, values: partner.outputs(values),
         outside=(),
         ramp=ramp,
         # states depend on no input, the rate of the speed on the inputs and the position
@@ -44,7 +42,7 @@ PARTNERS: dict[str, Model] = {
     model.name: model
     for model in (
         _model(
-            "RotationalInertia",
+            RotationalInertia,
             "Rotational inertia with its weight: torques in, motion out",
             (
                 Variable("tau_a", "N.m", "torque on the inertia"),
@@ -59,7 +57,7 @@ PARTNERS: dict[str, Model] = {
             Ramp("tau_a", 1.0, 1e-3, 1e-3),
         ),
         _model(
-            "TranslationalMass",
+            TranslationalMass,
             "Mass: forces in, motion out",
             (
                 Variable("f_a", "N", "force on the mass", 1e3),
@@ -74,7 +72,7 @@ PARTNERS: dict[str, Model] = {
             Ramp("f_a", 1e3, 1.0, 1e-5),
         ),
         _model(
-            "TorqueProfile",
+            TorqueProfile,
             "Torque over time: a ramp that stays and a pulse, without corners",
             (Variable("tau_in", "N.m", "torque that is added"),),
             (Variable("tau", "N.m", "torque"),),
@@ -82,7 +80,7 @@ PARTNERS: dict[str, Model] = {
             Ramp("tau_in", 1.0, 1e-3, 1e-3),
         ),
         _model(
-            "ForceProfile",
+            ForceProfile,
             "Force over time: a ramp that stays and a pulse, without corners",
             (Variable("f_in", "N", "force that is added", 1e3),),
             (Variable("f", "N", "force", 1e3),),
@@ -94,9 +92,18 @@ PARTNERS: dict[str, Model] = {
 
 
 def parameters(name: str) -> ParameterFile:
-    """The parameters of a partner, in the form of a joint's."""
-    values = _DEFAULTS[name]
-    names = flatten(values)
-    return ParameterFile(
-        "partner", name, values, dict.fromkeys(names, "estimate"), dict.fromkeys(names, _SOURCE)
-    )
+    """The parameters of a partner, models/partners/NAME.toml, in the form of a joint's.
+
+    Raises ValueError with one line that names the file, the entry and what is allowed.
+    """
+    path = Path(str(files("jointfmu_models") / "partners" / f"{name}.toml"))
+    document = read_document(path, "a partner's parameter file")
+    if document.get("partner") != name:
+        raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {name!r}")
+    cls = PARTNERS[name].parameters
+    body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
+    values, origins, sources = entries(path, dict(flat_fields(cls)), body)
+    try:
+        return ParameterFile("partner", name, build(cls, values), origins, sources)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None

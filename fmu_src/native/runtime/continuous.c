@@ -1,4 +1,4 @@
-#include "instance.h"
+#include "continuous.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "tables.h"
+#include "tabulated.h"
 
 #include <math.h>
 #include <string.h>

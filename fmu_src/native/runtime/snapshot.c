@@ -1,4 +1,4 @@
-#include "instance.h"
+#include "snapshot.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "blocks.h"
+#include "table.h"
 
 void block_through(Block *block, const Sample *first, const Sample *middle, const Sample *last, double cell)
 {

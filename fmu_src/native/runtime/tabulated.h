@@ -1,6 +1,6 @@
 /* Every joint is constants that follow from the parameters, a curve, and what its kind needs beside. */
-#ifndef JOINTFMU_TABLES_H
-#define JOINTFMU_TABLES_H
+#ifndef JOINTFMU_TABULATED_H
+#define JOINTFMU_TABULATED_H
 
 #include "curve.h"
 #include "joint.h"

@@ -1,7 +1,7 @@
 /* Functions on an interval as quintics over blocks of two equal cells, each from the values and slopes at
  * its three nodes. */
-#ifndef JOINTFMU_BLOCKS_H
-#define JOINTFMU_BLOCKS_H
+#ifndef JOINTFMU_TABLE_H
+#define JOINTFMU_TABLE_H
 
 enum { BLOCK_FUNCTIONS = 2 };
 
