@@ -239,7 +239,7 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
         got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
         np.testing.assert_allclose(got, expected, rtol=TOLERANCE)
         assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
-    library.write(tmp_path, file, [(PRELOAD, 0.0)])
+    library.write(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
     assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
 
 
