@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...quantity import Number, where
+from ...quantity import Number
 
 
 def rise(x: Number) -> tuple[Number, Number]:
@@ -23,7 +23,7 @@ def pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Num
     part = contact_ratio - least
     width = engagement * np.minimum(part, 1.0 - part)
     changing = width > 0.0
-    length = where(changing, width, 1.0)
+    length = np.where(changing, width, 1.0)
     away = phase - np.floor(phase + 0.5)
     one, slope = rise(0.5 + (0.5 * part - np.abs(away)) / length)
-    return least + where(changing, one, 0.0), where(changing, -np.sign(away) * slope / length, 0.0)
+    return least + np.where(changing, one, 0.0), np.where(changing, -np.sign(away) * slope / length, 0.0)

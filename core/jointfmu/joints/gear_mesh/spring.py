@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,7 +51,7 @@ def deflection(mesh: GearMesh, motion: Sequence[Number]) -> Number:
 
 
 def phase(mesh: GearMesh, motion: Sequence[Number]) -> Number:
-    """Place in the mesh cycle [1] for phi1, w1, phi2, w2: mean way of both base circles over the base pitch."""
+    """Place in the mesh cycle [1] for phi1, w1, phi2, w2: mean way of both wheels over the base pitch."""
     phi1, _, phi2, _ = motion
     return 0.5 * (mesh.r_b1 * phi1 - mesh.r_b2 * phi2) / base_pitch(mesh)
 
@@ -91,7 +92,7 @@ def _tabulate(mesh: GearMesh, flanks: Curve, parts: int) -> Curve:
     kinks = 1 + np.flatnonzero(flanks.bend_end[:-1] != flanks.bend_start[1:])
     ends = [closed, *(int(i) for i in kinks if i > closed), nodes.size - 1]
     places = [(t**2 - 1.0) * -nodes[0]]
-    for first, last in zip(ends[:-1], ends[1:], strict=True):
+    for first, last in pairwise(ends):
         steps = np.diff(nodes[first : last + 1])[:, None] * np.arange(parts) / parts
         places.append(np.append((nodes[first:last, None] + steps).ravel(), nodes[last]))
     pieces = []
