@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.fitting import preload, torque_angle
-from jointfmu.fitting.drive import windup
+from jointfmu.joints.bolted_joint.fit import preload
+from jointfmu.joints.harmonic_drive.fit import torque_angle
+from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import default
 from jointfmu.progress import track
 

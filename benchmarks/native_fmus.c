@@ -1,7 +1,7 @@
 /* native_fmus LIBRARY 2|3 TOKEN N_INPUTS N_OUTPUTS REPEATS < inputs
  *
- * Times of the calls of an FMU, as a host in C makes them. `inputs` are two sets of ROWS rows of doubles:
- * along a smooth trajectory, and at random. Prints lines "NAME VALUE": seconds, and bytes of memory. */
+ * Times of the calls of an FMU, as a host in C makes them. `inputs` are three sets of ROWS rows of
+ * doubles: along a smooth trajectory, along one on which the preload moves too, and at random. Prints lines "NAME VALUE": seconds, and bytes of memory. */
 #include "host.h"
 
 #include <malloc.h>
@@ -96,13 +96,19 @@ typedef void Loop(Fmu *fmu, Inputs *inputs, long n);
 typedef struct {
     const char *name;
     Loop *loop, *less;
-    bool scattered;
+    int inputs; /* which set of inputs */
 } Measure;
 
+enum { SMOOTH, TIGHTENING, SCATTERED, SETS };
+
 static const Measure measures[] = {
-    {"cycle_smooth", set_step_get, NULL, false}, {"cycle_random", set_step_get, NULL, true},
-    {"step_smooth", set_step, set, false},       {"step_random", set_step, set, true},
-    {"unchanged", step, NULL, false},            {"derivative", derivative, NULL, false},
+    {"cycle_smooth", set_step_get, NULL, SMOOTH},
+    {"cycle_tightening", set_step_get, NULL, TIGHTENING},
+    {"cycle_random", set_step_get, NULL, SCATTERED},
+    {"step_smooth", set_step, set, SMOOTH},
+    {"step_random", set_step, set, SCATTERED},
+    {"unchanged", step, NULL, SMOOTH},
+    {"derivative", derivative, NULL, SMOOTH},
 };
 enum { MEASURES = sizeof measures / sizeof *measures };
 
@@ -132,7 +138,7 @@ static void start(Fmu *fmu, const char *token)
     MUST(fmu_exit(fmu), fmu);
 }
 
-static void measure_calls(const char *token, Inputs inputs[2], int repeats)
+static void measure_calls(const char *token, Inputs inputs[SETS], int repeats)
 {
     static double times[MEASURES][MOST_REPEATS];
     long calls[MEASURES];
@@ -140,14 +146,14 @@ static void measure_calls(const char *token, Inputs inputs[2], int repeats)
     start(&fmu, token);
     for (int i = 0; i < MEASURES; i++) {
         calls[i] = 1;
-        while (seconds(measures[i].loop, &fmu, &inputs[measures[i].scattered], calls[i]) < LONG_ENOUGH)
+        while (seconds(measures[i].loop, &fmu, &inputs[measures[i].inputs], calls[i]) < LONG_ENOUGH)
             calls[i] *= 2;
     }
     for (int r = 0; r < repeats; r++)
         for (int i = 0; i < MEASURES; i++) {
             const Measure *m = &measures[i];
-            const double whole = seconds(m->loop, &fmu, &inputs[m->scattered], calls[i]);
-            const double less = m->less ? seconds(m->less, &fmu, &inputs[m->scattered], calls[i]) : 0.0;
+            const double whole = seconds(m->loop, &fmu, &inputs[m->inputs], calls[i]);
+            const double less = m->less ? seconds(m->less, &fmu, &inputs[m->inputs], calls[i]) : 0.0;
             times[i][r] = (whole - less) / (double)calls[i];
         }
     for (int i = 0; i < MEASURES; i++)
@@ -204,8 +210,8 @@ int main(int argc, char **argv)
     }
     library = load(argv[1], argv[2]);
     v = layout(argv[4], argv[5], "0");
-    Inputs inputs[2];
-    for (int i = 0; i < 2; i++)
+    Inputs inputs[SETS];
+    for (int i = 0; i < SETS; i++)
         inputs[i] = read_inputs();
     measure_calls(argv[3], inputs, repeats);
     measure_start(argv[3], repeats);

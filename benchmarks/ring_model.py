@@ -8,18 +8,18 @@ import argparse
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
-
-from jointfmu import plots
-from jointfmu.fem.ring import Ring
-from jointfmu.fem.ring_data import SIZE_14, tooth_traction
-from jointfmu.fem.ring_drive import field, section, torsional_stiffness
-from jointfmu.fem.ring_forms import (
+from elastic_ring.data import SIZE_14, tooth_traction
+from elastic_ring.drive import field, section, torsional_stiffness
+from elastic_ring.forms import (
     on_oval,
     on_oval_in_elements,
     opposite_forces,
     opposite_forces_in_elements,
 )
+from elastic_ring.ring import Ring
+from scipy.optimize import brentq
+
+from jointfmu import plots
 from jointfmu.footprint.lobes import two_lobes
 from jointfmu.interface import checked_spots
 from jointfmu.joints.harmonic_drive.spring import contact_length, footprint, peak_pressure

@@ -10,6 +10,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flatten
+from jointfmu.units import UNITS
 
 from .archive import pack, workshop
 from .native.build import build
@@ -17,7 +18,6 @@ from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
 from .systems import SYSTEMS, System, system
-from .units import UNITS
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {

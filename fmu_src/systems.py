@@ -7,10 +7,10 @@ from importlib.resources import files
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ORIGINS
+from jointfmu.units import UNITS
 
 SCHEMA = 1
 SYSTEMS = ("robot_joint", "bolted_column")
-_UNITS = ("1", "s", "kg", "m", "kg.m2", "N", "N.m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +47,9 @@ def system(name: str) -> System:
             continue
         for key, entry in entries.items():
             label = f"{group}.{key}"
-            if entry["unit"] not in _UNITS or entry["kind"] not in ORIGINS or not entry["source"]:
+            if entry["unit"] not in UNITS or entry["kind"] not in ORIGINS or not entry["source"]:
                 raise ValueError(
-                    f"{path}: {label}: expected a unit of {', '.join(_UNITS)}, a kind and a source"
+                    f"{path}: {label}: expected a unit of {', '.join(UNITS)}, a kind and a source"
                 )
             values[label], units[label] = float(entry["value"]), entry["unit"]
             sources[label] = entry["source"]

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
-from jointfmu.quantity import Interval
-
-from .units import UNITS, display_unit
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Interval, flatten
+from jointfmu.units import UNITS, display_unit
 
 
 class Listed(NamedTuple):
@@ -47,19 +47,18 @@ class Unknown(NamedTuple):
     initial: dict[int, str]
 
 
-def listed(model: Model, values: Mapping[str, Any]) -> list[Listed]:
-    """All variables in the order of their value references, which count from 1.
-
-    values : {name: value} of at least the exposed parameters
-    """
+def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
+    """All variables in the order of their value references, which count from 1."""
+    values = flatten(parameters.values)
     found: list[Listed] = []
-    for causality, start, group in (("input", 0.0, model.inputs), ("output", None, model.outputs)):
+    for causality, group in (("input", model.inputs), ("output", model.outputs)):
         for i, v in enumerate(group):
             attributes = _shown(v.unit, v.nominal) | _bounds(v.interval)
             state = causality == "output" and i < model.states
             rate_of = len(found) if causality == "output" and 0 < i <= model.states else None
             attributes["nominal"] = repr(v.nominal)
-            found.append(Listed(v.name, causality, v.doc, 0.0 if state else start, attributes, rate_of))
+            start = parameters.start(v.name) if causality == "input" else 0.0 if state else None
+            found.append(Listed(v.name, causality, v.doc, start, attributes, rate_of))
     for name, item in model.parameter_fields().items():
         meta, value = item.metadata, values[name]
         doc = meta["doc"]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
@@ -170,14 +171,24 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
     )
 
 
+def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """A folder that `make` fills, once for all processes that share the tests."""
+    parallel = "PYTEST_XDIST_WORKER" in os.environ
+    folder = (factory.getbasetemp().parent if parallel else factory.getbasetemp()) / name
+    with FileLock(folder.with_suffix(".lock")):
+        if not folder.exists():
+            unfinished = folder.with_suffix(".part")
+            make(unfinished)
+            unfinished.rename(folder)
+    return folder
+
+
 @pytest.fixture(scope="session")
 def fmus(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with all FMUs of the default parameters."""
     from jointfmu_fmu_src.building import build
 
-    out = tmp_path_factory.mktemp("fmus")
-    build([], ["python"], None, out)
-    return out / "python"
+    return made_once(tmp_path_factory, "fmus", lambda out: build([], ["python"], None, out)) / "python"
 
 
 @pytest.fixture(scope="session")
@@ -185,9 +196,7 @@ def native(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with fmi2/NAME.fmu and fmi3/NAME.fmu of the default parameters."""
     from jointfmu_fmu_src.building import build
 
-    out = tmp_path_factory.mktemp("native")
-    build([], ["fmi2", "fmi3"], None, out)
-    return out
+    return made_once(tmp_path_factory, "native", lambda out: build([], ["fmi2", "fmi3"], None, out))
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import importlib.util
 import platform
+import re
 import sys
 from pathlib import Path
 
@@ -30,19 +31,31 @@ def test_pressure_inversion(monkeypatch, capsys):
 
 
 @pytest.mark.skipif((sys.platform, platform.machine()) != ("linux", "x86_64"), reason="needs Linux on x86_64")
-def test_native_fmus(native, fmus, tmp_path, monkeypatch, capsys):
+def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     module = benchmark("native_fmus")
     for short in ("ROUNDS", "REPEATS"):
         monkeypatch.setattr(module, short, 1)
     monkeypatch.setattr(module, "PYTHON_CYCLES", 2)
     monkeypatch.setattr(sys, "path", list(sys.path))  # pythonfmu adds to it
-    for folder in (native / "fmi2", native / "fmi3", fmus):
-        (tmp_path / folder.name).mkdir()
-        for fmu in folder.glob("*.fmu"):
-            (tmp_path / folder.name / fmu.name).symlink_to(fmu)
+    (tmp_path / fmus.name).mkdir()
+    for fmu in fmus.glob("*.fmu"):
+        (tmp_path / fmus.name / fmu.name).symlink_to(fmu)
     module.report(module.measure(tmp_path))  # the host fails if a call does
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
+    table, _, promised = capsys.readouterr().out.partition("\n\n")
+    rows = [line.split() for line in table.splitlines()[2:]]
     flavours = [(name, flavour) for name in MODELS for flavour in ("fmi2", "fmi3", "python")]
-    assert [tuple(row[:2]) for row in rows] == [*flavours, ("PassThrough", "fmi2"), ("PassThrough", "fmi3")]
+    through = [(name, flavour) for name in module.PASS_THROUGH for flavour in ("fmi2", "fmi3")]
+    assert [tuple(row[:2]) for row in rows] == [*flavours, *through]
     assert all(float(row[2].replace(",", "")) > 0.0 for row in rows)
-    assert [row[3] for row in rows[-2:]] == ["1.0", "1.0"]
+    assert [row[3] for row in rows if row[0] == "PassThrough"] == ["1.0", "1.0"]
+    assert len(promised.splitlines()) == 2 * (4 + len(MODELS))
+    assert all(" us of " in line for line in promised.splitlines())
+
+
+def test_the_readme_names_every_file():
+    """Each file or folder once as a row's subject, and no row of a file that is gone."""
+    text = (BENCHMARKS / "README.md").read_text()
+    cells = [line.split(" | ")[0] for line in text.splitlines() if line.startswith("| `")]
+    named = {name for cell in cells for name in re.findall(r"`([a-z_]+(?:\.py|\.c|/))", cell)}
+    there = {path.name + "/" * path.is_dir() for path in BENCHMARKS.iterdir() if path.name[0].isalpha()}
+    assert named == there - {"README.md"}

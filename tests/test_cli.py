@@ -172,7 +172,7 @@ def test_printed_parameters_are_settings(law_json, law):
 @each_law
 def test_parameter_file(law_json, tmp_path, law):
     """A changed file counts, and --set goes over it."""
-    joint = LAWS[law][1]
+    joint = next(name for name, kind in KINDS.items() if kind.law is LAWS[law])
     name = "traction_ratio" if law == "zhao2018" else "A_0"
     value = 0.002 if law == "hu2023" else 0.25
     path = tmp_path / "mine.toml"

@@ -2,12 +2,16 @@
 
 import json
 import re
+import subprocess
+import sys
 
 import pytest
 from conftest import refused_line
 
 from jointfmu import __version__, cli
+from jointfmu.export import exports
 from jointfmu.export.forms import FORMS
+from jointfmu.joints.kind import Kind
 from jointfmu.parameters import default, dump
 
 MARKS = {"ansys": "!", "calculix": "**", "abaqus": "**", "modelica": "#", "csv": "#"}
@@ -131,7 +135,7 @@ E = [
     (("csv", "contact", "--normal", "x"), "--normal has no meaning for a contact"),
     (("csv", "springs", "--preload", 9e3, "--error", 0.1), "--error has no meaning for springs"),
     (("csv", "contact", "--error", -1), "error = -1 is outside (0, 0.5)"),
-    (("calculix", "contact", "--error", 1e-4), "CalculiX holds 200"),
+    (("calculix", "contact", "--error", 1e-4), "holds 200; allow a larger error (--error)"),
     (("abaqus", "springs", "--nodes", "own.csv"), "--nodes needs --first, a number above all elements"),
     (("ansys", "springs", "--nodes", "own.csv", "--first", 9), "--nodes needs --first-set, a number above"),
     (("calculix", "springs", "--preload", 9e3, "--first-set", 9), "--first-set has no meaning for calculix"),
@@ -159,3 +163,21 @@ def test_refusals_are_one_line_and_write_nothing(arguments, said, folder, capsys
 def test_place_that_cannot_be_written(folder, capsys):
     assert "is a folder" in refused_line(capsys, "export", "csv", "contact", "--out", folder)
     assert "the following arguments are required: --out" in refused_line(capsys, "export", "csv", "contact")
+
+
+def test_a_joint_without_the_part_is_refused(monkeypatch):
+    monkeypatch.setattr(Kind, "part", lambda kind, tool: None)
+    with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
+        exports.required("gear_contact", "curve")
+
+
+def test_what_can_be_written_and_fitted_is_known_without_scipy():
+    program = (
+        "import argparse, sys\n"
+        "from jointfmu.commands import export, fit\n"
+        "words = argparse.ArgumentParser().add_subparsers()\n"
+        "export.add(words), fit.add(words)\n"
+        "print([name for name in ('scipy', 'matplotlib') if name in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

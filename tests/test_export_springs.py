@@ -11,8 +11,8 @@ import pytest
 from jointfmu.export import ansys, columns, keywords
 from jointfmu.export.mesh import Mesh, read_pairs
 from jointfmu.export.placing import AXES, Placing
-from jointfmu.export.springs import SUMS, of_joint, on_mesh, under_pressure
 from jointfmu.export.units import SI, UNITS
+from jointfmu.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures
 from jointfmu.parameters import default
 

@@ -9,13 +9,15 @@ from scipy.interpolate import PchipInterpolator
 from jointfmu.export import columns, files, keywords, tables
 from jointfmu.export.units import SI, UNITS
 from jointfmu.interface import at_pressure
+from jointfmu.joints.bolted_joint.export import State
+from jointfmu.joints.bolted_joint.export.pull import STRONGEST, pull_table
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 
 MM = UNITS["mm-N-MPa-t"]
-STATE = files.State(9e3, 0.0)
+STATE = State(9e3, 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +73,7 @@ def test_error_falls_with_the_square_of_the_rows(bolted):
 
 
 def test_pull_table_is_the_joints_force(bolted):
-    table = tables.pull_table(bolted, 9e3, 500.0, 1e-3)
+    table = pull_table(bolted, 9e3, 500.0, 1e-3)
     s, force, k = table.rows.T
     assert np.all(np.diff(s) > 0.0)
     assert np.all(np.diff(force) >= 0.0)
@@ -82,7 +84,7 @@ def test_pull_table_is_the_joints_force(bolted):
         assert -force[i] == pytest.approx(state["f_z"], rel=1e-9, abs=1e-6)
         assert k[i] == pytest.approx(state["K_zz"], rel=1e-9, abs=1.0)
     assert force[-1] == force[-2] == pytest.approx(72e3, rel=1e-12)
-    assert force[0] == pytest.approx(-(tables.STRONGEST - 1.0) * 72e3, rel=1e-3)  # its end is interpolated
+    assert force[0] == pytest.approx(-(STRONGEST - 1.0) * 72e3, rel=1e-3)  # its end is interpolated
     for x in np.linspace(s[0], s[-2], 401):
         exact = -bolted.motion(9e3, 500.0, (0.0, 0.0, x), (0.0, 0.0, 0.0))["f_z"]
         assert abs(np.interp(x, s, force) - exact) <= 1.01e-3 * max(abs(exact), 72e3)
@@ -105,7 +107,7 @@ def test_errors_that_no_table_has_are_refused(bolted, error):
 
 def test_state_outside_the_law_is_refused(bolted):
     with pytest.raises(ValueError, match="preload = -5 N per bolt"):
-        tables.pull_table(bolted, -5.0, 0.0, 1e-3)
+        pull_table(bolted, -5.0, 0.0, 1e-3)
 
 
 # ---- formats ----
@@ -132,7 +134,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
     file = default("bolted_joint")
     rows = files.contact("abaqus", file, SI, 1e-4).facts["rows"]
     assert rows > 200
-    with pytest.raises(ValueError, match=rf"the table has {rows + 1} rows, CalculiX holds 200; .*--error"):
+    with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; allow a larger error"):
         files.contact("calculix", file, SI, 1e-4)
 
 

@@ -5,14 +5,18 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 
 from jointfmu.curve import approach_curve
+from jointfmu.fem import newton
+from jointfmu.fem.balance import RigidBalance
 from jointfmu.fem.bolts import BoltList
 from jointfmu.fem.contact import ContactModel, ContactSolution, Interface
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.geometry import Assembly, Plate
 from jointfmu.fem.joint import BoltedContact, elastic_body, midway
+from jointfmu.fem.sparse import Cholesky
 from jointfmu.parameters import default
 
 ROUND_OFF = 1e-9  # of a solution by factorisation: condition number (1e6 here) times 1e-16, and to spare
@@ -180,10 +184,87 @@ def test_bodies_of_different_kind(law):
     assert moment == pytest.approx(-30.0, rel=1e-8)
 
 
-def test_without_a_load_to_close_it_the_contact_is_refused(plates, law):
-    model = ContactModel(plates.bodies, plates.interface, law)
-    with pytest.raises(RuntimeError, match=r"positive definite|not settled"):
-        model.solve([plates.heads[0] @ np.array([1.0, 1.0])], 1e5)
+# what has no equilibrium, whether or not a factorisation notices
+
+
+def pulled(plates, law, *forces, held=None):
+    """Both heads pulled by forces [N] along +z, away from the contact."""
+    model = ContactModel(plates.bodies, plates.interface, law, held=held)
+    return model, [plates.heads[0] @ np.array(forces)]
+
+
+@pytest.fixture(params=[False, True], ids=["factor", "perturbed factor"])
+def factor(request, monkeypatch):
+    """The factorisation as it is, and one of a matrix so perturbed that it never breaks down."""
+    if request.param:
+
+        def perturbed(matrix):
+            return Cholesky(matrix + 1e-9 * diags_array(matrix.diagonal()))
+
+        monkeypatch.setattr(newton, "Cholesky", perturbed)
+
+
+def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
+    model, loads = pulled(plates, law, 1.0, 1.0)
+    with pytest.raises(RuntimeError, match=r"only pushes leaves 0\.\d+ of them over, allowed is 1e-06$"):
+        model.solve(loads, 1e5)
+
+
+def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
+    """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
+    monkeypatch.setattr(RigidBalance, "check_loads", lambda self: None)
+    model, loads = pulled(plates, law, 1.0, 1.0)
+    with pytest.raises(RuntimeError, match=r"positive definite|not settled|stays closed|not in balance"):
+        model.solve(loads, 1e5)
+
+
+def test_contact_forces_are_checked_by_their_sums(plates, law):
+    model, loads = pulled(plates, law, -4e3, -4e3)
+    solution, balance = model.solve(loads, 1e6), model.balance(loads)
+    force = 0.5 * model.interface.area * solution.pressure  # the mirror image takes the other half
+    balance.check_contact(force * (1.0 + 1e-8))
+    with pytest.raises(RuntimeError, match=r"leaves \S+ of the loads over, allowed is 1e-06$"):
+        balance.check_contact(force * (1.0 + 1e-5))
+    with pytest.raises(RuntimeError, match="stays closed at 1 of 2412 points"):
+        balance.check_contact(np.where(np.arange(force.size) == 7, force, 0.0))
+    with pytest.raises(RuntimeError, match="not in balance: it leaves nan"):
+        balance.check_contact(np.where(np.arange(force.size) == 7, np.nan, force))
+
+
+def test_the_resultant_must_meet_the_contact(plates, law):
+    """Bolts at y = 15 mm, faces to 30 mm: forces f1, f2 have their resultant at 15 mm (f1 - f2)/(f1 + f2)."""
+    model, inside = pulled(plates, law, 0.3e3, -1e3)  # at 27.9 mm
+    pressure = model.solve(inside, 1e6).pressure
+    assert 0.0 < np.mean(pressure > 0.0) < 0.5
+    for outside in (0.34e3, 0.5e3, 1e3):  # at 30.5 mm, at 45 mm, nowhere
+        model, loads = pulled(plates, law, outside, -1e3)
+        with pytest.raises(RuntimeError, match="the loads do not balance"):
+            model.solve(loads, 1e6)
+
+
+def test_a_side_load_is_refused(plates, law):
+    """Without friction nothing carries it: the supports must not do so in silence."""
+    model, loads = pulled(plates, law, -4e3, -4e3)
+    loads[0][::3] += 10.0 * plates.heads[0][2::3, 0]
+    with pytest.raises(RuntimeError, match="the loads do not balance"):
+        model.solve(loads, 1e6)
+
+
+def test_bodies_without_supports_are_refused(plates, law):
+    model, loads = pulled(plates, law, -4e3, -4e3, held=(np.zeros(0, dtype=np.int64),))
+    with pytest.raises(RuntimeError, match="leave a rigid motion of a body free"):
+        model.solve(loads, 1e6)
+
+
+def test_loads_within_a_body_close_no_contact(plates, law):
+    model, loads = pulled(plates, law, 0.0, 0.0)
+    with pytest.raises(RuntimeError, match="all loads are 0 N"):
+        model.solve(loads, 1e6)
+    x, y, z = plates.bodies[0].nodes
+    ends = [int(np.argmin(side * x + 1e-3 * (y + z))) for side in (1.0, -1.0)]  # of one edge, drawn out
+    loads[0][[3 * end for end in ends]] = -5.0, 5.0
+    with pytest.raises(RuntimeError, match=r"its force is \S+ of the loads, needed is more than 1e-06$"):
+        model.solve(loads, 1e6)
 
 
 def test_neighbours_of_bolts():

@@ -128,7 +128,7 @@ REFUSED = [
     (["--field", "field.dat"], "suffix '.dat' is no field, allowed are .csv, .vtu"),
     (["--plot", "field.gif"], "suffix '.gif' is no picture"),
     (["--out", "."], "is a folder"),
-    (["--joint", "nowhere.toml"], "nowhere.toml: cannot be read"),
+    (["--params", "nowhere.toml"], "nowhere.toml: cannot be read"),
 ]
 
 

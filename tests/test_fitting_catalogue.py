@@ -9,8 +9,8 @@ import pytest
 from conftest import refused_line
 
 from jointfmu import cli, ramp
-from jointfmu.fitting import catalogue
-from jointfmu.fitting.drive import windup
+from jointfmu.joints.harmonic_drive.fit import catalogue
+from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import load
 
 SIZE_14 = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
@@ -54,7 +54,7 @@ def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
     out = tmp_path / "out.toml"
     source = "Harmonic Drive catalogue, CSG/HFUC series, size 14, ratio 80 and more"
-    assert cli.main(["fit", "catalogue", *options(**SIZE_14, ratio=100, source=source, write=out)]) == 0
+    assert cli.main(["fit", "catalogue", *options(**SIZE_14, ratio=100, source=source, out=out)]) == 0
     assert "not determined" in capsys.readouterr().out  # three angles do not fix three parameters
     made, shipped = load(out), load(SHIPPED)
     assert (made.name, made.sources, made.origins) == (shipped.name, shipped.sources, shipped.origins)

@@ -9,11 +9,12 @@ import pytest
 from conftest import refused_line
 
 from jointfmu import cli
-from jointfmu.fitting import preload, torque_angle
-from jointfmu.fitting.drive import windup
 from jointfmu.fitting.least_squares import Unknown, solve
 from jointfmu.fitting.loop import backbone
+from jointfmu.joints.bolted_joint.fit import preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.harmonic_drive.fit import torque_angle
+from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import default, dump, load
 
 SCRIPT = Path(__file__).resolve().parent.parent / "benchmarks" / "fit_round_trips.py"
@@ -150,7 +151,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
     out, picture = tmp_path / "drive.toml", tmp_path / "fit.png"
     assert (
-        cli.main(["fit", "torque-angle", str(loops), "--write", str(out), "--plot", str(picture), "--json"])
+        cli.main(["fit", "torque-angle", str(loops), "--out", str(out), "--plot", str(picture), "--json"])
         == 0
     )
     document = json.loads(capsys.readouterr().out)
@@ -195,7 +196,7 @@ def test_frequency_without_mass_keeps_the_surface(tmp_path):
     )
     found = preload.fit(path)
     assert set(found.solution.values) == {"surface.D", "mass"}
-    assert any("--modal-mass" in line for line in found.warnings())
+    assert any("state the modal mass" in line for line in found.warnings())
 
 
 def test_series_stiffness_is_in_series(tmp_path):

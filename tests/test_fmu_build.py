@@ -6,15 +6,20 @@ import os
 import re
 import subprocess
 import sys
+import zipfile
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 from conftest import refused_line
-from fmpy import read_model_description
+from fmpy import platform_tuple, read_model_description
 from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.native import build as native_build
+from jointfmu_fmu_src.native import compiler
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.systems import SYSTEMS
 from pythonfmu import FmuBuilder
@@ -72,6 +77,28 @@ def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
     assert second == first
     assert read_model_description(str(second)).guid != before
     assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
+
+
+def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All flavours list them, use them without being told, and the page says so."""
+    monkeypatch.setattr(native_build, "libraries", partial(compiler.libraries, platforms=(platform_tuple,)))
+    file = replace(default("bolted_joint"), inputs={"preload": 9e3})
+    model = MODELS["BoltedJoint"]
+    loaded = model.evaluate(model.spring(file.values), {v.name: file.start(v.name) for v in model.inputs})
+    for path in build([model.name], ["fmi3", "python"], file, tmp_path):
+        variables = read_model_description(str(path)).modelVariables
+        start = {v.name: float(v.start) for v in variables if v.causality == "input"}
+        assert start == {v.name: file.start(v.name) for v in model.inputs}
+        assert start["preload"] == 9e3
+        for settings, expected in (({}, float(loaded["K_zz"])), ({"preload": 0.0}, 0.0)):
+            found = ramp.run(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
+            assert found == pytest.approx(expected, rel=1e-10)  # as C and Python agree elsewhere
+    with zipfile.ZipFile(tmp_path / "fmi3" / f"{model.name}.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    assert "pre-tightening force of each bolt; at least 0; starts at 9000<" in page
+    assert "all other inputs at their start values." in page
 
 
 def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:

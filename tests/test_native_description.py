@@ -6,6 +6,7 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +18,6 @@ from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.native import licence as licence_module
 from jointfmu_fmu_src.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
-from jointfmu_fmu_src.native.icon import icon
 from jointfmu_fmu_src.native.licence import licence
 from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.native.terminals import terminals_and_icons
@@ -528,7 +528,7 @@ def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
 def test_icons_are_small_and_tell_the_joints_apart() -> None:
     seen = set()
     for fmu_name in PUBLIC:
-        png, svg = icon(fmu_name)
+        png, svg = (pictures(fmu_name)[f"icon.{kind}"] for kind in ("png", "svg"))
         image = Image.open(io.BytesIO(png))
         assert image.size == (200, 200)
         corner = image.convert("RGBA").getpixel((0, 0))
@@ -536,13 +536,17 @@ def test_icons_are_small_and_tell_the_joints_apart() -> None:
         assert corner[3] == 0  # transparent, so that terminals show beside it
         assert len(png) < 6e3
         assert len(svg) < 10e3
-        root = etree.fromstring(svg.encode())
+        root = etree.fromstring(svg)
         assert root.tag == "{http://www.w3.org/2000/svg}svg"
         assert root.get("viewBox") == "0 0 144 144"
-        seen |= {png, svg.encode()}
-        assert pictures(fmu_name)["icon.png"] == png
-        assert pictures(fmu_name)["icon.svg"] == svg.encode()
+        seen |= {png, svg}
     assert len(seen) == 2 * len(PUBLIC)
+
+
+def test_an_icon_that_is_missing_is_named() -> None:
+    nameless = replace(MODELS["GearContact"], name="GearContact2")
+    with pytest.raises(ValueError, match=r"^GearContact2: \S+GearContact2\.png is missing; expected"):
+        terminals_and_icons(nameless)
 
 
 class Page(HTMLParser):

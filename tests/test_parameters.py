@@ -41,6 +41,7 @@ def test_round_trip(joint, file):
     original = default(joint)
     again = load(file(dump(original)), joint)
     assert again.values == original.values
+    assert again.inputs == original.inputs
     assert (again.joint, again.name) == (joint, original.name)
     for name in flatten(original.values):
         assert again.origins[name] == original.origins.get(name, "user")
@@ -118,6 +119,33 @@ def test_with_values():
             file.with_values(changes, "user", "wrong")
 
 
+PRELOAD = 'preload = { value = 0.0, unit = "N"'
+
+
+def test_start_values_of_inputs(file):
+    """Those of the file, with their origin; zero elsewhere, and where there is no such section."""
+    path = file(bolts(PRELOAD, PRELOAD.replace("0.0", "9e3")))
+    found = load(path)
+    assert found.inputs == {"preload": 9e3, "moment": 0.0}
+    assert (found.start("preload"), found.start("s_rel_z")) == (9e3, 0.0)
+    assert found.sources["inputs.preload"] == "default choice: before tightening"
+    changed = found.with_values({"H": 2e9}, "user", "measured")
+    again = load(file(dump(changed)))
+    assert (again.inputs, again.origins, again.sources) == (found.inputs, changed.origins, changed.sources)
+    bare = load(file(bolts().partition("[inputs]")[0]))
+    assert bare.inputs == {}
+    assert bare.start("preload") == 0.0
+    assert "[inputs]" not in dump(bare)
+
+
+@each_joint
+def test_default_start_values_are_at_rest(joint):
+    """The shipped files start every input at zero, as all before them did."""
+    file = default(joint)
+    assert file.inputs
+    assert set(file.inputs.values()) == {0.0}
+
+
 @pytest.mark.parametrize(
     "text",
     ['a "quoted" word', "back\\slash \\n", "tab\tand é µ 世", "'", "bell\x07"],
@@ -174,6 +202,25 @@ REFUSED = {
     "rows": ("row_bolts = { value = 3.0", "row_bolts = { value = 5", ["row_bolts = 5", "[1, 4]"]),
     "choice": ('"continuity"', '"jump"', ["critical_area = 'jump'", "continuity, printed, yield"]),
     "choice-number": ('"continuity"', "1.0", ["critical_area = 1.0", "continuity, printed, yield"]),
+    "input": (
+        "preload = {",
+        "preloads = {",
+        ["'inputs.preloads'", "inputs.preload, inputs.moment"],
+    ),
+    "output": ("preload = {", "K_zz = {", ["'inputs.K_zz'", "inputs.preload"]),
+    "input-unit": (PRELOAD, PRELOAD.replace('"N"', '"kN"'), ["inputs.preload", "unit 'kN'", "expected 'N'"]),
+    "input-low": (
+        PRELOAD,
+        PRELOAD.replace("0.0", "-1.0"),
+        ["inputs.preload = -1 N", "[0, inf)", "pre-tightening force"],
+    ),
+    "input-nan": (PRELOAD, PRELOAD.replace("0.0", "nan"), ["inputs.preload = nan N", "[0, inf)"]),
+    "input-text": (PRELOAD, PRELOAD.replace("0.0", '"much"'), ["inputs.preload = 'much'", "not a number"]),
+    "input-bare": (
+        "[inputs]\n" + bolts().splitlines()[-2],
+        "[inputs]\npreload = 9e3",
+        ["inputs.preload = 9000.0", "{ value, unit, kind, source }"],
+    ),
     "two-tables": ("[surface]", "[[surface]]", ["surface", "{ value, unit, kind, source }"]),
 }
 

@@ -2,10 +2,10 @@
 
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import pytest
-from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 
@@ -24,9 +24,9 @@ def blocks(language):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory, native):
     place = tmp_path_factory.mktemp("readme")
-    build([], ["fmi2", "fmi3"], None, place / "dist")
+    shutil.copytree(native, place / "dist", ignore=shutil.ignore_patterns(".*"))
     native_build("RotationalInertia", partner_parameters("RotationalInertia"), place / "dist" / "fmi2", "2")
     (place / "my_joint.toml").write_text((ROOT / "models/bolted_joint/box_specimen.toml").read_text())
     (place / "models/assemblies").mkdir(parents=True)

@@ -14,7 +14,7 @@ from xml.etree.ElementTree import tostring
 import fmpy
 import numpy as np
 import pytest
-from conftest import Fmu, refused_line
+from conftest import Fmu, made_once, refused_line
 from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
@@ -23,7 +23,7 @@ from jointfmu_fmu_src import ringing, ssp
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.checks import check_ringing
 from jointfmu_fmu_src.master import Slave, motion
-from jointfmu_fmu_src.native.terminals import TERMINALS
+from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.systems import SYSTEMS, system
 from lxml import etree
@@ -51,10 +51,12 @@ LINK = system("robot_joint").values["link.J"]
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What `jointfmu build --systems` makes, and the drive with torque in."""
-    out = tmp_path_factory.mktemp("systems")
-    build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
-    assert cli.main(["build", "--systems", "--out", str(out)]) == 0
-    return out
+
+    def make(out: Path) -> None:
+        build(["HarmonicDriveCompliance"], ["fmi2"], None, out)
+        assert cli.main(["build", "--systems", "--out", str(out)]) == 0
+
+    return made_once(tmp_path_factory, "systems", make)
 
 
 @pytest.fixture
@@ -108,7 +110,7 @@ def test_flanges_of_a_partner_fit_those_of_the_joints(built: Path, name: str) ->
         (flow,) = [m for m in members.values() if m["variableKind"] != "signal"]
         assert flow["variableKind"] == "inflow"
         joint = {"phi": "HarmonicDriveSpring", "s": "BoltedJoint"}[next(iter(members))]
-        assert any(t.members.keys() == members.keys() for t in TERMINALS[joint])
+        assert any(t.members.keys() == members.keys() for t in terminals(MODELS[joint]))
     motion, rate, load = {"RotationalInertia": ("phi", "w", "tau")}.get(name, ("s", "v", "f"))
     expected = {f"flange_{x}": {motion: motion, rate: rate, load: f"{load}_{x}"} for x in "ab"}
     assert found == (expected if PARTNERS[name].states else {})

@@ -152,7 +152,9 @@ def test_form_is_removed(area, form, order):
             "# profile: x [m], z [m]\n" + "".join(f"{i},nan\n" for i in range(200)),
             "all 200 heights",
         ),
-        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "text.csv: is no surface"),
+        ("text.csv", "# profile: x [m], z [m]\n1,abc\n", "is no surface: line 2: 'abc' is no number"),
+        ("short.csv", "# profile: x [m], z [m]\n1,2\n\n3\n", "short.csv: line 4 has 1 columns, expected 2"),
+        ("head.csv", "# profile: x [m], z [m]\n", "head.csv: is no surface: it holds no numbers"),
         ("cols.csv", "# profile: x [m], z [m]\n1,2,3\n", "has 3 columns, its header declares 2"),
         ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x repeats values"),
         (
@@ -175,7 +177,7 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
         (["--unit", "um"], "states its units itself"),
         (["--range", "2", "1"], "expected 0 < LOW < HIGH"),
         (["--range", "1", "2"], "holds 0 values"),
-        (["--write", "x.toml"], "needs --joint"),
+        (["--out", "x.toml"], "needs --joint"),
         (["--joint", "glue"], "invalid choice: 'glue'"),
         (["--plot", "x.pdf"], "suffix '.pdf' is no picture, allowed are .png, .svg"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
@@ -187,6 +189,16 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
 def test_options_are_refused_by_name(folder, capsys, options, says):
     assert says in refused_line(capsys, "surface", "line.csv", *options)
     assert not (folder / "x.toml").exists()
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t", " "])
+def test_cells_of_numbers(folder, mark):
+    """An empty cell is a gap, what follows # is a comment; without a separator blanks divide."""
+    gap = "nan" if mark == " " else ""
+    lines = ["# x", f"1{mark} 2.5{mark}3  # here", "", f"{gap}{mark}-1e-3{mark} {gap}"]
+    (folder / "n.csv").write_text("\n".join(lines))
+    expected = [[1.0, 2.5, 3.0], [np.nan, -1e-3, np.nan]]
+    np.testing.assert_array_equal(csvfile.table(folder / "n.csv"), expected)
 
 
 def test_bare_columns_take_the_unit(folder, line, capsys):
@@ -223,6 +235,21 @@ def test_json_is_one_object(folder, capsys):
         assert one["G_eq30"] < one["profile"]["G"]["value"]  # ln 1.5 < 1
 
 
+def test_help_shows_both_sub_commands(capsys):
+    for words, shown in ((["--help"], "synthesize"), (["a.csv", "--help"], "--range LOW HIGH")):
+        with pytest.raises(SystemExit) as end:
+            cli.main(["surface", *words])
+        assert end.value.code == 0
+        said = capsys.readouterr().out
+        assert "identify" in said
+        assert shown in said
+
+
+def test_sub_command_may_be_named(folder, capsys):
+    named = run(capsys, "surface", "identify", "line.csv", "--json").out
+    assert named == run(capsys, "surface", "--json", "line.csv").out
+
+
 @pytest.mark.parametrize("suffix", ["png", "svg"])
 def test_plot(folder, capsys, suffix):
     run(capsys, "surface", "line.csv", "--plot", f"p.{suffix}")
@@ -231,7 +258,7 @@ def test_plot(folder, capsys, suffix):
 
 
 def test_written_parameters_build(folder, capsys):
-    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--write", "gear.toml")
+    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--out", "gear.toml")
     file = load("gear.toml", "gear_contact")
     assert file.sources["surface1.D"].startswith("identified from line.csv by ")
     assert file.values.e == default("gear_contact").values.e
@@ -240,10 +267,12 @@ def test_written_parameters_build(folder, capsys):
 
 
 def test_params_choose_the_start(folder, capsys):
-    run(capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml")
+    run(
+        capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml"
+    )  # the other name of --out
     changed = (folder / "a.toml").read_text().replace("H = { value = 1960000000.0", "H = { value = 2.5e9")
     (folder / "a.toml").write_text(changed)
-    run(capsys, "surface", "area.csv", "--params", "a.toml", "--write", "b.toml")
+    run(capsys, "surface", "area.csv", "--params", "a.toml", "--out", "b.toml")
     file = load("b.toml", "bolted_joint")
     assert file.values.H == 2.5e9
     assert "area.csv" in file.sources["surface.G"]

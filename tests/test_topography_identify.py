@@ -1,9 +1,13 @@
 """Made surfaces are identified again; intervals, ranges, pairs and joints are what they claim to be."""
 
+import json
+
 import numpy as np
 import pytest
+from conftest import refused_line
 from scipy.integrate import quad
 
+from jointfmu import cli
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
 from jointfmu.topography import fractal, synthesis
@@ -12,6 +16,7 @@ from jointfmu.topography.form import without_form
 from jointfmu.topography.heights import Areal, Profile
 from jointfmu.topography.identify import identify
 from jointfmu.topography.joint import changes, with_surface
+from jointfmu.topography.results import Roughness
 from jointfmu.topography.spectrum import psd
 from jointfmu.topography.structure import structure
 
@@ -151,6 +156,61 @@ def test_range_ends_where_the_surface_rolls_off():
 def test_short_range_warns():
     found = identify([synthesis.isotropic(waves(64), 2.5, 1e-9, 20, 1)])
     assert any("less than one" in text for text in found.warnings)
+
+
+def smooth_profile(points):
+    """A profile whose amplitudes fall like f^-2, faster than any with D > 1: D ends at its bound."""
+    f = np.fft.rfftfreq(points, 1e-6)
+    f[0] = np.inf
+    z = np.fft.irfft(np.fft.rfft(np.random.default_rng(1).standard_normal(points)) / f**2)
+    return Profile(z=z * 1e-7 / z.std(), dx=1e-6, name="smooth")
+
+
+@pytest.mark.parametrize("points", [256, 512, 1024])
+def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
+    found = identify([smooth_profile(points)])
+    best = found.best()
+    assert best.profile.D.value == pytest.approx(1.02, abs=1e-3)  # 2 less the bound of H in the fit
+    for G in (best.profile.G, best.areal.G_s):
+        assert not G.determined
+        assert np.isnan([G.value, G.low, G.high]).all()
+        assert 200.0 < G.decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
+    (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
+    assert f"spans {best.profile.G.decades:.1f} decades" in text
+    for joint in KINDS:
+        with pytest.raises(ValueError, match=rf"G of smooth is not determined .*: {joint} needs a number"):
+            with_surface(default(joint), found)
+
+
+def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
+    path, written = tmp_path / "smooth.csv", tmp_path / "joint.toml"
+    profile = smooth_profile(512)
+    x = np.arange(profile.z.size) * profile.dx
+    np.savetxt(path, np.stack([x, profile.z], axis=1), delimiter=",")
+    assert cli.main(["surface", str(path), "--unit", "m"]) == 0
+    out, err = capsys.readouterr()
+    assert "1.02" in out
+    assert "not determined" in out
+    assert "surface.G not determined" in out
+    assert "warning: G is not determined" in err
+    assert cli.main(["surface", str(path), "--unit", "m", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)  # no NaN, no Infinity
+    assert {"value": None, "low": None, "high": None} in [one["profile"]["G"] for one in said["results"]]
+    assert said["joints"]["bolted_joint"]["surface.G"] is None
+    to_write = ("--joint", "bolted_joint", "--write", written)
+    refused = refused_line(capsys, "surface", path, "--unit", "m", *to_write)
+    assert f"surface.G of {path} is not determined" in refused
+    assert not written.exists()
+
+
+def test_roughness_leaves_the_floating_point_numbers():
+    inside = Roughness.of_logarithms(-300.0, -700.0, 100.0)
+    assert inside.determined
+    assert (inside.value, inside.low, inside.high) == tuple(np.exp([-300.0, -700.0, 100.0]))
+    for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
+        outside = Roughness.of_logarithms(value, low, high)
+        assert not outside.determined
+        assert outside.decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
 
 
 def test_pair_adds_the_powers():

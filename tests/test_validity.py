@@ -4,9 +4,7 @@ The numbers of the document come from benchmarks/validity.py; the bounds here ar
 of 64 and 128 points, whose answers were seen to lie within a factor of two of those of 256.
 """
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,11 +14,8 @@ from jointfmu.topography import fractal
 from jointfmu.topography.synthesis import periodic
 
 pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "benchmarks"))
 import boundary_element
 import interface_laws
-
-sys.path.pop(0)
 
 
 def test_hertz_is_met_and_better_on_a_finer_grid():

@@ -5,6 +5,7 @@ Exit status 0: done; 1: the work failed its check; 2: bad input, one line on sta
 
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from . import __version__
 from .commands import (
@@ -22,7 +23,8 @@ from .commands import (
     uncertainty,
     validate,
 )
-from .commands.common import Parser
+from .commands.common import Parser, flag
+from .refusal import Refusal
 
 COMMANDS = (
     law,
@@ -41,9 +43,29 @@ COMMANDS = (
 )
 
 
-def parser() -> Parser:
+IMPLIED = {"surface": surface.SUBCOMMANDS}
+"""{command: its sub-commands}, of which the first runs where none is named."""
+
+
+class CommandLine(Parser):
+    """The parser of all commands; a sub-command may be left out."""
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, with the sub-command that the words imply."""
+        return super().parse_args(_explicit(list(sys.argv[1:] if args is None else args)), namespace)
+
+
+def _explicit(words: list[str]) -> list[str]:
+    """The words with the sub-command that they imply."""
+    names = IMPLIED.get(words[0]) if words else None
+    if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
+        return words
+    return [words[0], names[0], *words[1:]]
+
+
+def parser() -> CommandLine:
     """The parser of all commands."""
-    top = Parser(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
+    top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for one in COMMANDS:
@@ -57,7 +79,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(args.run(args))
     except (ValueError, RuntimeError) as error:
-        print(f"jointfmu {args.command}:", *str(error).splitlines(), file=sys.stderr)
+        hint = [f"({flag(error.setting)})"] if isinstance(error, Refusal) else []
+        print(f"jointfmu {args.command}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:
         print(f"jointfmu {args.command}: interrupted", file=sys.stderr)

@@ -6,6 +6,7 @@ A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
 `kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
+A section `[inputs]` of the same form gives start values of the joint's inputs; others start at zero.
 """
 
 import json
@@ -13,12 +14,12 @@ import os
 import tempfile
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import Field, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from .joints import KINDS
-from .quantity import build, changed, flat_fields, flatten
+from .quantity import build, changed, flat_fields, flatten, problem, quantity
 
 SCHEMA = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -26,6 +27,8 @@ ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user
 an engineering estimate, fitted to calibration points, or set by the user."""
 _PER_LINE = 5
 """Numbers of a list on a line."""
+_INPUTS = "inputs."
+"""Prefix of the names of start values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +38,8 @@ class ParameterFile:
     joint   : a key of joints.KINDS
     name    : of this parameter set
     values  : the parameter set, an instance of KINDS[joint].parameters
-    origins, sources : {structured name: one of ORIGINS, text}
+    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`
+    inputs  : {input: start value in its SI unit}, where it is given
     """
 
     joint: str
@@ -43,6 +47,11 @@ class ParameterFile:
     values: Any
     origins: Mapping[str, str]
     sources: Mapping[str, str]
+    inputs: Mapping[str, float] = field(default_factory=dict)
+
+    def start(self, name: str) -> float:
+        """Start value of an input, in its SI unit: zero unless it is given."""
+        return self.inputs.get(name, 0.0)
 
     def with_values(self, changes: Mapping[str, Any], origin: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""
@@ -59,7 +68,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
 
     Raises ValueError with one line that names the file, the entry, its value and what is allowed:
     a missing or broken file, another joint's file, an unknown or missing name, a foreign unit, a
-    value of the wrong type or outside its interval.
+    value of the wrong type or outside its interval; the same for the start values of inputs.
     """
     path = Path(path)
     document = read_document(path, "a parameter file")
@@ -70,12 +79,13 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
         raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
     cls = KINDS[kind].parameters
-    values, origins, sources = entries(path, cls, body)
+    values, origins, sources = entries(path, dict(flat_fields(cls)) | _input_fields(kind), body)
+    given = {name: values.pop(name) for name in list(values) if name.startswith(_INPUTS)}
     try:
-        parameters = build(cls, values)
+        inputs, parameters = _start_values(kind, given), build(cls, values)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, origins, sources)
+    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, origins, sources, inputs)
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
@@ -97,10 +107,9 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
 
 
 def entries(
-    path: Path, cls: type[Any], body: Mapping[str, Any]
+    path: Path, declared: Mapping[str, Field[Any]], body: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
-    """Values, origins and sources by structured name; every unit checked against the parameter set `cls`."""
-    declared = dict(flat_fields(cls))
+    """Values, origins and sources by structured name; every unit checked against the field `declared`."""
     values: dict[str, Any] = {}
     origins: dict[str, str] = {}
     sources: dict[str, str] = {}
@@ -137,12 +146,38 @@ def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
     return found
 
 
+def _input_fields(joint: str) -> dict[str, Field[Any]]:
+    """Fields of the inputs of all models of a joint, named as their start values."""
+    inputs = (v for model in KINDS[joint].models for v in model.inputs)
+    return {_INPUTS + v.name: quantity(v.unit, v.doc, ge=v.low) for v in inputs}
+
+
+def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
+    """{input: start value} of values by structured name.
+
+    Raises ValueError, one line, naming every unknown name and every value outside its interval.
+    """
+    declared = _input_fields(joint)
+    problems = [f"unknown name {name!r}" for name in given if name not in declared]
+    if problems:
+        problems.append(f"allowed are {', '.join(declared)}")
+    found = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
+    problems += [text for text in found if text]
+    if problems:
+        raise ValueError("; ".join(problems))
+    return {name.removeprefix(_INPUTS): float(value) for name, value in given.items()}
+
+
 def dump(parameters: ParameterFile) -> str:
-    """The parameter set as the text of a parameter file."""
+    """The parameter set, with the start values of inputs, as the text of a parameter file."""
     declared = dict(flat_fields(type(parameters.values)))
+    values = sorted(flatten(parameters.values).items(), key=lambda item: "." in item[0])
+    if parameters.inputs:
+        declared |= _input_fields(parameters.joint)
+        values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]
     lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"', f"name = {_quoted(parameters.name)}"]
     section = ""
-    for name, value in sorted(flatten(parameters.values).items(), key=lambda item: "." in item[0]):
+    for name, value in values:
         head, _, leaf = name.rpartition(".")
         if head != section:
             lines += ["", f"[{head}]"]

@@ -1,7 +1,5 @@
 """Load ramps: any of the FMUs driven through fmpy from zero, every output read at every point."""
 
-import csv
-import io
 import shutil
 import sys
 import zipfile
@@ -14,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import columns
 from .progress import track
 
 Array = NDArray[np.float64]
@@ -29,12 +28,8 @@ class Ramp:
 
     def csv(self) -> str:
         """The ramp as CSV text, header `name [unit]`, numbers exact."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(f"{name} [{self.units[name]}]" for name in self.columns)
-        for row in zip(*self.columns.values(), strict=True):
-            writer.writerow(repr(float(value)) for value in row)
-        return text.getvalue()
+        heads = [(name, self.units[name]) for name in self.columns]
+        return columns.text(heads, list(self.columns.values()))
 
 
 def steps(to: float, step: float) -> Array:

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.model import Model, Variable
+from jointfmu.units import UNITS
 
-from ..native.terminals import TERMINALS, Terminal
+from ..native.terminals import Terminal, terminals
 from .text import number, text
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
@@ -17,7 +18,6 @@ _ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor
     (False, True): f"{_TRANSLATIONAL}.Components.GeneralForceToPositionAdaptor",
     (False, False): f"{_TRANSLATIONAL}.Components.GeneralPositionToForceAdaptor",
 }
-_TYPES = {"N": "Modelica.Units.SI.Force", "N.m": "Modelica.Units.SI.Torque"}
 _TAKES_FORCE = (
     "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "
     "right at the flange: an inertia there would need the inverse of the FMU. "
@@ -49,14 +49,14 @@ def interface(model: Model) -> dict[str, Any]:
 
 def wrapper(model: Model) -> dict[str, Any]:
     """Content of the model that puts an FMU between flanges."""
-    terminals = TERMINALS[model.name]
-    members = {variable for t in terminals for variable, _ in t.members.values()}
-    motion_in = all(kind != "inflow" for t in terminals for _, kind in t.members.values())
+    flanges = terminals(model)
+    members = {variable for t in flanges for variable, _ in t.members.values()}
+    motion_in = all(kind != "inflow" for t in flanges for _, kind in t.members.values())
     note = _TAKES_MOTION if motion_in else _TAKES_FORCE.format(other=_OTHER.get(model.name, ""))
     parameters = [
         {
             "name": v.name,
-            "type": _TYPES[v.unit],
+            "type": f"Modelica.Units.SI.{UNITS[v.unit].quantity}",
             "modifier": f"(min={number(v.low)}, start=0)" if v.low > -np.inf else "=0",
             "doc": text(v.doc),
         }
@@ -68,7 +68,7 @@ def wrapper(model: Model) -> dict[str, Any]:
         "doc": text(f"{model.name} as an imported FMU, between flanges"),
         "note": note,
         "parameters": parameters,
-        "terminals": [_flange(t, _ports(model)) for t in terminals],
+        "terminals": [_flange(t, _ports(model)) for t in flanges],
     }
 
 

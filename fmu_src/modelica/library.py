@@ -1,12 +1,10 @@
 """All files of the Modelica library: templates filled with tables, variables, terminals and numbers."""
 
-import re
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FunctionLoader, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from jointfmu import __version__
 from jointfmu.joints import KINDS, MODELS
@@ -14,7 +12,9 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
 
+from ..folders import asset
 from ..systems import System, system
+from ..templates import template
 from .blocks import interface, wrapper
 from .records import BASES, record_name, records
 from .tables import DAMPING_TOLERANCE, STRONGEST, TOLERANCE
@@ -141,18 +141,9 @@ def _meanings(joint: str) -> dict[str, str]:
 
 def _documentation(model: Model) -> dict[str, str]:
     """Parts of the FMU's documentation page, as text of a Modelica annotation."""
-    folder = files("jointfmu_fmu_src.native")
-    env = Environment(
-        loader=FunctionLoader(lambda name: (folder / name).read_text(encoding="utf-8")), autoescape=True
-    )
-    page = env.get_template(f"{model.joint}.html")
-    context = page.new_context({"model": model, "spring": True})
-    parts = {name: "".join(page.blocks[name](context)).strip() for name in ("what", "law", "trust", "paper")}
-    for name, html in parts.items():
-        html = re.sub(r'<span class="from">(.*?)</span>', r"(\1)", html)
-        parts[name] = re.sub(r"\n\s*\n", "\n", re.sub(r' class="[a-z]+"|</?span>', "", html))
-    parts["what"] = re.sub(r"(?<=\.) (?:Give it|For the spring)[^.]*\.", "", parts["what"])
-    return {name: text(html) for name, html in parts.items()}
+    page = template(asset(model, "page.html"), Path(__file__).parent)
+    parts = ("what", "law", "trust", "paper")
+    return {part: text(page.render(model=model, fmu=False, part=part).strip()) for part in parts}
 
 
 def _sources(one: System) -> str:

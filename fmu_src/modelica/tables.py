@@ -1,6 +1,7 @@
 """Tables for Modelica: a curve of the package with as few nodes as an error allows, and a joint's total."""
 
 from collections.abc import Callable, Collection
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from jointfmu.curve import Curve
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, shear_ratio
+from jointfmu.thinning import kept
 
 Array = NDArray[np.float64]
 
@@ -52,26 +54,16 @@ def thinned(
     keep      : nodes that stay
     fits      : a further demand on the segment from one node to another
     """
-    last = curve.displacement.size - 1
     kinks = np.flatnonzero(curve.bend_end[:-1] != curve.bend_start[1:]) + 1
-    stops = sorted({*(int(k) for k in kinks), *keep, last})
+    stops = {*kinks.tolist(), *keep, curve.displacement.size - 1}
     floor = (0.0, 0.0) if reference < 0 else (curve.load[reference], curve.stiffness[reference])
-    nodes, worst = [0], 0.0
-    while nodes[-1] < last:
-        i = nodes[-1]
-        stop = next(s for s in stops if s > i)
-        j, error = i + 1, _segment_error(curve, i, i + 1, floor)
-        step = 1
-        while step:  # gallop, then bisect
-            further = min(j + step, stop)
-            found = _segment_error(curve, i, further, floor) if further > j else np.inf
-            if found <= TOLERANCE and (fits is None or fits(i, further)):
-                j, error, step = further, found, 2 * step
-            else:
-                step //= 2
-        nodes.append(j)
-        worst = max(worst, error)
-    index = np.array(nodes)
+
+    def reproduces(i: int, j: int) -> bool:
+        close = _segment_error(curve, i, j, floor) <= TOLERANCE
+        return close and (fits is None or fits(i, j))
+
+    index = kept(stops, reproduces)
+    worst = max(_segment_error(curve, i, j, floor) for i, j in pairwise(index.tolist()))
     before = np.concatenate([[curve.bend_start[0]], curve.bend_end[index[1:] - 1]])
     after = np.concatenate([curve.bend_start[index[:-1]], [curve.bend_end[-1]]])
     columns = [curve.displacement[index], curve.load[index], curve.stiffness[index], before, after]

@@ -9,10 +9,9 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flatten
 from jointfmu.stamp import fixed_time
+from jointfmu.units import UNITS
 
-from ..units import UNITS
 from ..xml_parts import (
     Listed,
     dependencies,
@@ -75,7 +74,7 @@ _FMI3_INTERFACES = {
 
 def fmi2_xml(model: Model, parameters: ParameterFile, token: str, sources: Sequence[str]) -> bytes:
     """modelDescription.xml of FMI 2.0; `sources` are the C files to compile, in `sources/`."""
-    variables = listed(model, flatten(parameters.values))
+    variables = listed(model, parameters)
     root = _root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
@@ -97,7 +96,7 @@ def fmi2_xml(model: Model, parameters: ParameterFile, token: str, sources: Seque
 
 def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
     """modelDescription.xml of FMI 3.0."""
-    variables = [_TIME, *listed(model, flatten(parameters.values))]
+    variables = [_TIME, *listed(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
         SubElement(root, kind, {"modelIdentifier": model.name} | flags)

@@ -25,10 +25,10 @@ from .emit import HELPERS, function
 from .graph import Graph, graph
 
 RUNTIME = Path(__file__).parent / "runtime"
-_COMMON = ("text", "instance", "values", "evaluate", "state", "states")
-_TABLES = ("tables", "curve", "spots")
+COMMON = ("text", "instance", "evaluate", "values", "continuous", "step", "derivative", "snapshot")
+_TABLES = ("tabulated", "curve", "spots")
 _KINDS = {
-    "harmonic_drive": ("drive", (*_TABLES, "drive", "blocks")),
+    "harmonic_drive": ("drive", (*_TABLES, "drive", "table")),
     "bolted_joint": ("bolted", (*_TABLES, "bolted", "approach")),
     "gear_contact": ("gear", (*_TABLES, "gear", "approach")),
     "partner": ("system", ("system",)),
@@ -50,7 +50,7 @@ def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
     kind, modules = _KINDS[model.joint]
     files = {} if name in PARTNERS else {"kind.h": f'#include "{kind}.h"\n'}
     for path in sorted(RUNTIME.iterdir()):
-        shared = path.stem in (*_COMMON, *modules, "joint", "variables", "fmi2", "fmi3")
+        shared = path.stem in (*COMMON, *modules, "joint", "variables", "fmi2", "fmi3")
         if path.suffix in (".c", ".h") and shared:
             files[path.name] = path.read_text(encoding="utf-8")
     g = graph(model, parameters)
@@ -95,7 +95,7 @@ enum {{
 def _variables(model: Model, parameters: ParameterFile) -> str:
     values = flatten(parameters.values)
     rows = [_row("time", "s", "time", 0.0, Interval())]
-    rows += [_row(v.name, v.unit, v.doc, 0.0, v.interval) for v in model.inputs]
+    rows += [_row(v.name, v.unit, v.doc, parameters.start(v.name), v.interval) for v in model.inputs]
     rows += [_row(v.name, v.unit, v.doc, 0.0, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
         meta, start = item.metadata, float(values[name])

@@ -5,28 +5,33 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from jinja2 import Template
 from matplotlib.figure import Figure
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, flatten, problem
+from jointfmu.units import UNITS, display_unit
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
+from ..folders import asset, part
 from ..templates import template
-from ..units import UNITS, display_unit
 from ..xml_parts import listed
 from .licence import licence
-from .terminals import TERMINALS
+from .terminals import terminals
 
 _POINTS = 41
-_PANELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
-    "HarmonicDriveSpring": (("phi_rel", ("tau",)), ("tau", ("K_WTS", "K_TS", "K_FTS"))),
-    "HarmonicDriveCompliance": (("tau", ("phi_rel",)), ("tau", ("K_WTS", "K_TS", "K_FTS"))),
-    "BoltedJoint": (("preload", ("K_zz", "K_xx")), ("preload", ("C_zz", "C_xx"))),
-    "GearContact": (("f", ("s_rel",)), ("f", ("K_N",))),
-}
-"""What the plot of the ramp shows: {FMU: ((over, quantities), ...)}."""
+
+
+class Panel(NamedTuple):
+    """One panel of the plot of the ramp: quantities of one unit over an input or output.
+
+    PANELS, {FMU: panels}, stands in page.py of the joint's folder.
+    """
+
+    over: str
+    quantities: tuple[str, ...]
 
 
 class _Row(NamedTuple):
@@ -51,30 +56,37 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
 
 
 def _partner_page(model: Model, parameters: ParameterFile) -> str:
-    return template(Path(__file__).with_name("partner.html")).render(
+    return _template(model).render(
         model=model,
         version=__version__,
-        variables=listed(model, flatten(parameters.values)),
-        terminals=TERMINALS.get(model.name, ()),
+        variables=listed(model, parameters),
+        terminals=terminals(model),
     )
+
+
+def _template(model: Model) -> Template:
+    """The page in the folder of the FMU's joint; it may extend and import what lies beside this file."""
+    return template(asset(model, "page.html"), Path(__file__).parent)
 
 
 def _page(model: Model, parameters: ParameterFile) -> str:
     spring = model.spring(parameters.values)
-    variables = listed(model, flatten(parameters.values))
+    rest = {v.name: parameters.start(v.name) for v in model.inputs}
+    variables = listed(model, parameters)
     exposed = model.parameter_fields()
     rows = _rows(parameters)
-    return template(Path(__file__).with_name(f"{model.joint}.html")).render(
+    return _template(model).render(
         model=model,
+        fmu=True,
         file=parameters,
         version=__version__,
         inputs=[v for v in variables if v.causality == "input"],
         outputs=[v for v in variables if v.causality == "output"],
         exposed=[row for row in rows if row.name in exposed],
         hidden=[row for row in rows if row.name not in exposed],
-        terminals=TERMINALS[model.name],
-        messages=_messages(model, spring),
-        figure=_figure(model, spring),
+        terminals=terminals(model),
+        messages=_messages(model, spring, rest),
+        figure=_figure(model, spring, rest),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 
@@ -94,7 +106,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
     return rows
 
 
-def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
+def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of what an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
@@ -118,13 +130,14 @@ def _messages(model: Model, spring: Any) -> list[tuple[str, str, str]]:
         ),
     ]
     return found + [
-        ("warning", text, "Logged once until reset; the call succeeds.") for text in _warnings(model, spring)
+        ("warning", text, "Logged once until reset; the call succeeds.")
+        for text in _warnings(model, spring, rest)
     ]
 
 
-def _warnings(model: Model, spring: Any) -> list[str]:
+def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]:
     """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
-    inputs = {v.name: 0.0 for v in model.inputs} | {model.ramp.input: model.ramp.end}
+    inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | _evaluated(model, spring, inputs)
     found = []
     for i, outside in enumerate(model.outside):
@@ -138,11 +151,16 @@ def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[s
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
 
-def _figure(model: Model, spring: Any) -> str:
-    """The load ramp, evaluated by the package."""
-    rest = {v.name: 0.0 for v in model.inputs}
+def _panels(model: Model) -> tuple[Panel, ...]:
+    """What the plot shows; of a joint that does not say it, the first output over the driven input."""
+    own = part(model, "page")
+    return own.PANELS[model.name] if own else (Panel(model.ramp.input, (model.outputs[0].name,)),)
+
+
+def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
+    """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
     ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
-    points = [rest | {model.ramp.input: float(x)} for x in ramp]
+    points = [{**rest, model.ramp.input: float(x)} for x in ramp]
     rows = [point | _evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
@@ -151,8 +169,9 @@ def _figure(model: Model, spring: Any) -> str:
         return [factor * row[name] for row in rows]
 
     def draw(figure: Figure) -> None:
-        panels = _PANELS[model.name]
-        for axes, (over, names) in zip(figure.subplots(1, len(panels)), panels, strict=True):
+        panels = _panels(model)
+        row = figure.subplots(1, len(panels), squeeze=False)[0]
+        for axes, (over, names) in zip(row, panels, strict=True):
             x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
             for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
                 axes.plot(column(over, x), column(name, y), color=color, label=name)

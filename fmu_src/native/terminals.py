@@ -5,18 +5,21 @@ the standard asks: an outflow is a force or torque that the element applies to w
 inflow one that is applied to the element.
 """
 
+from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 
+from ..folders import asset, part
 from .description import serialized
-from .icon import flange_icon, icon
 
-_ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
-_TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
-_COLORS = {_ROTATIONAL: "0 0 0", _TRANSLATIONAL: "0 127 0"}
+ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
+TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
+_COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
 _HALF_SIZE = 10.0
+_FLANGES = Path(__file__).with_name("flanges")
+"""Their icons, 32 x 32 pixels: circle or square as in Modelica, filled for side a, open for side b."""
 
 
 class Terminal(NamedTuple):
@@ -35,72 +38,38 @@ class Terminal(NamedTuple):
     y: float = 0.0
 
 
-def _axis(axis: str, y: float) -> Terminal:
+def axis(axis: str, y: float) -> Terminal:
+    """Flange of a joint that takes the relative motion of its two sides along an axis."""
     members = {
         "s": (f"s_rel_{axis}", "signal"),
         "v": (f"v_rel_{axis}", "signal"),
         "f": (f"f_{axis}", "outflow"),
     }
-    return Terminal(f"flange_{axis}", _TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
+    return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
 
 
-def _shaft(number: int, side: str, doc: str) -> Terminal:
+def shaft(number: int, side: str, doc: str) -> Terminal:
+    """Flange of a joint that takes the motion of each of its shafts."""
     members = {
         "phi": (f"phi{number}", "signal"),
         "w": (f"w{number}", "signal"),
         "tau": (f"tau{number}", "outflow"),
     }
-    return Terminal(f"flange{number}", _ROTATIONAL, side, doc, members)
+    return Terminal(f"flange{number}", ROTATIONAL, side, doc, members)
 
 
-def _body(motion: str, rate: str, flow: str, kind: str, body: str) -> tuple[Terminal, Terminal]:
-    """Both flanges of a partner that moves; each takes a load of its own."""
-
-    def flange(side: str) -> Terminal:
-        load = (f"{flow}_{side}", "inflow")
-        members = {motion: (motion, "signal"), rate: (rate, "signal"), flow: load}
-        return Terminal(f"flange_{side}", kind, side, f"{body}, load {load[0]}", members)
-
-    return flange("a"), flange("b")
-
-
-TERMINALS: dict[str, tuple[Terminal, ...]] = {
-    "HarmonicDriveSpring": (
-        _shaft(1, "a", "wave generator (motor)"),
-        _shaft(2, "b", "output"),
-    ),
-    "HarmonicDriveCompliance": (
-        Terminal(
-            "flange",
-            _ROTATIONAL,
-            "b",
-            "output, wave generator locked",
-            {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")},
-        ),
-    ),
-    "BoltedJoint": (_axis("x", 60.0), _axis("y", 0.0), _axis("z", -60.0)),
-    "GearContact": (
-        Terminal(
-            "flange",
-            _TRANSLATIONAL,
-            "a",
-            "one flank pressed on the other, along the normal",
-            {"s": ("s_rel", "signal"), "f": ("f", "inflow")},
-        ),
-    ),
-    "RotationalInertia": _body("phi", "w", "tau", _ROTATIONAL, "the inertia"),
-    "TranslationalMass": _body("s", "v", "f", _TRANSLATIONAL, "the mass"),
-}
-"""Of the joints, and of their partners that move; a load over time has no motion and so no flange."""
+def terminals(model: Model) -> tuple[Terminal, ...]:
+    """The flanges of an FMU: TERMINALS, {FMU: flanges}, of terminals.py in its folder; there may be none."""
+    own = part(model, "terminals")
+    return own.TERMINALS.get(model.name, ()) if own else ()
 
 
 def terminals_and_icons(model: Model) -> dict[str, bytes]:
     """{file name: content} of the folder terminalsAndIcons."""
-    png, svg = icon(model.name)
-    files = {"terminalsAndIcons.xml": terminals_xml(model), "icon.png": png, "icon.svg": svg.encode()}
-    for terminal in TERMINALS.get(model.name, ()):
-        files[f"{_icon_name(terminal)}.png"] = flange_icon(terminal.kind == _ROTATIONAL, terminal.side == "a")
-    return files
+    files = {"terminalsAndIcons.xml": terminals_xml(model)}
+    files |= {f"icon.{kind}": asset(model, f"{model.name}.{kind}").read_bytes() for kind in ("png", "svg")}
+    flanges = {f"{_icon_name(terminal)}.png" for terminal in terminals(model)}
+    return files | {name: (_FLANGES / name).read_bytes() for name in sorted(flanges)}
 
 
 def terminals_xml(model: Model) -> bytes:
@@ -110,12 +79,11 @@ def terminals_xml(model: Model) -> bytes:
     graphics = SubElement(root, "GraphicalRepresentation")
     SubElement(graphics, "CoordinateSystem", corners | {"suggestedScalingFactorTo_mm": "0.1"})
     SubElement(graphics, "Icon", corners)
-    if model.name not in TERMINALS:
-        return serialized(root)
-    terminals = SubElement(root, "Terminals")
-    for terminal in TERMINALS[model.name]:
+    flanges = terminals(model)
+    group = SubElement(root, "Terminals") if flanges else root
+    for terminal in flanges:
         node = SubElement(
-            terminals,
+            group,
             "Terminal",
             name=terminal.name,
             matchingRule="plug",
@@ -141,5 +109,5 @@ def terminals_xml(model: Model) -> bytes:
 
 
 def _icon_name(terminal: Terminal) -> str:
-    domain = "rotational" if terminal.kind == _ROTATIONAL else "translational"
+    domain = "rotational" if terminal.kind == ROTATIONAL else "translational"
     return f"{domain}_{terminal.side}"

@@ -69,10 +69,14 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.default_experiment = DefaultExperiment(
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
-        self.start = flatten(load(Path(self.resources) / "parameters.toml", self.model.joint).values)
-        self.listed = listed(self.model, self.start)
+        file = load(Path(self.resources) / "parameters.toml", self.model.joint)
+        self.start = flatten(file.values)
+        self.listed = listed(self.model, file)
         self.fields = self.model.parameter_fields()
-        self.values: dict[str, Any] = {**self.start, **{v.name: 0.0 for v in self.model.inputs}}
+        self.values: dict[str, Any] = {
+            **self.start,
+            **{v.name: file.start(v.name) for v in self.model.inputs},
+        }
         self.initialized = False
         self.warned: set[int] = set()
         self._spring: Any = None

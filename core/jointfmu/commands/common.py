@@ -4,6 +4,7 @@ import argparse
 import re
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NoReturn
 
 from ..parameters import parse_setting
@@ -30,6 +31,16 @@ def command(commands: Any, name: str, run: Run, text: str) -> argparse.ArgumentP
     sub.set_defaults(run=run)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
+
+
+def flag(name: str) -> str:
+    """The option that sets an argument: `--rated-torque` of `rated_torque`."""
+    return "--" + name.replace("_", "-")
+
+
+def written(sub: argparse.ArgumentParser, text: str = "write the parameter file (TOML)") -> None:
+    """Declare `--out FILE`, the parameter file to write, and its second name `--write`."""
+    sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
 
 
 def without_package(error: ImportError, purpose: str) -> ValueError:

@@ -5,12 +5,13 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..export import exports
 from ..export.forms import ERROR, FORMS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
 from ..joints import KINDS
 from ..parameters import ParameterFile, check_writable, default, load, write_text
-from .common import command
+from .common import command, flag
 
 if TYPE_CHECKING:
     from ..export.files import Written
@@ -26,27 +27,29 @@ _SI = {"K_": "N/m", "C_": "N.s/m"}
 def add(commands: Any) -> None:
     """Declare the command."""
     export = command(commands, "export", _export, "write the joint for another solver")
+    with_springs = exports.able("springs")
     export.add_argument("form", choices=list(FORMS), metavar="FORMAT", help=f"one of {', '.join(FORMS)}")
     export.add_argument(
         "what",
         choices=WHAT,
         metavar="WHAT",
-        help="springs: springs and dashpots between node pairs (bolted joint); contact: pressure over "
-        "overclosure; curve: load over displacement of the whole joint",
+        help="springs: springs and dashpots between node pairs "
+        f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
+        "curve: load over displacement of the whole joint",
     )
     joint = export.add_mutually_exclusive_group()
     joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
     joint.add_argument(
-        "--joint", choices=list(KINDS), default="bolted_joint", help="a default joint (bolted_joint)"
+        "--joint", choices=list(KINDS), default=with_springs[0], help=f"a default joint ({with_springs[0]})"
     )
-    export.add_argument("--preload", type=float, metavar="F", help="bolted joint: preload per bolt [N]")
-    export.add_argument("--moment", type=float, metavar="M", help="bolted joint: bending moment [N.m] (0)")
+    for name, texts in _working_points().items():
+        export.add_argument(flag(name), type=float, metavar="VALUE", help="; ".join(texts))
     export.add_argument(
         "--nodes",
         type=Path,
         metavar="CSV",
         help="springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
-        "pressure [MPa] instead of --preload",
+        "pressure [MPa] instead of a working point",
     )
     export.add_argument(
         "--first", type=int, metavar="N", help="springs: first number free for elements and nodes (1)"
@@ -65,6 +68,15 @@ def add(commands: Any) -> None:
         "--error", type=float, metavar="E", help=f"tables: largest error by straight lines ({ERROR:g})"
     )
     export.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write")
+
+
+def _working_points() -> dict[str, list[str]]:
+    """{name: what it is for each joint} of all that working points are made of."""
+    texts: dict[str, list[str]] = {}
+    for joint, kind in KINDS.items():
+        for i, (name, text) in enumerate(exports.of(joint).working_point.items()):
+            texts.setdefault(name, []).append(f"{kind.title}: {text}{' (0)' if i else ''}")
+    return texts
 
 
 def _export(args: argparse.Namespace) -> int:
@@ -96,29 +108,49 @@ def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
     error = ERROR if args.error is None else args.error
     if args.what == "contact":
         return files.contact(args.form, file, units, error)
-    state = None if args.preload is None else files.State(args.preload, args.moment or 0.0)
+    state = _state(args, file.joint)
     if args.what == "curve":
         return files.curve(args.form, file, state, units, error)
     mesh = read_pairs(args.nodes) if args.nodes else None
+    first, text = next(iter(exports.of(file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
-        raise ValueError(f"{mesh.path} states the pressures; leave out --preload, or its column 'pressure'")
-    if (mesh is None or mesh.pressure is None) and state is None:
-        raise ValueError("springs need --preload, the force of each bolt [N], or --nodes with a pressure")
+        raise ValueError(
+            f"{mesh.path} states the pressures; leave out {flag(first)}, or its column 'pressure'"
+        )
+    if (mesh is None or mesh.pressure is None) and state is None and first:
+        raise ValueError(f"springs need {flag(first)}, {text}, or --nodes with a pressure")
     placing = Placing(units, args.normal or "z", args.first or 1, args.first_set or 1, own=mesh is None)
     return files.springs(args.form, file, state, mesh, placing)
 
 
+def _state(args: argparse.Namespace, joint: str) -> Any:
+    """The joint's working point, None where none is stated."""
+    made = exports.of(joint)
+    values = {name: getattr(args, name) for name in made.working_point}
+    if made.state is None or all(value is None for value in values.values()):
+        return None
+    return made.state(**{name: value or 0.0 for name, value in values.items()})
+
+
+def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
+    """Refuse a working point that would do nothing, or is missing."""
+    wanted = {} if args.what == "contact" else exports.of(joint).working_point
+    stated = [name for name in _working_points() if getattr(args, name) is not None]
+    for name in stated:
+        if name not in wanted:
+            raise ValueError(f"{flag(name)} has no meaning for the {args.what} of a {joint}")
+    first, text = next(iter(wanted.items()), ("", ""))
+    if stated and first not in stated:
+        raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
+    if args.what == "curve" and first and not stated:
+        raise ValueError(f"the curve of a {joint} needs {flag(first)}, {text}")
+
+
 def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
     """Refuse options that would do nothing, or are missing."""
-    springs, bolted = args.what == "springs", file.joint == "bolted_joint"
-    if springs and not bolted:
-        raise ValueError(f"springs of a {file.joint} cannot be written; allowed is a bolted_joint")
-    if args.moment is not None and args.preload is None:
-        raise ValueError("--moment needs --preload, the force of each bolt [N]")
-    if args.preload is not None and (args.what == "contact" or not bolted):
-        raise ValueError(f"--preload has no meaning for the {args.what} of a {file.joint}")
-    if args.what == "curve" and bolted and args.preload is None:
-        raise ValueError("the curve of a bolted_joint needs --preload, the force of each bolt [N]")
+    springs = args.what == "springs"
+    exports.required(file.joint, args.what)
+    _refuse_working_point(args, file.joint)
     for name in ("nodes", "first", "normal"):
         if getattr(args, name) is not None and not springs:
             raise ValueError(f"--{name} has no meaning for a {args.what}; it is for springs")
@@ -127,7 +159,7 @@ def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
     if args.first_set is not None and args.form != "ansys":
         raise ValueError(f"--first-set has no meaning for {args.form}; it is for ansys")
     for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
-        value, option = getattr(args, name), "--" + name.replace("_", "-")
+        value, option = getattr(args, name), flag(name)
         if value is not None and not 1 <= value <= highest:
             raise ValueError(f"{option} = {value} is outside [1, {highest}]")
         if value is None and args.nodes is not None and args.form in _NUMBERED[name]:

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 def assembly_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare the assembly, `--preload` and `--joint`."""
+    """Declare the assembly, `--preload` and `--params`."""
     sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
     sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
     sub.add_argument(
-        "--joint", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
+        "--params", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
     )
 
 

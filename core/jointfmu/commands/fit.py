@@ -3,12 +3,15 @@
 import argparse
 import json
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import plots
-from ..parameters import ParameterFile, check_writable, dump, load, write_text
-from .common import Parser, Run, command
+from ..fitting.procedure import Option, Procedure
+from ..joints import KINDS
+from ..parameters import check_writable, dump, load, write_text
+from .common import Parser, command, flag, written
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,93 +20,52 @@ if TYPE_CHECKING:
 
 
 def add(commands: Any) -> None:
-    """Declare the command and its three kinds."""
+    """Declare the command and what the joints are fitted to."""
     text = "fit a joint's parameters to a measured curve or a catalogue row"
     top = commands.add_parser("fit", help=text, description=text)
-    kinds = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
-    _torque_angle(kinds)
-    _catalogue(kinds)
-    _preload(kinds)
+    procedures = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    for kind in KINDS.values():
+        part = kind.part("fit")
+        for procedure in part.FITS if part else ():
+            _declare(procedures, kind.name, procedure)
 
 
-def _torque_angle(kinds: Any) -> None:
-    one = _kind(kinds, "torque-angle", _fit_torque_angle, "a torque-angle curve to the harmonic drive", True)
-    one.add_argument(
-        "--rated-torque", type=float, metavar="VALUE", help="of the drive [N.m]; scales max_torque with it"
+def _declare(procedures: Any, joint: str, procedure: Procedure) -> None:
+    """Declare one procedure: what all share, and its own options."""
+    sub = command(procedures, procedure.name, partial(_fit, joint, procedure), f"fit {procedure.text}")
+    if procedure.file:
+        sub.add_argument("file", type=Path, metavar="FILE", help="CSV; the heading names columns and units")
+    sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
+    sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
+    written(sub)
+    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
+    for option in procedure.options:
+        _option(sub, option)
+
+
+def _option(sub: argparse.ArgumentParser, option: Option) -> None:
+    metavar = "TEXT" if option.word else "VALUE"
+    sub.add_argument(
+        flag(option.name),
+        type=str if option.word else float,
+        default=option.default,
+        choices=option.choices or None,
+        required=option.required,
+        metavar=None if option.choices else metavar,
+        help=option.text,
     )
 
 
-def _catalogue(kinds: Any) -> None:
-    one = _kind(kinds, "catalogue", _fit_catalogue, "a catalogue row to the harmonic drive", False)
-    for name, text in (
-        ("K1", "stiffness below T1 [N.m/rad]"),
-        ("K2", "stiffness between T1 and T2 [N.m/rad]"),
-        ("K3", "stiffness above T2 [N.m/rad]"),
-        ("T1", "torque at the first corner [N.m]"),
-        ("T2", "torque at the second corner [N.m]"),
-    ):
-        one.add_argument(f"--{name}", type=float, required=True, metavar="VALUE", help=text)
-    one.add_argument("--rated-torque", type=float, metavar="VALUE", help="rated torque [N.m] (default: T2)")
-    one.add_argument("--source", default="catalogue", metavar="TEXT", help="where the row is printed")
-    one.add_argument("--ratio", type=float, metavar="VALUE", help="speed ratio (default: that of the start)")
-
-
-def _preload(kinds: Any) -> None:
-    text = "stiffness or frequency over preload to the bolted joint"
-    one = _kind(kinds, "preload", _fit_preload, text, True)
-    one.add_argument("--direction", choices=("normal", "tangential"), default="normal", help="of the motion")
-    one.add_argument("--modal-mass", type=float, metavar="VALUE", help="what vibrates on the joint [kg]")
-    one.add_argument(
-        "--series-stiffness",
-        type=float,
-        metavar="VALUE",
-        help="of the structure, in series with the joint [N/m]; to fit it: --free ... series_stiffness",
-    )
-
-
-def _kind(kinds: Any, name: str, run: Run, text: str, file: bool) -> argparse.ArgumentParser:
-    """What the three share."""
-    one = command(kinds, name, run, f"fit {text}")
-    if file:
-        one.add_argument("file", type=Path, metavar="FILE", help="CSV; the heading names columns and units")
-    one.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
-    one.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
-    one.add_argument("--write", type=Path, metavar="FILE", help="write the parameter file (TOML)")
-    one.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
-    return one
-
-
-def _start(args: argparse.Namespace, joint: str) -> ParameterFile | None:
-    """Check what is to be written before the work; the file to start from."""
-    if args.write:
-        check_writable(args.write)
+def _fit(joint: str, procedure: Procedure, args: argparse.Namespace) -> int:
+    """Check what is to be written before the work, and fit."""
+    if args.out:
+        check_writable(args.out)
     if args.plot:
         plots.check(args.plot)
-    return load(args.params, joint) if args.params else None
-
-
-def _fit_torque_angle(args: argparse.Namespace) -> int:
-    from ..fitting import torque_angle
-
-    start = _start(args, "harmonic_drive")
-    return _finish(args, torque_angle.fit(args.file, start, args.free, args.rated_torque))
-
-
-def _fit_catalogue(args: argparse.Namespace) -> int:
-    from ..fitting import catalogue
-
-    start = _start(args, "harmonic_drive")
-    rated, kind = (args.T2, "estimate") if args.rated_torque is None else (args.rated_torque, "catalogue")
-    row = catalogue.Row(K1=args.K1, K2=args.K2, K3=args.K3, T1=args.T1, T2=args.T2, rated=rated)
-    return _finish(args, catalogue.fit(row, start, args.free, kind, args.ratio, args.source))
-
-
-def _fit_preload(args: argparse.Namespace) -> int:
-    from ..fitting import preload
-
-    start = _start(args, "bolted_joint")
-    options = {"modal_mass": args.modal_mass, "series": args.series_stiffness}
-    return _finish(args, preload.fit(args.file, start, args.free, direction=args.direction, **options))
+    start = load(args.params, joint) if args.params else None
+    data = (args.file,) if procedure.file else ()
+    options = {option.name: getattr(args, option.name) for option in procedure.options}
+    return _finish(args, procedure.run(*data, start, args.free, **options))
 
 
 def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
@@ -113,8 +75,8 @@ def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
     if args.plot:
         with plots.drawing(args.plot, (7.2, 5.6)) as figure:
             _draw(figure, outcome)
-    if args.write:
-        write_text(args.write, dump(outcome.parameters))
+    if args.out:
+        write_text(args.out, dump(outcome.parameters))
     if args.json:
         print(json.dumps(outcome.document()))
         return 0
@@ -127,7 +89,7 @@ def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
         print(f"{name:24} {value:.4g} {unit}  {text}")
     for line in outcome.warnings():
         print(f"note: {line}", file=sys.stderr)
-    for path in filter(None, (args.write, args.plot)):
+    for path in filter(None, (args.out, args.plot)):
         print(f"wrote {path}")
     return 0
 

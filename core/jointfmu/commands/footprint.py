@@ -33,7 +33,7 @@ def _import(kinds: Any) -> None:
         "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
     )
     one.add_argument(
-        "--joint", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
+        "--params", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
     )
     one.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
     one.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
@@ -61,7 +61,7 @@ def _bring(args: argparse.Namespace) -> int:
         plots.check(args.plot)
     from ..fields import figure, joint
 
-    start = joint_file(args.joint)
+    start = joint_file(args.params)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:

@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
         from ..fem.assembly import load as read
     except ImportError as error:
         raise without_fem(error) from None
-    assembly, file = read(args.assembly), joint_file(args.joint)
+    assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
     _check(args)

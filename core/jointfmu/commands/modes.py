@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)
-    joint = with_assembly(joint_file(args.joint), assembly, whole=False).values
+    joint = with_assembly(joint_file(args.params), assembly, whole=False).values
     law, shear = approach_curve(joint), float(shear_ratio(joint))
     try:
         contact = BoltedContact.of(assembly, args.refinement)

@@ -1,15 +1,15 @@
 """`jointfmu ring`: resonance of a joint in its system over the load, by running FMUs."""
 
 import argparse
-import csv
-import io
 import json
 import math
 import sys
 from pathlib import Path
 from typing import Any
 
-from .. import plots
+import numpy as np
+
+from .. import columns, plots
 from ..parameters import check_writable, write_text
 from .common import command, without_package
 
@@ -103,9 +103,5 @@ def _row(point: Any) -> dict[str, float]:
 def _table(rows: list[dict[str, float]], load: str) -> str:
     """The rows as CSV text, header `name [unit]`, six digits."""
     units = (load, "Hz", "Hz", "1", "1", "s", "s")
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(f"{name} [{unit}]" for name, unit in zip(rows[0], units, strict=True))
-    for row in rows:
-        writer.writerow(f"{value:.6g}" for value in row.values())
-    return text.getvalue()
+    values = [np.array([row[name] for row in rows]) for name in rows[0]]
+    return columns.text(list(zip(rows[0], units, strict=True)), values, digits=6)

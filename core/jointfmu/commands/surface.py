@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import math
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -20,13 +21,20 @@ from ..topography.joint import changes, meaning, with_surface
 from ..topography.reading import read
 from ..topography.results import Estimate, Identification, Result
 from . import synthesize
-from .common import command
+from .common import Parser, command, written
+
+SUBCOMMANDS = ("identify", "synthesize")
+"""The first is what the command does where none is named."""
 
 
 def add(commands: Any) -> None:
-    """Declare the command; its first word `synthesize` leads to the other parser."""
-    find = command(commands, "surface", _identify, "identify D and G of a measured surface or of a pair")
-    find.epilog = "jointfmu surface synthesize --help: make a Weierstrass-Mandelbrot surface."
+    """Declare the command and its sub-commands."""
+    text = "identify D and G of a measured surface or of a pair"
+    top = commands.add_parser("surface", help=text, description=f"{text}; make a surface")
+    steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)
+    top.usage = f"{top.prog} [-h] [{'|'.join(SUBCOMMANDS)}] ..."
+    top.epilog = f"{top.prog} FILE ... is {top.prog} {SUBCOMMANDS[0]} FILE ..."
+    find = command(steps, SUBCOMMANDS[0], _identify, text)
     find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
     find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
     find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
@@ -44,22 +52,14 @@ def add(commands: Any) -> None:
     )
     find.add_argument("--joint", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}")
     find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
-    find.add_argument("--write", type=Path, metavar="FILE", help="parameter file to write (TOML)")
+    written(find)
     find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
-    make = synthesize.parser(find.prog)
-    usual = find.parse_known_args
-
-    def parse(args: Sequence[str] | None = None, namespace: Any = None) -> Any:
-        if args and args[0] == "synthesize":
-            return make.parse_known_args(args[1:], namespace)
-        return usual(args, namespace)
-
-    setattr(find, "parse_known_args", parse)  # noqa: B010
+    synthesize.add(steps, SUBCOMMANDS[1])
 
 
 def _identify(args: argparse.Namespace) -> int:
     base = _base(args)
-    for path, ready in ((args.write, check_writable), (args.plot, plots.check)):
+    for path, ready in ((args.out, check_writable), (args.plot, plots.check)):
         if path:
             ready(path)
     if not 1.0 < args.gamma < float("inf"):
@@ -69,8 +69,8 @@ def _identify(args: argparse.Namespace) -> int:
     heights = [read(path, args.unit) for path in args.files]
     found = identify(heights, args.form, tuple(args.span) if args.span else None)
     file = with_surface(base, found, args.method) if base else None
-    if args.write and file:
-        write_text(args.write, dump(file))
+    if args.out and file:
+        write_text(args.out, dump(file))
     if args.plot:
         draw(found, args.plot)
     if args.json:
@@ -91,8 +91,8 @@ def _base(args: argparse.Namespace) -> Any:
         return load(args.params, args.joint)
     if args.joint:
         return default(args.joint)
-    if args.write:
-        raise ValueError(f"--write {args.write} needs --joint, one of {', '.join(KINDS)}, or --params")
+    if args.out:
+        raise ValueError(f"--out {args.out} needs --joint, one of {', '.join(KINDS)}, or --params")
     return None
 
 
@@ -111,10 +111,13 @@ def _print(found: Identification, heights: Sequence[Heights], args: argparse.Nam
     print("brackets: 95 % confidence intervals")
     for joint in [args.joint] if args.joint else _rough():
         values = changes(found, joint, args.method)
-        text = ", ".join(f"{name} = {value:.6g}" for name, (value, _) in values.items())
+        text = ", ".join(
+            f"{name} = {value:.6g}" if math.isfinite(value) else f"{name} not determined"
+            for name, (value, _) in values.items()
+        )
         print(f"{joint} ({meaning(joint)}, {next(iter(values.values()))[1].method}): {text}")
-    if args.write:
-        print(f"wrote {args.write}")
+    if args.out:
+        print(f"wrote {args.out}")
     if args.plot:
         print(f"wrote {args.plot}")
     for warning in found.warnings:
@@ -138,6 +141,8 @@ def _row(result: Result) -> tuple[str, ...]:
 
 
 def _bracket(one: Estimate, style: str) -> str:
+    if not math.isfinite(one.value):
+        return "not determined"
     return f"{one.value:{style}} [{one.low:{style}}, {one.high:{style}}]"
 
 
@@ -153,10 +158,10 @@ def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.N
         ],
         "results": [_result_dict(result, args.gamma) for result in found.results],
         "joints": {
-            joint: {name: value for name, (value, _) in changes(found, joint, args.method).items()}
+            joint: {name: _number(value) for name, (value, _) in changes(found, joint, args.method).items()}
             for joint in ([args.joint] if args.joint else _rough())
         },
-        "written": str(args.write) if args.write else None,
+        "written": str(args.out) if args.out else None,
         "warnings": list(found.warnings),
     }
 
@@ -177,9 +182,10 @@ def _result_dict(result: Result, gamma: float) -> dict[str, Any]:
     }
 
 
-def _interval(one: Estimate) -> dict[str, float]:
-    return {"value": one.value, "low": one.low, "high": one.high}
+def _interval(one: Estimate) -> dict[str, float | None]:
+    return {"value": _number(one.value), "low": _number(one.low), "high": _number(one.high)}
 
 
-def _number(value: Number) -> float:
-    return float(value)
+def _number(value: Number) -> float | None:
+    """A number of JSON; null if it is not determined."""
+    return float(value) if math.isfinite(float(value)) else None

@@ -3,21 +3,19 @@
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 from ..parameters import check_writable, write_text
 from ..topography import csvfile, synthesis
 from ..topography.heights import Areal, Heights
-from .common import Parser
+from .common import command
 
 SHAPES = ("isotropic", "textured", "profile")
 
 
-def parser(prog: str) -> Parser:
-    """The parser of `jointfmu surface synthesize`."""
-    text = "make a Weierstrass-Mandelbrot surface"
-    make = Parser(prog=f"{prog} synthesize", description=text)
-    make.set_defaults(run=_synthesize)
-    make.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+def add(steps: Any, name: str) -> None:
+    """Declare the sub-command."""
+    make = command(steps, name, _synthesize, "make a Weierstrass-Mandelbrot surface")
     make.add_argument(
         "--shape", choices=SHAPES, default=SHAPES[0], help="default: isotropic (Hu 2023, Eq. 1)"
     )
@@ -40,7 +38,6 @@ def parser(prog: str) -> Parser:
     )
     make.add_argument("--seed", type=int, default=0, help="of the random phases (default: 0)")
     make.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write (.csv)")
-    return make
 
 
 def _synthesize(args: argparse.Namespace) -> int:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..columns import Column, rows, text
 from .placing import Placing, header
 from .springs import Springs
 from .units import Units
@@ -13,6 +14,8 @@ Array = NDArray[np.float64]
 Heads = Sequence[tuple[str, str]]
 """(name, SI unit) of every column."""
 
+DIGITS = 12
+LABEL_HEADS: Heads = (("node_1", "1"), ("node_2", "1"))
 SPRING_HEADS: Heads = (
     ("x", "m"),
     ("y", "m"),
@@ -34,32 +37,27 @@ def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str
     """
     stiffness = placing.along(springs.K_t, springs.K_n)
     damping = placing.along(springs.C_t, springs.C_n)
-    values = np.column_stack([springs.position, springs.area, springs.pressure, stiffness, damping])
-    labels = [f"{a},{b}," for a, b in springs.nodes.tolist()]
-    return _csv(values, SPRING_HEADS, placing.units, about, "node_1 [1],node_2 [1],", labels)
+    values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
+    return _csv([*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placing.units, about)
 
 
-def table_csv(rows: Array, heads: Heads, units: Units, about: Sequence[str]) -> str:
+def table_csv(table: Array, heads: Heads, units: Units, about: Sequence[str]) -> str:
     """A table (n, columns) of SI values."""
-    return _csv(rows, heads, units, about, "", [""] * len(rows))
+    return _csv(list(table.T), heads, units, about)
 
 
-def _csv(
-    rows: Array, heads: Heads, units: Units, about: Sequence[str], before: str, labels: Sequence[str]
-) -> str:
-    columns = [units.of(column, unit) for column, (_, unit) in zip(rows.T, heads, strict=True)]
-    lines = [label + _numbers(row, ",") for label, row in zip(labels, np.stack(columns, axis=1), strict=True)]
-    names = ",".join(f"{name} [{units.symbol(unit)}]" for name, unit in heads)
-    return "\n".join([*header(about, "#"), before + names, *lines]) + "\n"
+def _csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:
+    shown = [
+        column if unit == "1" else units.of(column, unit)
+        for column, (_, unit) in zip(values, heads, strict=True)
+    ]
+    names = [(name, units.symbol(unit)) for name, unit in heads]
+    return text(names, shown, digits=DIGITS, above=header(about, "#"))
 
 
-def modelica_text(rows: Array, name: str, about: Sequence[str]) -> str:
+def modelica_text(table: Array, name: str, about: Sequence[str]) -> str:
     """A table (n, columns) of SI values as `tableName = name` of a text file, first column ascending."""
-    body = [_numbers(row, " ") for row in rows]
+    body = rows(table.T, [DIGITS] * table.shape[1], between=" ")
     return "\n".join(
-        ["#1", *header(about, "#"), f"double {name}({rows.shape[0]},{rows.shape[1]})", *body, ""]
+        ["#1", *header(about, "#"), f"double {name}({table.shape[0]},{table.shape[1]})", *body, ""]
     )
-
-
-def _numbers(row: Array, between: str) -> str:
-    return between.join(f"{v + 0.0:.12g}" for v in row)

@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 from typing import Any
 
-from ..joints.bolted_joint.spring import BoltedJointSpring, shear_ratio
-from ..joints.gear_contact.spring import GearContactSpring
-from ..joints.harmonic_drive.spring import HarmonicDriveSpring
+from ..joints import KINDS
 from ..parameters import ParameterFile
 from . import ansys, columns, keywords, tables
+from .exports import LoadCurve, required
 from .mesh import Mesh
 from .placing import Placing
-from .springs import Springs, of_joint, on_mesh, under_pressure
 from .units import Units
 
 
@@ -22,31 +20,19 @@ class Written:
     facts: dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class State:
-    """Working point of a bolted joint: preload [N] per bolt, moment [N.m]."""
-
-    preload: float
-    moment: float
-
-    def __str__(self) -> str:
-        return f"preload {self.preload:g} N per bolt, moment {self.moment:g} N.m"
-
-
-def springs(
-    form: str, file: ParameterFile, state: State | None, mesh: Mesh | None, placing: Placing
-) -> Written:
-    """Springs (and dashpots) of a bolted joint between node pairs.
+def springs(form: str, file: ParameterFile, state: Any, mesh: Mesh | None, placing: Placing) -> Written:
+    """Springs (and dashpots) of a joint between node pairs.
 
     state : working point, or None where the mesh states the pressures
     mesh  : the user's node pairs, or None for the joint's own nodes
+
+    Raises ValueError if the joint has no springs, or they do not go with the pairs.
     """
-    spring = BoltedJointSpring.of(file.values)
-    found, where = _springs(spring, state, mesh, placing)
+    found, where = required(file.joint, "springs")(file.values, state, mesh, placing)
     units = placing.units
     sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in found.sums.items())
     about = [
-        "springs of a bolted joint between node pairs, linear about a working point",
+        f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
         f"parameters: {file.name} ({file.joint})",
         f"working point: {where}",
         f"units: {units.name}",
@@ -67,27 +53,12 @@ def springs(
     return Written(text, facts)
 
 
-def _springs(
-    spring: BoltedJointSpring, state: State | None, mesh: Mesh | None, placing: Placing
-) -> tuple[Springs, str]:
-    if state is None:
-        if mesh is None:
-            raise ValueError("springs need a preload, or node pairs with their pressure")
-        return under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
-    if mesh is None:
-        return of_joint(spring, state.preload, state.moment, placing.first), str(state)
-    return on_mesh(spring, mesh, state.preload, state.moment), f"{state}, on the nodes of {mesh.path.name}"
-
-
 def contact(form: str, file: ParameterFile, units: Units, error: float) -> Written:
-    """The interface's pressure over its approach, for a contact of two surfaces."""
-    if file.joint == "harmonic_drive":
-        raise ValueError(
-            "the contact of a harmonic_drive cannot be exported: only with pair_scale and drive_scale does "
-            "it give the drive's stiffness; export its curve"
-        )
-    kind = BoltedJointSpring if file.joint == "bolted_joint" else GearContactSpring
-    curve = kind.of(file.values).curve
+    """The interface's pressure over its approach, for a contact of two surfaces.
+
+    Raises ValueError if the joint has none.
+    """
+    curve, more = required(file.joint, "contact")(file.values)
     table = tables.law_table(curve, error)
     about = [
         "normal contact of the rough interface: pressure over overclosure from first touch",
@@ -96,10 +67,8 @@ def contact(form: str, file: ParameterFile, units: Units, error: float) -> Writt
         f"straight lines keep to the law's pressure within {table.straight[0]:.2g}, to its stiffness within "
         f"{table.straight[1]:.2g},",
         f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
+        *more,
     ]
-    if file.joint == "bolted_joint":
-        ratio = float(shear_ratio(file.values))
-        about.append(f"tangential stiffness of the law: {ratio:.9g} times the slope of the table")
     if form == "csv":
         heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
         text = columns.table_csv(table.rows, heads, units, about)
@@ -115,10 +84,14 @@ def contact(form: str, file: ParameterFile, units: Units, error: float) -> Writt
     return Written(text, _facts(table))
 
 
-def curve(form: str, file: ParameterFile, state: State | None, units: Units, error: float) -> Written:
-    """Load over displacement of the whole joint, with its stiffness."""
-    about = [f"parameters: {file.name} ({file.joint})"]
-    table, heads, name = _curve(file, state, error)
+def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float) -> Written:
+    """Load over displacement of the whole joint, with its stiffness.
+
+    Raises ValueError if the joint has no such curve or its working point is missing.
+    """
+    load: LoadCurve = required(file.joint, "curve")
+    table, heads = load.table(file.values, state, error), load.heads
+    about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
     if state is not None:
         about.append(f"working point: {state}")
     about += [
@@ -128,34 +101,11 @@ def curve(form: str, file: ParameterFile, state: State | None, units: Units, err
         f"the monotone cubic of Fritsch and Butland within {table.monotone[0]:.2g} and "
         f"{table.monotone[1]:.2g}",
     ]
-    about.insert(0, _MEANING[file.joint])
     if form == "modelica":
-        return Written(columns.modelica_text(table.rows, name, about), {"table": name, **_facts(table)})
+        return Written(
+            columns.modelica_text(table.rows, load.name, about), {"table": load.name, **_facts(table)}
+        )
     return Written(columns.table_csv(table.rows, heads, units, about), _facts(table))
-
-
-_MEANING = {
-    "harmonic_drive": "torque over wind-up at the output, wave generator locked",
-    "gear_contact": "normal load over approach of the flanks from first touch; without load while apart",
-    "bolted_joint": "force that holds the joint together over its separation from the tightened state; "
-    "without damping",
-}
-
-
-def _curve(file: ParameterFile, state: State | None, error: float) -> tuple[tables.Table, columns.Heads, str]:
-    if file.joint == "harmonic_drive":
-        drive = HarmonicDriveSpring.of(file.values)
-        heads = (("phi_rel", "rad"), ("tau", "N.m"), ("K_WTS", "N.m/rad"))
-        return tables.odd_table(drive.curve, error), heads, "torque"
-    if file.joint == "gear_contact":
-        gear = GearContactSpring.of(file.values)
-        heads = (("s_rel", "m"), ("f", "N"), ("K_N", "N/m"))
-        return tables.load_table(gear.curve, file.values.A_0, error), heads, "force"
-    if state is None:
-        raise ValueError("the curve of a bolted_joint needs a preload")
-    heads = (("s_rel_z", "m"), ("pull", "N"), ("K_zz", "N/m"))
-    spring = BoltedJointSpring.of(file.values)
-    return tables.pull_table(spring, state.preload, state.moment, error), heads, "force"
 
 
 def _facts(table: tables.Table) -> dict[str, Any]:

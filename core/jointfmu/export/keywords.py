@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..refusal import Refusal
 from .placing import Placing, header
 from .springs import Springs
 from .tables import Table
@@ -61,9 +62,7 @@ def contact_text(table: Table, units: Units, about: Sequence[str], most: int | N
     x, p, k = table.rows[-1]
     rows = np.vstack([table.rows[:, :2], [x + FAR, p + k * FAR]])
     if most is not None and len(rows) > most:
-        raise ValueError(
-            f"the table has {len(rows)} rows, CalculiX holds {most}; allow a larger error (--error)"
-        )
+        raise Refusal(f"the table has {len(rows)} rows, CalculiX holds {most}; allow a larger error", "error")
     lines = [
         *header(about, "**"),
         "*SURFACE INTERACTION, NAME=JOINT",

@@ -5,23 +5,25 @@ analysis gave it, `pressure [MPa]`: labels of the two nodes of a pair, place in 
 part of the contact that the pair stands for, and the contact pressure there.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fitting.columns import Table, Units, read
+from ..columns import Table, read
+from ..units import Sizes, sizes
 
 Array = NDArray[np.float64]
 
-COLUMNS: dict[str, Units] = {
-    "node_1": {"1": 1.0},
-    "node_2": {"1": 1.0},
-    "x": {"m": 1.0, "mm": 1e-3},
-    "y": {"m": 1.0, "mm": 1e-3},
-    "area": {"m2": 1.0, "mm2": 1e-6},
-    "pressure": {"Pa": 1.0, "MPa": 1e6},
+COLUMNS: Mapping[str, Sizes] = {
+    "node_1": sizes("1"),
+    "node_2": sizes("1"),
+    "x": sizes("m", "mm"),
+    "y": sizes("m", "mm"),
+    "area": sizes("m2", "mm2"),
+    "pressure": sizes("Pa", "MPa"),
 }
 LARGEST_LABEL = 99_999_999
 """Largest label of a node: eight digits, what all solvers' fixed columns hold."""
@@ -47,7 +49,7 @@ class Mesh:
 def read_pairs(path: str | Path) -> Mesh:
     """Read node pairs; the origin of x and y does not matter.
 
-    Raises ValueError with one line that names file and node: what `fitting.columns.read` refuses, a
+    Raises ValueError with one line that names file and node: what `columns.read` refuses, a
     missing column, a label that is no whole positive number or stands twice, an area that is not
     positive, a negative pressure, no pressure at all.
     """

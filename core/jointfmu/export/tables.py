@@ -9,15 +9,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..curve import Curve
-from ..joints.bolted_joint.spring import BoltedJointSpring
+from ..thinning import kept
 
 Array = NDArray[np.float64]
 
-STRONGEST = 10.0
-"""End of a bolted joint's table: its total force over the one at tightening [1]."""
-_DENSE, _FINE = 64, 4000
-"""Points at which errors are measured: per segment of a curve, and on either side of a tightened state."""
-_BLOCK = 100_000
+_DENSE = 64
+"""Points per segment of a curve at which errors are measured."""
 _FEWEST = 12
 """Fewest of them on a line: a parabola's top is then met within a per cent."""
 
@@ -65,34 +62,6 @@ def odd_table(curve: Curve, error: float) -> Table:
     return Table(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
 
 
-def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> Table:
-    """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
-
-    From STRONGEST times the force at tightening, pressed together, to where the last node opens; from
-    there on the force stays the preload's. The errors refer to the force at tightening where the
-    load is smaller, and to the stiffness there. Raises ValueError if nothing is in contact or the
-    hardness is reached.
-    """
-    start = spring.within_law(preload, moment)
-    low, high = spring.curve.displacement[[0, -1]]
-    alike, which = np.unique(start.round(18), return_inverse=True)  # 1e-18 m: round-off of symmetric nodes
-    weight = spring.joint.A_0 * np.bincount(which, spring.shape.share)
-
-    def total(separation: Array) -> Array:
-        blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))
-        both = [[value @ weight for value in spring.curve.derivatives(alike - s, 1)] for s in blocks]
-        return np.concatenate(both, axis=1)
-
-    held, stiff = (float(value[0]) for value in total(np.zeros(1)))
-    reach = np.linspace(0.0, float(high - np.max(start)), 400)
-    end = float(np.interp(STRONGEST * held, total(-reach)[0], reach))
-    opening = float(np.max(start) - low)
-    s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
-    force, stiffness = total(s)
-    table = thinned(s, held - force, stiffness, error, (held, stiff), keep=(_FINE - 1,))
-    return Table(np.vstack([table.rows, [2.0 * opening, held, 0.0]]), table.straight, table.monotone)
-
-
 def thinned(
     x: Array,
     y: Array,
@@ -116,22 +85,9 @@ def thinned(
         line = y[i] + (y[j] - y[i]) / (x[j] - x[i]) * (x[i : j + 1] - x[i])
         return float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1]))
 
-    last = x.size - 1
-    stops = sorted({*keep, last})
-    nodes = [0]
-    while nodes[-1] < last:
-        i = nodes[-1]
-        stop = next(s for s in stops if s > i)
-        j, step = i + 1, 1
-        while step:  # gallop, then bisect
-            further = min(j + step, stop)
-            if further > j and off(i, further) <= error:
-                j, step = further, 2 * step
-            else:
-                step //= 2
-        nodes.append(j)
-    index = np.array(nodes)
-    between = np.diff(index)[~np.isin(index[1:], stops)]
+    stops = {*keep, x.size - 1}
+    index = kept(stops, lambda i, j: off(i, j) <= error)
+    between = np.diff(index)[~np.isin(index[1:], list(stops))]
     if np.any(between < _FEWEST):
         raise ValueError(
             f"error = {error:g} is too small for a table; it would have {index.size} rows or more"

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..parameters import entries, read_document
-from ..quantity import build
+from ..quantity import build, flat_fields
 from .bolts import BoltGrid, BoltList
 from .geometry import Assembly, BoxSection, Plate
 
@@ -52,7 +52,8 @@ def _part(path: Path, document: Mapping[str, Any], name: str) -> Any:
     kind = table.get(word)
     if not isinstance(kind, str) or kind not in classes:
         raise ValueError(f"{path}: {name}.{word} = {kind!r}, allowed are {', '.join(classes)}")
-    values, _, _ = entries(path, classes[kind], {k: v for k, v in table.items() if k != word})
+    body = {k: v for k, v in table.items() if k != word}
+    values, _, _ = entries(path, dict(flat_fields(classes[kind])), body)
     try:
         return build(classes[kind], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
     except ValueError as error:

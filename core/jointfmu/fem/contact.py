@@ -6,8 +6,8 @@ and cannot pull. The displacement u minimises the convex energy
     sum over the bodies (u K u / 2 - f u) + integral of V(delta) dA,   V' = p,
     delta = offset + u_z(side 1) - u_z(side 2) - gap,
 
-found by Newton's method with an exact line search. Loads on each body balance each other, so the few
-supports that stop rigid motions carry nothing.
+found by Newton's method with an exact line search. Loads and contact balance on each body, so the few
+supports that stop rigid motions carry nothing; loads that the contact cannot balance are refused.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skfem import Basis, Element, ElementQuadS2, MeshQuad
 
+from .balance import RigidBalance
 from .elasticity import ElasticBody
 from .newton import Energy
 
@@ -78,7 +79,8 @@ class ContactModel:
     bodies : side 1 (below z = 0) and side 2; or side 2 alone if side 1 is its mirror image, loads too
     interface, law : the contact
     gap    : distance [m] of the unloaded faces at places x, y (...) [m]; None: they are plane
-    held   : unknowns of each body that stay zero; None: as few as stop its rigid motions
+    held   : unknowns of each body that stay zero and may carry a load; None: as few as stop its rigid
+             motions, and the loads need none of them
     """
 
     bodies: tuple[ElasticBody, ...]
@@ -114,9 +116,11 @@ class ContactModel:
 
         Raises
         ------
-        RuntimeError : no equilibrium, because the loads of a body do not balance
+        RuntimeError : no equilibrium: loads that the contact cannot balance, or bodies that nothing holds
         """
         held = self.supports()
+        balance = self.balance(loads)
+        balance.check_loads()
         free = [np.setdiff1d(np.arange(body.size), one) for body, one in zip(self.bodies, held, strict=True)]
         traces = [trace[:, part] for trace, part in zip(self.traces(), free, strict=True)]
         split = np.cumsum([part.size for part in free])[:-1]
@@ -130,12 +134,25 @@ class ContactModel:
         gap = self.opening(*self.interface.position.T)
         offset = float(self.law.inverse(np.asarray(start))) + float(gap.max())
         found, approach, steps = energy.minimise(offset - gap)
+        balance.check_contact(energy.weight * self.law.derivatives(approach, 1)[0])
         displacement = []
         for body, part, values in zip(self.bodies, free, np.split(found, split), strict=True):
             whole = np.zeros(body.size)
             whole[part] = values
             displacement.append(whole)
         return ContactSolution(self, tuple(loads), tuple(displacement), offset, approach, steps)
+
+    def balance(self, loads: Sequence[Array]) -> RigidBalance:
+        """Forces of loads (n) [N] on the rigid motions of the bodies."""
+        at = self.interface
+        return RigidBalance.of(
+            self.bodies,
+            [at.values @ trace for trace in self.traces()],
+            loads,
+            self.supports(),
+            at.position,
+            bearing=self.held is not None,
+        )
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ..fitting import columns
+from .. import columns
+from ..units import Sizes, sizes
 from .contact import ContactField
 from .result import LENGTHS, PRESSURES, NodalResult
 
-COLUMNS: Mapping[str, columns.Units] = {
+COLUMNS: Mapping[str, Sizes] = {
     "x": LENGTHS,
     "y": LENGTHS,
-    "area": {f"{unit}2": size**2 for unit, size in LENGTHS.items()},
+    "area": sizes(*(f"{unit}2" for unit in LENGTHS)),
     "pressure": PRESSURES,
 }
 
@@ -36,6 +37,5 @@ def read(path: Path) -> NodalResult:
 
 def text(field: ContactField) -> str:
     """A field as the text of a file that `read` reads back, in SI units and to the last bit."""
-    rows = np.column_stack([field.position, field.area, field.pressure]).tolist()
-    lines = [",".join(map(repr, row)) for row in rows]
-    return "\n".join(["x [m],y [m],area [m2],pressure [Pa]", *lines, ""])
+    heads = [(name, next(iter(units))) for name, units in COLUMNS.items()]
+    return columns.text(heads, [*field.position.T, field.area, field.pressure])

@@ -15,6 +15,8 @@ FORCE_ERROR = 0.01
 """Largest difference of a field's force from the stated preload [1]."""
 MOMENT_PART = (0.5, 1.5)
 """What part of a stated moment [1] the pressures may balance; the rest is bolt forces."""
+_REPLACED = ("pattern.", "field.")
+"""Groups of the file that the field replaces."""
 
 
 def with_field(
@@ -58,13 +60,14 @@ def with_field(
     }
     given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
     given["A_0"] = float(np.sum(field.area))
-    kept = {n: v for n, v in flatten(file.values).items() if not n.startswith(("pattern.", "field."))}
+    kept = {n: v for n, v in flatten(file.values).items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(
         file,
         values=build(BoltedJoint, kept | given),
-        origins={n: k for n, k in file.origins.items() if n in kept} | dict.fromkeys(given, kind),
-        sources={n: s for n, s in file.sources.items() if n in kept}
+        origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
+        | dict.fromkeys(given, kind),
+        sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
         | dict.fromkeys(given, text)
         | {"A_0": f"{source}, sum of the nodal areas", "field.tilt": f"{text}; {_rule(tilted, moment)}"},
     ), reduction

@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..units import sizes
+
 Array = NDArray[np.float64]
 Nodes = NDArray[np.intp]
 
-LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
-PRESSURES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+LENGTHS = sizes("m", "mm", "um")
+PRESSURES = sizes("Pa", "kPa", "MPa", "GPa")
 """Units of files, in the SI unit."""
 
 

@@ -6,13 +6,16 @@
 """
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from ..columns import cells, check_length, content, number, rows, separator
+from ..units import sizes
 from .heights import Areal, Array, Heights, Profile
 
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9}
+LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units in metres."""
 LAYOUTS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
 _HEADER = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
@@ -20,9 +23,10 @@ _HEADER = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
 
 def unit(text: str, where: str) -> float:
     """A length unit in metres."""
-    if text not in UNITS:
-        raise ValueError(f"{where}: unit {text!r} is not one of m, mm, um, nm")
-    return UNITS[text]
+    if text not in LENGTHS:
+        allowed = ", ".join(filter(str.isascii, LENGTHS))
+        raise ValueError(f"{where}: unit {text!r} is not one of {allowed}")
+    return LENGTHS[text]
 
 
 def header(path: Path) -> str | None:
@@ -63,22 +67,26 @@ def _spacing(path: Path, text: str, name: str) -> float:
 
 def table(path: Path) -> Array:
     """The numbers of a file (comma, semicolon, tab or blanks; # begins a comment); empty cells are NaN."""
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: is no text file; expected numbers in columns") from None
-    lines = [one for one in text.splitlines() if one.strip() and not one.lstrip().startswith("#")]
-    mark = next((mark for mark in (";", ",", "\t") if lines and mark in lines[0]), None)
-    if mark and any(gap in text for gap in (mark * 2, f"{mark}\n", f"\n{mark}", f"{mark} ")):
-        lines = [mark.join(cell.strip() or "nan" for cell in one.split(mark)) for one in lines]
-    try:
-        found = np.loadtxt(lines, delimiter=mark, ndmin=2, dtype=np.float64)
-    except ValueError as error:
-        reason = str(error).split(";")[0].split(". ")[0]
-        raise ValueError(f"{path}: is no surface: {reason}; expected numbers in columns") from None
-    if found.size == 0:
+    lines = [(i, line.partition("#")[0]) for i, line in content(path)]
+    if not lines:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
-    return found
+    mark = separator(lines[0][1])
+    values: list[Array] = []
+    for i, line in lines:
+        row = cells(line, mark) if mark else line.split()
+        check_length(path, i, row, values[0].size if values else len(row))
+        values.append(_numbers(path, i, row))
+    return np.array(values)
+
+
+def _numbers(path: Path, line: int, row: Sequence[str]) -> Array:
+    values = [number(cell) if cell.strip() else np.nan for cell in row]
+    if None in values:
+        cell = row[values.index(None)].strip()
+        raise ValueError(
+            f"{path}: is no surface: line {line}: {cell!r} is no number; expected numbers in columns"
+        )
+    return np.array(values, dtype=np.float64)
 
 
 def columns(path: Path, values: Array, factors: list[float]) -> Heights:
@@ -122,9 +130,8 @@ def text(heights: Heights) -> str:
     if isinstance(heights, Profile):
         at = np.arange(heights.z.size) * heights.dx
         head = "# profile: x [m], z [m]"
-        rows = [f"{x:.10g},{z:.7g}" for x, z in zip(at.tolist(), heights.z.tolist(), strict=True)]
+        body = rows([at, heights.z], [10, 7])
     else:
         head = f"# grid: dx = {heights.dx!r} m, dy = {heights.dy!r} m, z [m]"
-        pattern = ",".join(["%.7g"] * heights.z.shape[1])
-        rows = [pattern % tuple(row) for row in heights.z.tolist()]
-    return "\n".join([head, *rows, ""])
+        body = rows(heights.z.T, [7] * heights.z.shape[1])
+    return "\n".join([head, *body, ""])

@@ -16,6 +16,7 @@ from .results import (
     Identification,
     ProfileFractal,
     Result,
+    Roughness,
     texture,
     warnings,
 )
@@ -120,11 +121,20 @@ def _result(series: Series, found: Fit) -> Result:
         direction=series.direction,
         series=series,
         fit=found,
-        profile=ProfileFractal(D=_estimate(2.0 - H), G=_estimate(np.exp(profile))),
-        areal=ArealFractal(D_s=_estimate(3.0 - H), G_s=_estimate(np.exp(areal))),
+        profile=ProfileFractal(D=_estimate(2.0 - H), G=_roughness(profile)),
+        areal=ArealFractal(D_s=_estimate(3.0 - H), G_s=_roughness(areal)),
     )
 
 
 def _estimate(values: Array) -> Estimate:
+    return Estimate(*_interval(values))
+
+
+def _roughness(logarithms: Array) -> Roughness:
+    return Roughness.of_logarithms(*_interval(logarithms))
+
+
+def _interval(values: Array) -> tuple[float, float, float]:
+    """The first value, and the interval of the others, the draws."""
     low, high = np.quantile(values[1:], [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
-    return Estimate(float(values[0]), float(low), float(high))
+    return float(values[0]), float(low), float(high)

@@ -1,5 +1,7 @@
 """Which parameters of a joint a surface decides, and a parameter file with them."""
 
+import math
+
 from ..joints import KINDS
 from ..joints.kind import RoughSurface
 from ..parameters import ParameterFile
@@ -34,9 +36,18 @@ def meaning(joint: str) -> str:
 
 
 def with_surface(file: ParameterFile, found: Identification, method: str | None = None) -> ParameterFile:
-    """The parameter file with D and G of the surface, each with its source."""
+    """The parameter file with D and G of the surface, each with its source.
+
+    Raises ValueError if one is not determined.
+    """
     surfaces = {surface.prefix: surface for surface in KINDS[file.joint].surfaces}
     for name, (value, result) in changes(found, file.joint, method).items():
+        if not math.isfinite(value):
+            D, G = result.profile.D.value, result.profile.G
+            raise ValueError(
+                f"{name} of {' and '.join(found.names)} is not determined (D = {D:.2f}, the interval of G "
+                f"spans {G.decades:.0f} decades): {file.joint} needs a number"
+            )
         prefix, _, which = name.rpartition(".")
         source = _source(found, result, surfaces[prefix], which)
         file = file.with_values({name: value}, "user", source)

@@ -54,7 +54,7 @@ def _bare_columns(path: Path, unit: str | None) -> Heights:
     if unit is None:
         raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
     values = csvfile.table(path)
-    return csvfile.columns(path, values, [csvfile.UNITS[unit]] * values.shape[1])
+    return csvfile.columns(path, values, [csvfile.LENGTHS[unit]] * values.shape[1])
 
 
 def _instrument(path: Path, unit: str | None) -> Heights:
@@ -89,7 +89,7 @@ def _factor(path: Path, stated: str | None, given: str | None) -> float:
     if stated is not None and given is not None:
         raise ValueError(f"{path}: states its unit {stated} itself; leave --unit {given} out")
     if given is not None:
-        return csvfile.UNITS[given]
+        return csvfile.LENGTHS[given]
     from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
 
     factor = get_unit_conversion_factor(stated, "m")

@@ -23,12 +23,39 @@ class Estimate:
     high: float
 
 
+@dataclass(frozen=True, slots=True)
+class Roughness(Estimate):
+    """A roughness G [m] with its interval, worked out in logarithms.
+
+    As D goes to 1 the interval spans hundreds of decades. Where it leaves the positive floating-point numbers
+    G is not determined: value, low and high are nan.
+
+    decades : [1] length of the interval, whether or not G is determined
+    """
+
+    decades: float
+
+    @property
+    def determined(self) -> bool:
+        """Whether the whole interval consists of positive floating-point numbers."""
+        return bool(np.isfinite(self.value))
+
+    @classmethod
+    def of_logarithms(cls, value: float, low: float, high: float) -> "Roughness":
+        """From the natural logarithms of the value and of the ends of its interval."""
+        decades = (high - low) / np.log(10.0)
+        least, most = np.log([np.finfo(float).tiny, np.finfo(float).max])
+        if not least <= min(value, low) <= max(value, high) <= most:
+            return cls(np.nan, np.nan, np.nan, float(decades))
+        return cls(float(np.exp(value)), float(np.exp(low)), float(np.exp(high)), float(decades))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileFractal:
     """Fractal parameters of a profile, 1 < D < 2 (Zhao 2018, Yu 2022)."""
 
     D: Estimate
-    G: Estimate
+    G: Roughness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +63,7 @@ class ArealFractal:
     """Fractal parameters of an isotropic surface, 2 < D_s < 3 (Hu 2023, Eq. 1)."""
 
     D_s: Estimate
-    G_s: Estimate
+    G_s: Roughness
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,10 +125,10 @@ def warnings(results: Sequence[Result], textured: bool) -> list[str]:
         if not 0.03 < one.fit.H < 0.97:
             found.append(f"{where}: D = {one.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
     G = min(results[:2], key=lambda one: one.fit.covariance[0, 0]).profile.G
-    if G.high > 1e4 * G.low:
+    if G.decades > 4.0:
         found.append(
-            f"G is hardly determined: its interval spans {np.log10(G.high / G.low):.1f} decades; "
-            "a larger patch or more decades are needed"
+            f"G is {'hardly' if G.determined else 'not'} determined: its interval spans {G.decades:.1f} "
+            "decades; a larger patch or more decades are needed"
         )
     structures, spectra = results[0].profile.D, results[1].profile.D
     if structures.low > spectra.high or spectra.low > structures.high:

@@ -1,11 +1,10 @@
 """Bands and indices as table, CSV and JSON."""
 
-import csv
-import io
 from typing import Any
 
 import numpy as np
 
+from .. import columns
 from .problem import Problem
 from .propagate import QUANTILES, Bands
 from .sensitivity import Sensitivity
@@ -16,20 +15,16 @@ SHOWN = 6
 
 def bands_csv(task: Problem, bands: Bands) -> str:
     """One row per load: nominal, mean, standard deviation and quantiles of every output, exact numbers."""
-    head, columns = [f"{task.reduced.load.name} [{task.reduced.load.unit}]"], [bands.loads]
+    load = task.reduced.load
+    heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
         plain = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
-        for kind, values in plain:
-            head.append(f"{name} {kind} [{unit}]")
-            columns.append(values[name])
-        for q, values in zip(QUANTILES, bands.quantiles[name], strict=True):
-            head.append(f"{name} {100 * q:g} % [{unit}]")
-            columns.append(values)
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows([repr(float(x)) for x in row] for row in zip(*columns, strict=True))
-    return text.getvalue()
+        for kind, of in plain:
+            heads.append((f"{name} {kind}", unit))
+            values.append(of[name])
+        heads += [(f"{name} {100 * q:g} %", unit) for q in QUANTILES]
+        values += list(bands.quantiles[name])
+    return columns.text(heads, values)
 
 
 def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str, Any]:

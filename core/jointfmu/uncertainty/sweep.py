@@ -13,7 +13,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import ramp
+from .. import columns, ramp
 from ..parameters import write_text
 from ..progress import track
 from . import journal
@@ -161,15 +161,14 @@ def _as_completed(
 
 def bands_csv(folder: Path) -> str:
     """Quantiles of every output at every point of the ramp over the runs that did not fail, as CSV."""
-    columns: dict[str, list[Array]] = {}
+    runs: dict[str, list[Array]] = {}
     for entry in journal.entries(folder):
         for name, values in entry.get("columns", {}).items():
-            columns.setdefault(name, []).append(np.asarray(values))
-    driven, *outputs = columns
-    head, table = [driven], [columns[driven][0]]
+            runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
+    driven, *outputs = runs
+    heads: list[columns.Head] = [(driven, None)]
+    table = [runs[driven][0]]
     for name in outputs:
-        rows = np.quantile(np.stack(columns[name]), QUANTILES, axis=0)
-        head += [f"{name} {100 * q:g} %" for q in QUANTILES]
-        table += list(rows)
-    lines = [",".join(repr(float(x)) for x in row) for row in zip(*table, strict=True)]
-    return "\n".join([",".join(head), *lines]) + "\n"
+        heads += [(f"{name} {100 * q:g} %", None) for q in QUANTILES]
+        table += list(np.quantile(np.stack(runs[name]), QUANTILES, axis=0))
+    return columns.text(heads, table)

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "tables.h"
+#include "tabulated.h"
 
 enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3 }; /* places of the inputs */
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "tables.h"
+#include "tabulated.h"
 
 static const double SIDE = 1e-9; /* where a regime ends its derivative is taken this far inside, in log-area */
 

@@ -2,7 +2,7 @@
 #ifndef JOINTFMU_DRIVE_H
 #define JOINTFMU_DRIVE_H
 
-#include "blocks.h"
+#include "table.h"
 #include "spots.h"
 
 enum { REGIME_BLOCKS = 560, PAIR_BLOCKS = 512 };

@@ -1,5 +1,7 @@
-/* Entry points of FMI 2.0: each is a thin layer over instance.h. */
-#include "instance.h"
+/* Entry points of FMI 2.0: each is a thin layer over step.h, derivative.h, snapshot.h. */
+#include "derivative.h"
+#include "snapshot.h"
+#include "step.h"
 
 #include "fmi2Functions.h"
 

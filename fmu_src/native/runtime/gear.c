@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "tables.h"
+#include "tabulated.h"
 
 static const double NOTHING = 1e-200; /* pressure [Pa] below which no spot touches, as in the package */
 

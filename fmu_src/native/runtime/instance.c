@@ -256,14 +256,6 @@ Status instance_change(Instance *m, const char *function, unsigned where, unsign
     return OK;
 }
 
-Status instance_initialize(Instance *m, const char *function)
-{
-    if (!instance_allows(m, function, BOTH | INITIALIZATION) || instance_evaluate(m) != OK)
-        return ERROR;
-    instance_enter(m, m->now.kind == MODEL_EXCHANGE ? EVENT : STEP);
-    return OK;
-}
-
 Status instance_set_time(Instance *m, const char *function, double time)
 {
     if (!instance_allows(m, function, MODEL_EXCHANGE | EVENT | CONTINUOUS_TIME))

@@ -73,8 +73,6 @@ typedef struct {
     char name[];
 } Instance;
 
-/* instance.c: life, modes, messages */
-
 /* NULL with a message if the host's name or token is wrong. */
 Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
                        const char *token, bool logging_on, Reporter reporter);
@@ -87,8 +85,6 @@ void instance_reset(Instance *m);
 void instance_enter(Instance *m, unsigned mode);
 /* The same for the functions that do no more, where they are allowed. */
 Status instance_change(Instance *m, const char *function, unsigned where, unsigned mode);
-/* Check parameters and inputs and leave initialization mode. */
-Status instance_initialize(Instance *m, const char *function);
 Status instance_set_time(Instance *m, const char *function, double time);
 /* Set the times of the experiment, before initialization. */
 Status instance_set_experiment(Instance *m, const char *function, double start, bool stop_defined,
@@ -113,53 +109,5 @@ static inline bool instance_has(const Instance *m, const char *function, const c
 }
 bool instance_counts(const Instance *m, const char *function, const char *what, size_t given,
                      size_t expected);
-
-/* values.c: variables */
-
-Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                    const double values[]);
-Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
-/* Booleans: FMI 2 and 3 hold them in different types; the caller moves them to or from now.values. */
-bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                               const void *values);
-bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                               const void *values);
-/* Types of which there is no variable: right with n = 0 only. */
-Status instance_no_variables(const Instance *m, const char *function, unsigned where, size_t n);
-Status instance_set_slopes(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                           const int32_t orders[], const double values[]);
-/* true if the unknowns are outputs and the knowns inputs, and the outputs are right. */
-bool instance_can_differentiate(Instance *m, const char *function, const uint32_t unknowns[],
-                                size_t n_unknowns, const uint32_t knowns[], size_t n_knowns);
-
-/* evaluate.c: outputs, steps, derivatives */
-
-/* Make the outputs right for the present inputs and parameters; reports a refusal and gives ERROR. */
-Status instance_evaluate(Instance *m);
-Status instance_step(Instance *m, const char *function, double time, double size);
-/* Derivative of outputs `unknowns` along `seed` in inputs `knowns`. */
-Status instance_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                           const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
-/* Its transpose: derivative of the sum of seed[i] * unknowns[i] by each of `knowns`. */
-Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[]);
-
-/* states.c: continuous states */
-
-/* Move the states over a step of co-simulation; outputs are to be evaluated after it. */
-void instance_advance(Instance *m, double size);
-Status instance_set_states(Instance *m, const char *function, const double x[], size_t n);
-Status instance_get_states(Instance *m, const char *function, double x[], size_t n);
-Status instance_get_rates(Instance *m, const char *function, double x[], size_t n);
-Status instance_get_nominals(Instance *m, const char *function, unsigned where, double x[], size_t n);
-
-/* state.c: states of the FMU outside of an instance, and as bytes */
-
-Status state_save(const Instance *m, const char *function, void **saved);
-Status state_restore(Instance *m, const char *function, const void *saved);
-Status state_free(const Instance *m, const char *function, void **saved);
-Status state_size(const Instance *m, const char *function, const void *saved, size_t *size);
-Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size);
-Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved);
 
 #endif

@@ -1,4 +1,4 @@
-#include "instance.h"
+#include "values.h"
 
 #include <math.h>
 

@@ -22,7 +22,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *outputs, Text *w
 {
     (void)why;
     for (int i = 0; i < N_OUTPUTS; i++)
-        outputs[i] = joint->gain * inputs[i];
+        outputs[i] = joint->gain * inputs[i % N_INPUTS];
     return true;
 }
 
@@ -30,7 +30,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *seed, do
 {
     (void)inputs;
     for (int i = 0; i < N_OUTPUTS; i++)
-        result[i] = joint->gain * seed[i];
+        result[i] = joint->gain * seed[i % N_INPUTS];
 }
 
 unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)

@@ -1,0 +1,110 @@
+"""Closed forms that the rings are checked against, and the same problems in elements."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.optimize import brentq
+
+from .contact import Contact, Spring, equilibrium, linear_contact
+from .ring import Circle, Ring
+
+Array = NDArray[np.float64]
+
+_HALVES = (0.05, 1.5)
+"""Half angles [1] of a free part between which the edge is sought."""
+
+
+class OnOval(NamedTuple):
+    """A ring on a rigid oval, per width."""
+
+    edge: float
+    """Angle [1] from the major axis at which the ring leaves the oval."""
+    peak: float
+    """Pressure [Pa] on the major axis."""
+    edge_pressure: float
+    """Pressure [Pa] at the edge, where a line force stands beside it."""
+    edge_force: float
+    """Line force [N/m] at each of the four edges."""
+    lobe_force: float
+    """Resultant [N/m] of one lobe along the major axis."""
+
+
+def opposite_forces(ring: Ring, radius: float, force: float) -> float:
+    """Radial displacement [m] of the loaded points of a ring under two opposite forces [N/m] outward.
+
+    Bending F r^3/D (pi/8 - 1/pi) and stretching F r/A pi/8.
+    """
+    return force * radius * (radius**2 / ring.D * (np.pi / 8.0 - 1.0 / np.pi) + np.pi / 8.0 / ring.A)
+
+
+def on_oval(ring: Ring, radius: float, deformation: float) -> OnOval:
+    """A ring pressed without friction onto the rigid oval r + w cos(2 theta) of its own perimeter.
+
+    With N the hoop force and M = -D (u'' + u)/r^2 the moment (' by the angle), equilibrium is
+    M'' + M = C - p r^2, r N = C - M. On the oval p = D w/r^4 (9 cos(2 theta) + c) with c = C r^2/(D w);
+    off it, with x from the minor axis, u/w = -c + A cos x + B x sin x. Displacement, slope and moment
+    go on at the edge and the ring is longer by N/A on average, which leaves one equation for the edge.
+    Neglected: (thickness/radius)^2/12 beside 1.
+
+    Raises ValueError if the ring is so thin, or so thick, that it lies on all or hardly any of the oval.
+    """
+
+    def free(half: float) -> tuple[float, float, float]:
+        """A, B, c of a free part of +-half about the minor axis."""
+        sine, cosine = np.sin(half), np.cos(half)
+        slopes = [[-sine, sine + half * cosine], [-cosine, 2.0 * cosine - half * sine]]
+        a, b = np.linalg.solve(slopes, [2.0 * np.sin(2.0 * half), 4.0 * np.cos(2.0 * half)])
+        return float(a), float(b), float(a * cosine + b * half * sine + np.cos(2.0 * half))
+
+    def stretch(half: float) -> float:
+        """D/(A r^2) at which the ring leaves the oval there."""
+        a, b, c = free(half)
+        off = -c * half + a * np.sin(half) + b * (np.sin(half) - half * np.cos(half))
+        return float((off + 0.5 * np.sin(2.0 * half)) / (0.5 * np.pi * c))
+
+    share, low, high = ring.D / (ring.A * radius**2), stretch(_HALVES[0]), stretch(_HALVES[1])
+    if not low < share < high:
+        raise ValueError(f"D/(A r^2) = {share:g} is outside ({low:.2g}, {high:.2g}): a thin ring that bends")
+    half = brentq(lambda x: stretch(x) - share, *_HALVES, xtol=1e-14)
+    a, b, c = free(half)
+    third = a * np.sin(half) - b * (3.0 * np.sin(half) + half * np.cos(half))
+    unit = ring.D * deformation / radius**4
+    return OnOval(
+        edge=0.5 * np.pi - half,
+        peak=unit * (9.0 + c),
+        edge_pressure=unit * (c - 9.0 * np.cos(2.0 * half)),
+        edge_force=unit * radius * abs(third + 8.0 * np.sin(2.0 * half)),
+        lobe_force=4.0 * b * unit * radius,
+    )
+
+
+def opposite_forces_in_elements(ring: Ring, radius: float, force: float, elements: int) -> float:
+    """The same as `opposite_forces` with an even number of elements."""
+    circle = Circle.of(radius, elements)
+    n = 2 * elements
+    load, apart = np.zeros((2, 2 * n))
+    load[[0, elements]], apart[[0, elements]] = force, (0.5, -0.5)
+    # both loaded points keep their place along the ring; the spring, without force, theirs together
+    held = [n, n + elements]
+    x = equilibrium(circle.stiffness(ring), load, [], np.zeros(2 * n), held, [Spring(apart, ring.A / radius)])
+    return float(x[0])
+
+
+def on_oval_in_elements(
+    ring: Ring, radius: float, deformation: float, modulus: float, elements: int
+) -> tuple[Circle, Array]:
+    """Pressure [Pa] at the circle's points, the oval of `on_oval` covered by a foundation [Pa/m]."""
+    circle, w = Circle.of(radius, elements), deformation
+    contact = Contact(
+        rows=sparse.hstack([-circle.value, sparse.csr_matrix(circle.value.shape)]).tocsr(),
+        start=w * np.cos(2.0 * circle.theta),
+        weight=circle.weight,
+        law=linear_contact(modulus),
+    )
+    radial = circle.unknowns(lambda t: w * (np.cos(2.0 * t) - 1e-3), lambda t: -2.0 * w * np.sin(2.0 * t))
+    along = circle.unknowns(lambda t: -0.5 * w * np.sin(2.0 * t), lambda t: -w * np.cos(2.0 * t))
+    start = np.concatenate([radial, along])
+    x = equilibrium(circle.stiffness(ring), np.zeros_like(start), [contact], start, [2 * elements])
+    return circle, contact.load(x)

@@ -1,0 +1,48 @@
+"""What a joint's part `fit` says: FITS, its procedures, each of them data and options to parameters."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .outcome import Outcome
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """A number or a word that a procedure takes beside its data.
+
+    name     : keyword of the procedure's function
+    text     : meaning, a number's with its unit
+    default  : where nothing is stated
+    choices  : words that are allowed; none: any
+    word     : it is a word; else a number
+    required : it must be stated
+    """
+
+    name: str
+    text: str
+    default: float | str | None = None
+    choices: Sequence[str] = ()
+    word: bool = False
+    required: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Procedure:
+    """A way to fit a joint's parameters.
+
+    name    : what is fitted, with hyphens
+    text    : what is fitted to which joint, in words
+    file    : whether the data are a measured file
+    options : what it takes beside
+    run     : ([path of the file,] ParameterFile to start from or None, names to fit or None,
+              **options by name) -> Outcome; a module of the joint's is loaded only then.
+              ValueError: bad input, RuntimeError: the fit finds no end
+    """
+
+    name: str
+    text: str
+    file: bool
+    options: Sequence[Option] = ()
+    run: "Callable[..., Outcome]"

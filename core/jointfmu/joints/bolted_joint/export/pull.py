@@ -1,0 +1,43 @@
+"""The bolted joint's normal force over its separation, as a table."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....export.tables import Table, thinned
+from ..spring import BoltedJointSpring
+
+Array = NDArray[np.float64]
+
+STRONGEST = 10.0
+"""End of the table: its total force over the one at tightening [1]."""
+_FINE = 4000
+"""Points at which errors are measured on either side of the tightened state."""
+_BLOCK = 100_000
+
+
+def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> Table:
+    """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
+
+    From STRONGEST times the force at tightening, pressed together, to where the last node opens; from
+    there on the force stays the preload's. The errors refer to the force at tightening where the
+    load is smaller, and to the stiffness there. Raises ValueError if nothing is in contact or the
+    hardness is reached.
+    """
+    start = spring.within_law(preload, moment)
+    low, high = spring.curve.displacement[[0, -1]]
+    alike, which = np.unique(start.round(18), return_inverse=True)  # 1e-18 m: round-off of symmetric nodes
+    weight = spring.joint.A_0 * np.bincount(which, spring.shape.share)
+
+    def total(separation: Array) -> Array:
+        blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))
+        both = [[value @ weight for value in spring.curve.derivatives(alike - s, 1)] for s in blocks]
+        return np.concatenate(both, axis=1)
+
+    held, stiff = (float(value[0]) for value in total(np.zeros(1)))
+    reach = np.linspace(0.0, float(high - np.max(start)), 400)
+    end = float(np.interp(STRONGEST * held, total(-reach)[0], reach))
+    opening = float(np.max(start) - low)
+    s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
+    force, stiffness = total(s)
+    table = thinned(s, held - force, stiffness, error, (held, stiff), keep=(_FINE - 1,))
+    return Table(np.vstack([table.rows, [2.0 * opening, held, 0.0]]), table.straight, table.monotone)

@@ -1,0 +1,32 @@
+"""What other solvers are given of a gear contact."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ...export.exports import Exports, LoadCurve
+from .spring import GearContact, GearContactSpring
+
+if TYPE_CHECKING:
+    from ...curve import Curve
+    from ...export.tables import Table
+
+
+def _contact(gear: GearContact) -> "tuple[Curve, Sequence[str]]":
+    return GearContactSpring.of(gear).curve, ()
+
+
+def _load(gear: GearContact, _: None, error: float) -> "Table":
+    from ...export.tables import load_table
+
+    return load_table(GearContactSpring.of(gear).curve, gear.A_0, error)
+
+
+EXPORTS = Exports(
+    contact=_contact,
+    curve=LoadCurve(
+        meaning="normal load over approach of the flanks from first touch; without load while apart",
+        heads=(("s_rel", "m"), ("f", "N"), ("K_N", "N/m")),
+        name="force",
+        table=_load,
+    ),
+)

@@ -1,0 +1,28 @@
+"""What other solvers are given of a harmonic drive."""
+
+from typing import TYPE_CHECKING
+
+from ...export.exports import Exports, LoadCurve
+from .spring import HarmonicDrive, HarmonicDriveSpring
+
+if TYPE_CHECKING:
+    from ...export.tables import Table
+
+
+def _torque(drive: HarmonicDrive, _: None, error: float) -> "Table":
+    from ...export.tables import odd_table
+
+    return odd_table(HarmonicDriveSpring.of(drive).curve, error)
+
+
+EXPORTS = Exports(
+    curve=LoadCurve(
+        meaning="torque over wind-up at the output, wave generator locked",
+        heads=(("phi_rel", "rad"), ("tau", "N.m"), ("K_WTS", "N.m/rad")),
+        name="torque",
+        table=_torque,
+    ),
+    lacks={
+        "contact": "only with pair_scale and drive_scale does it give the drive's stiffness; export its curve"
+    },
+)

@@ -1,0 +1,57 @@
+"""What the two fits of the harmonic drive share: the size of the start, bounds, and the angle."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ....fitting.least_squares import Array
+from ....parameters import ParameterFile
+from ..spring import HarmonicDrive, torque_curve
+
+LEVEL = ("K_FTS0", "drive_scale")
+"""The two stiffnesses of Eq. 46: scaled together they scale K_WTS."""
+LEAST_PRESSURE = 0.05
+"""Least peak pressure without torque over that at rated torque [1] that a fit may find."""
+
+
+def windup(drive: HarmonicDrive, torque: Array) -> Array:
+    """phi (...) [rad] at torques (...) [N.m]: exactly the exported curve."""
+    return np.asarray(np.copysign(torque_curve(drive).inverse(np.abs(torque)), torque))
+
+
+def resized(start: ParameterFile, rated: float, factor: float, kind: str, source: str) -> ParameterFile:
+    """The drive with another rated torque [N.m]; max_torque = factor x rated, the smoothing in proportion.
+
+    Raises ValueError if the torque is not positive and finite.
+    """
+    if not 0.0 < rated < np.inf:
+        raise ValueError(f"rated torque = {rated:g} N.m is outside (0, inf): the drive's rated torque")
+    drive = start.values
+    smoothing = drive.torque_smoothing * rated / drive.rated_torque
+    file = start.with_values({"rated_torque": rated}, kind, source)
+    file = file.with_values({"max_torque": factor * rated}, "estimate", f"{factor:g} times rated_torque")
+    return file.with_values(
+        {"torque_smoothing": smoothing},
+        "estimate",
+        f"{smoothing / rated:.2g} of rated_torque, as in {start.name}",
+    )
+
+
+def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array) -> ParameterFile:
+    """The start with its stiffness brought to that of a curve, by those of LEVEL that are to be fitted."""
+    ratio = float(np.sum(windup(start.values, torque) * angle) / np.sum(angle**2))
+    found = {name: getattr(start.values, name) * ratio for name in LEVEL if name in names}
+    return start.with_values(found, "calibration", "start") if len(found) == len(LEVEL) else start
+
+
+def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
+    """Intervals of the pressures that keep the lobes in contact without torque."""
+    drive: Any = start.values
+    rated, loss = drive.rated_pressure, drive.pressure_loss
+    least = loss + LEAST_PRESSURE * rated
+    return {
+        "zero_torque_pressure": (least, rated),
+        "rated_pressure": (drive.zero_torque_pressure, np.inf),
+        "torque_smoothing": (1e-3 * drive.rated_torque, drive.rated_torque),
+    }

@@ -1,0 +1,142 @@
+"""A measured torque-angle curve to the harmonic drive's parameters.
+
+The curve fixes its level at small torque, its level at large torque and how fast it goes from one to
+the other: `drive_scale` (K_TS), `K_FTS0` and `zero_torque_pressure` (how little the lobes are pressed
+before they grow). `pair_scale` does the same as `drive_scale`, the surface and the materials act
+through the same level and rise; they stay as they are unless asked for.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .... import columns
+from ....fitting import loop
+from ....fitting.least_squares import Array, solve
+from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from ....parameters import ParameterFile, default
+from ....refusal import Refusal
+from ....units import Sizes, sizes
+from . import drive
+
+FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+COLUMNS: Mapping[str, Sizes] = {
+    "torque": sizes("N.m", "mN.m", "kN.m"),
+    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
+}
+LEAST = 10
+"""Fewest points of a curve."""
+ARCMIN = COLUMNS["angle"]["arcmin"]
+ALIKE = 0.5
+"""Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
+
+
+def fit(
+    path: str | Path,
+    start: ParameterFile | None = None,
+    free: Sequence[str] | None = None,
+    rated_torque: float | None = None,
+) -> Outcome:
+    """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement; `free` None: FREE.
+
+    The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
+    scales the start's torques (max_torque, smoothing) to another size of drive.
+
+    Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
+    that cannot be fitted. RuntimeError if the fit finds no end.
+    """
+    table = columns.read(path, COLUMNS, LEAST)
+    names = tuple(free or FREE)
+    torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
+    try:
+        line = loop.backbone(torque, angle)
+    except ValueError as error:
+        raise ValueError(f"{table.path}: {error}") from None
+    file = _sized(start or default("harmonic_drive"), line.torque, rated_torque, table.path)
+    centred = line.angle - np.interp(0.0, line.torque, line.angle)
+    file = drive.scaled(file, names, line.torque, centred)
+    weight = np.sqrt(line.count)
+    size = float(np.ptp(line.angle))
+
+    def offset(predicted: Array) -> float:
+        return float(np.average(line.angle - predicted, weights=line.count))
+
+    def miss(predicted: Array) -> Array:
+        return np.asarray(weight * (line.angle - predicted - offset(predicted)) / size)
+
+    angles = model(file, lambda joint: drive.windup(joint, line.torque))
+    found = solve(
+        unknowns(file, names, drive.bounds(file)),
+        lambda values: miss(angles(values)),
+        nuisances=1,
+    )
+    ends = line.torque[0], line.torque[-1]
+    result = fitted(
+        file, found.values, "calibration", table.path.name, f"torque {ends[0]:.4g} to {ends[1]:.4g} N.m"
+    )
+    shift = offset(angles(found.values))
+    grid = np.linspace(*ends, 400)
+    rest = found.residuals / weight * size
+    picture = Picture(
+        x=line.torque,
+        y=(line.angle - shift) / ARCMIN,
+        misfit=rest / ARCMIN,
+        line=(grid, drive.windup(result.values, grid) / ARCMIN),
+        labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
+    )
+    return Outcome(
+        result, found, _facts(line, shift, rest, found.noise * size), picture, notes=_notes(line, rest)
+    )
+
+
+def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
+    """The start for a drive of this size; its table must reach the curve's end."""
+    drive_, reach = start.values, float(np.max(np.abs(torque)))
+    if rated is not None:
+        factor = drive_.max_torque / drive_.rated_torque
+        start = drive.resized(start, rated, factor, "user", "stated with the torque-angle curve")
+    if reach > start.values.max_torque:
+        raise Refusal(
+            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start.values.max_torque:g} N.m of "
+            f"{start.name}: state the drive's rated torque, max_torque is scaled with it",
+            "rated_torque",
+        )
+    return start
+
+
+def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> dict[str, tuple[float, str, str]]:
+    """What was read off the record beside the parameters."""
+    facts = {
+        "points": (float(np.sum(line.count)), "1", "samples used"),
+        "branches": (float(line.branches), "1", "branches used"),
+        "offset": (shift, "rad", "angle at zero torque, taken off"),
+    }
+    texts = {
+        "loop_area": ("J", "dissipated per loop"),
+        "backlash": ("rad", "angle between the branches at zero torque"),
+        "drift": ("rad", "drift of the angle over the record, taken off"),
+    }
+    for name, (unit, text) in texts.items():
+        if (value := getattr(line, name)) is not None:
+            facts[name] = (value[0], unit, text)
+            facts[f"{name}_deviation"] = (value[1], unit, "its standard deviation")
+    facts["noise"] = (noise, "rad", "standard deviation of one sample about the fitted law")
+    facts["largest_misfit"] = (float(np.max(np.abs(rest))), "rad", "of the mid-line from the fitted law")
+    return facts
+
+
+def _notes(line: loop.Backbone, rest: Array) -> list[str]:
+    """What was not determined by the record, and whether the law misses the curve systematically."""
+    notes = []
+    if line.loop_area is None:
+        notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
+    elif line.drift is None:
+        notes.append("a single loop that is not closed: a drift cannot be told from the loop")
+    alike = float(np.sum(rest[1:] * rest[:-1]) / np.sum(rest**2)) if np.any(rest) else 0.0
+    if alike > ALIKE:
+        notes.append(
+            f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the curve "
+            "systematically, the standard deviations are too small"
+        )
+    return notes

@@ -1,0 +1,150 @@
+"""The one table of units: what each measures, how large it is, and in which unit people read it.
+
+A unit is written as FMI and Modelica write it: symbols with exponents, joined by dots, after a slash what
+divides, `N.m.s/rad`. Sizes are exact fractions of the symbols' and rounded once.
+"""
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cache
+from math import degrees, log10, tau
+from typing import NamedTuple, TypeAlias
+
+Sizes: TypeAlias = Mapping[str, float]
+"""{unit: its size in the SI unit}, the SI unit first."""
+
+_FORCE = {"kg": 1, "m": 1, "s": -2}
+_DEGREE = 1 / Fraction(degrees(1.0))
+_SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
+    "1": (1, {}),
+    "kg": (1, {"kg": 1}),
+    "m": (1, {"m": 1}),
+    "s": (1, {"s": 1}),
+    "rad": (1, {"rad": 1}),
+    "Hz": (1, {"s": -1}),
+    "N": (1, _FORCE),
+    "Pa": (1, {"kg": 1, "m": -1, "s": -2}),
+    "J": (1, {"kg": 1, "m": 2, "s": -2}),
+    "t": (1000, {"kg": 1}),
+    "min": (60, {"s": 1}),
+    "deg": (_DEGREE, {"rad": 1}),
+    "arcmin": (_DEGREE / 60, {"rad": 1}),
+    "arcsec": (_DEGREE / 3600, {"rad": 1}),
+    "rev": (Fraction(tau), {"rad": 1}),
+}
+"""Sizes in SI and exponents of the SI base units; the radian counts as one."""
+_PREFIXES = {"G": 9, "M": 6, "k": 3, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
+"""Powers of ten, before _PREFIXED; both Unicode signs for micro."""
+_PREFIXED = ("m", "s", "rad", "Hz", "N", "Pa", "J")
+_FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
+
+
+class Unit(NamedTuple):
+    """An SI unit: name of the quantity, as in the Modelica Standard Library where it has one, exponents of
+    the SI base units, and display units as {name: factor}: display = value * factor.
+    """
+
+    quantity: str
+    base: Mapping[str, int]
+    display: Mapping[str, float]
+
+
+def size(unit: str) -> float:
+    """How many SI units one unit is; ValueError if the unit is unknown."""
+    return float(_parsed(unit)[0])
+
+
+def base(unit: str) -> dict[str, int]:
+    """Exponents of the SI base units, without zeros; ValueError if the unit is unknown."""
+    return dict(_parsed(unit)[1])
+
+
+def factor(unit: str, to: str) -> float:
+    """What turns a number in one unit into another unit; ValueError if they measure different things."""
+    one, other = _parsed(unit), _parsed(to)
+    if one[1] != other[1]:
+        raise ValueError(f"unit {to!r} does not measure what {unit!r} does")
+    return float(one[0] / other[0])
+
+
+def sizes(unit: str, *others: str) -> Sizes:
+    """The units that a border takes, the SI unit first; ValueError if they measure different things."""
+    return {one: factor(one, unit) for one in (unit, *others)}
+
+
+def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
+    """A unit with other symbols in the place of some: `N/m3` with m as mm is `N/mm3`."""
+    return _FACTOR.sub(lambda found: symbols.get(found[1], found[1]) + found[2], unit)
+
+
+@cache
+def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
+    """Size and exponents of a unit."""
+    whole, exponents = Fraction(1), dict[str, int]()
+    above, slash, below = unit.partition("/")
+    for sign, part in ((1, above), (-1, below if slash else "1")):
+        for one in part.split("."):
+            if not (found := _FACTOR.fullmatch(one)):
+                raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
+            power = sign * int(found[2] or 1)
+            own, its = _symbol(found[1], unit)
+            whole *= own**power
+            for name, exponent in its.items():
+                exponents[name] = exponents.get(name, 0) + power * exponent
+    return whole, {name: exponent for name, exponent in exponents.items() if exponent}
+
+
+def _symbol(symbol: str, unit: str) -> tuple[Fraction, dict[str, int]]:
+    """Size and exponents of a symbol, with or without a prefix."""
+    if symbol in _SYMBOLS:
+        own, its = _SYMBOLS[symbol]
+        return Fraction(own), its
+    ten, rest = _PREFIXES.get(symbol[0]), symbol[1:]
+    if ten is None or rest not in _PREFIXED:
+        raise ValueError(f"unit {unit!r}: symbol {symbol!r} is unknown, allowed are {', '.join(_SYMBOLS)}")
+    return Fraction(10) ** ten, _SYMBOLS[rest][1]
+
+
+def _unit(name: str, quantity: str, *display: str) -> Unit:
+    return Unit(quantity, base(name), {shown: factor(name, shown) for shown in display or (name,)})
+
+
+UNITS: Mapping[str, Unit] = {
+    name: _unit(name, *told)
+    for name, told in {
+        "1": ("Ratio",),
+        "s": ("Time",),
+        "Hz": ("Frequency",),
+        "rad": ("Angle", "deg", "arcmin"),
+        "rad/s": ("AngularVelocity", "rev/min"),
+        "rad/s2": ("AngularAcceleration",),
+        "m": ("Length", "mm", "um"),
+        "m/s": ("Velocity", "mm/s"),
+        "m/s2": ("Acceleration",),
+        "m2": ("Area", "mm2", "um2"),
+        "N": ("Force", "kN"),
+        "N.m": ("Torque",),
+        "N.m/rad": ("RotationalSpringConstant", "N.m/arcmin"),
+        "N.m.s/rad": ("RotationalDampingConstant",),
+        "N/m": ("TranslationalSpringConstant", "N/um"),
+        "N.s/m": ("TranslationalDampingConstant", "kN.s/m"),
+        "N/m3": ("SpringConstantPerArea", "MPa/um"),
+        "Pa": ("Pressure", "MPa", "GPa"),
+        "Pa/m": ("PressureGradient", "MPa/um"),
+        "Pa/m2": ("PressureCurvature", "MPa/um2"),
+        "J": ("Energy",),
+        "kg": ("Mass",),
+        "kg.m2": ("MomentOfInertia",),
+        "kg/m3": ("Density",),
+    }.items()
+}
+"""The SI units of all variables, parameters and files: {unit: (quantity, display units)}."""
+
+
+def display_unit(unit: str, typical: float) -> str:
+    """The display unit in which a typical value reads best: nearest to 30, the first if it is zero."""
+    names = UNITS[unit].display
+    if typical == 0.0:
+        return next(iter(names))
+    return min(names, key=lambda name: abs(log10(abs(typical) * names[name] / 30.0)))

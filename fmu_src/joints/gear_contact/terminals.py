@@ -1,0 +1,15 @@
+"""Flange of the gear contact."""
+
+from ...native.terminals import TRANSLATIONAL, Terminal
+
+TERMINALS = {
+    "GearContact": (
+        Terminal(
+            "flange",
+            TRANSLATIONAL,
+            "a",
+            "one flank pressed on the other, along the normal",
+            {"s": ("s_rel", "signal"), "f": ("f", "inflow")},
+        ),
+    )
+}

@@ -1,0 +1,9 @@
+"""What the page's plot of the load ramp shows."""
+
+from ...native.page import Panel
+
+_STIFFNESS = Panel("tau", ("K_WTS", "K_TS", "K_FTS"))
+PANELS = {
+    "HarmonicDriveSpring": (Panel("phi_rel", ("tau",)), _STIFFNESS),
+    "HarmonicDriveCompliance": (Panel("tau", ("phi_rel",)), _STIFFNESS),
+}

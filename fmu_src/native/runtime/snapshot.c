@@ -1,0 +1,266 @@
+#include "snapshot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A state in the hands of the host, and its bytes: little endian, the same on every platform.
+ *
+ *   16  "jointfmu state 1"
+ *    4  FMI version
+ *    4  length of the token, then the token: states of another FMU or of other contents are refused
+ *   ..  the members of State as `pass` lists them
+ *    8  checksum (FNV-1a, 64 bits) of all before */
+
+static const char magic[16 + 1] = "jointfmu state 1";
+
+typedef struct {
+    char magic[sizeof magic]; /* tells a state from another pointer */
+    unsigned version;
+    State state;
+} SavedState;
+
+/* Bytes */
+
+typedef struct {
+    unsigned char *bytes;      /* to write; NULL to count or to read */
+    const unsigned char *from; /* to read; NULL to count or to write */
+    size_t at;
+} Cursor;
+
+/* Write, read or count the lowest `n` bytes of a number. */
+static void pass_bytes(Cursor *c, uint64_t *number, unsigned n)
+{
+    uint64_t found = 0;
+    for (unsigned i = 0; i < n; i++) {
+        if (c->bytes)
+            c->bytes[c->at + i] = (unsigned char)(*number >> 8 * i & 0xFF);
+        if (c->from)
+            found |= (uint64_t)c->from[c->at + i] << 8 * i;
+    }
+    if (c->from)
+        *number = found;
+    c->at += n;
+}
+
+static void pass_word(Cursor *c, unsigned *value)
+{
+    uint64_t number = *value;
+    pass_bytes(c, &number, 4);
+    *value = (unsigned)number;
+}
+
+static void pass_doubles(Cursor *c, double values[], size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint64_t number;
+        memcpy(&number, &values[i], sizeof number);
+        pass_bytes(c, &number, 8);
+        memcpy(&values[i], &number, sizeof number);
+    }
+}
+
+static void pass_text(Cursor *c, char text[], size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint64_t number = (unsigned char)text[i];
+        pass_bytes(c, &number, 1);
+        text[i] = (char)number;
+    }
+}
+
+static const char token[] = MODEL_TOKEN;
+
+/* What stands before a state; false if it was read and is not ours. */
+static bool pass_head(Cursor *c, unsigned version)
+{
+    char first[sizeof magic] = {0}, owner[sizeof token] = {0};
+    unsigned found = version, length = sizeof token - 1;
+    memcpy(first, magic, sizeof magic);
+    memcpy(owner, token, sizeof token);
+    pass_text(c, first, sizeof magic - 1);
+    pass_word(c, &found);
+    pass_word(c, &length);
+    pass_text(c, owner, sizeof token - 1);
+    return strcmp(first, magic) == 0 && found == version && length == sizeof token - 1 &&
+           strcmp(owner, token) == 0;
+}
+
+static void pass(Cursor *c, State *s)
+{
+    unsigned last_step = s->last_step;
+    pass_word(c, &s->kind);
+    pass_word(c, &s->mode);
+    pass_word(c, &s->warned);
+    pass_word(c, &s->logs);
+    pass_word(c, &last_step);
+    pass_doubles(c, &s->start, 1);
+    pass_doubles(c, &s->stop, 1);
+    pass_doubles(c, s->slopes, N_INPUTS);
+    pass_doubles(c, s->values, FIRST_OUTPUT + N_STATES);
+    pass_doubles(c, s->values + FIRST_PARAMETER, N_PARAMETERS);
+    if (N_STATES) {
+        pass_doubles(c, s->last_inputs, N_INPUTS);
+        pass_doubles(c, &s->last_rate, 1);
+        pass_doubles(c, &s->last_size, 1);
+    }
+    s->last_step = (Status)last_step;
+}
+
+static size_t full_size(void)
+{
+    Cursor count = {NULL, NULL, 0};
+    State state;
+    memset(&state, 0, sizeof state);
+    pass_head(&count, 0);
+    pass(&count, &state);
+    return count.at + 8;
+}
+
+static uint64_t checksum(const unsigned char bytes[], size_t n)
+{
+    uint64_t sum = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < n; i++)
+        sum = (sum ^ bytes[i]) * 0x100000001B3u;
+    return sum;
+}
+
+/* Checks */
+
+static bool is_saved(const Instance *m, const char *function, const SavedState *saved)
+{
+    if (!instance_has(m, function, "the FMU state", saved))
+        return false;
+    if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version)
+        return true;
+    instance_refuse(m, function, "this is no FMU state of " MODEL_NAME "; expected one that it gave");
+    return false;
+}
+
+static Status refuse_bytes(const Instance *m, const char *function, const char *what)
+{
+    Text text;
+    text_clear(&text);
+    text_add(&text, "the bytes are ");
+    text_add(&text, what);
+    text_add(&text, "; expected a state that " MODEL_NAME " with the token " MODEL_TOKEN " serialized");
+    return instance_refuse(m, function, text.line);
+}
+
+/* A state of the same kind of instance. */
+static bool fits(const Instance *m, const char *function, const State *s)
+{
+    if (s->kind == m->now.kind)
+        return true;
+    instance_refuse(m, function,
+                    m->now.kind == MODEL_EXCHANGE
+                        ? "the state is one of co-simulation; expected one of model exchange"
+                        : "the state is one of model exchange; expected one of co-simulation");
+    return false;
+}
+
+/* A place for a state: the host's, if it gives one back, or a new one. */
+static SavedState *place(const Instance *m, const char *function, void **saved)
+{
+    if (!instance_has(m, function, "the pointer to the FMU state", saved))
+        return NULL;
+    if (*saved)
+        return is_saved(m, function, *saved) ? *saved : NULL;
+    SavedState *made = calloc(1, sizeof *made);
+    if (!made) {
+        instance_refuse(m, function, "no memory is left; expected some for a state");
+        return NULL;
+    }
+    memcpy(made->magic, magic, sizeof magic);
+    made->version = m->version;
+    return made;
+}
+
+/* Entry points */
+
+Status state_save(const Instance *m, const char *function, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE))
+        return ERROR;
+    SavedState *to = place(m, function, saved);
+    if (!to)
+        return ERROR;
+    to->state = m->now;
+    *saved = to;
+    return OK;
+}
+
+Status state_restore(Instance *m, const char *function, const void *saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved))
+        return ERROR;
+    const SavedState *from = saved;
+    if (!fits(m, function, &from->state))
+        return ERROR;
+    m->now = from->state;
+    m->dirty = m->parameters_changed = true;
+    instance_report(m, OK, LOG_EVENTS, "FMU state restored");
+    return OK;
+}
+
+Status state_free(const Instance *m, const char *function, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE))
+        return ERROR;
+    if (!saved || !*saved)
+        return OK; /* as the standard says */
+    if (!is_saved(m, function, *saved))
+        return ERROR;
+    free(*saved);
+    *saved = NULL;
+    return OK;
+}
+
+Status state_size(const Instance *m, const char *function, const void *saved, size_t *size)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
+        !instance_has(m, function, "the size", size))
+        return ERROR;
+    *size = full_size();
+    return OK;
+}
+
+Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
+        !instance_has(m, function, "the array of bytes", bytes) ||
+        !instance_counts(m, function, "bytes of room", size, full_size()))
+        return ERROR;
+    State state = ((const SavedState *)saved)->state;
+    Cursor to = {bytes, NULL, 0};
+    pass_head(&to, m->version);
+    pass(&to, &state);
+    uint64_t sum = checksum(bytes, to.at);
+    pass_bytes(&to, &sum, 8);
+    return OK;
+}
+
+Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) ||
+        !instance_has(m, function, "the array of bytes", bytes) ||
+        !instance_counts(m, function, "bytes", size, full_size()))
+        return ERROR;
+    State state;
+    memset(&state, 0, sizeof state);
+    Cursor from = {NULL, bytes, 0};
+    if (!pass_head(&from, m->version))
+        return refuse_bytes(m, function, "of another FMU or FMI version, or no state at all");
+    pass(&from, &state);
+    const uint64_t sum = checksum(bytes, from.at);
+    uint64_t written = 0;
+    pass_bytes(&from, &written, 8);
+    if (written != sum)
+        return refuse_bytes(m, function, "corrupt: their checksum is wrong");
+    SavedState *to = fits(m, function, &state) ? place(m, function, saved) : NULL;
+    if (!to)
+        return ERROR;
+    to->state = state;
+    *saved = to;
+    return OK;
+}

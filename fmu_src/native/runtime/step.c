@@ -1,0 +1,99 @@
+#include "step.h"
+
+#include <math.h>
+#include <string.h>
+
+Status instance_initialize(Instance *m, const char *function)
+{
+    if (!instance_allows(m, function, BOTH | INITIALIZATION) || instance_evaluate(m) != OK)
+        return ERROR;
+    instance_enter(m, m->now.kind == MODEL_EXCHANGE ? EVENT : STEP);
+    return OK;
+}
+
+static bool has_slopes(const State *now)
+{
+    bool any = false;
+    for (size_t i = 0; i < N_INPUTS; i++)
+        any |= now->slopes[i] != 0.0;
+    return any;
+}
+
+/* Evaluate at the end of a step, to which inputs with a derivative move; a refusal changes nothing. */
+static Status evaluate_moved(Instance *m, double size)
+{
+    State *now = &m->now;
+    double before[N_INPUTS], *inputs = now->values + FIRST_INPUT;
+    for (size_t i = 0; i < N_INPUTS; i++) {
+        before[i] = inputs[i];
+        inputs[i] += now->slopes[i] * size;
+    }
+    m->dirty = true;
+    if (instance_evaluate(m) != OK) {
+        memcpy(inputs, before, sizeof before);
+        return ERROR;
+    }
+    memset(now->slopes, 0, sizeof now->slopes);
+    return OK;
+}
+
+static Status refuse_step(const Instance *m, const char *function, const char *what, double time, double size,
+                          const char *expected, double limit)
+{
+    Text text;
+    text_clear(&text);
+    text_add(&text, what);
+    text_add(&text, " at ");
+    text_number(&text, time, 16);
+    text_add(&text, " s with step ");
+    text_number(&text, size, 16);
+    text_add(&text, " s; expected ");
+    text_add(&text, expected);
+    text_number(&text, limit, 16);
+    text_add(&text, " s");
+    return instance_refuse(m, function, text.line);
+}
+
+/* A step over which states move; a refusal changes nothing. */
+static Status step_moving(Instance *m, double size, double end)
+{
+    State *now = &m->now;
+    const State before = *now;
+    if (instance_evaluate(m) != OK)
+        return ERROR;
+    instance_advance(m, size);
+    now->values[0] = end;
+    m->dirty = true;
+    const bool sloping = has_slopes(now);
+    if ((sloping ? evaluate_moved(m, size) : instance_evaluate(m)) != OK) {
+        *now = before;
+        m->dirty = true;
+        return ERROR;
+    }
+    return now->last_step = OK;
+}
+
+Status instance_step(Instance *m, const char *function, double time, double size)
+{
+    if (!instance_allows(m, function, CO_SIMULATION | STEP))
+        return ERROR;
+    State *now = &m->now;
+    now->last_step = ERROR;
+    const double end = time + size;
+    if (!(size > 0.0 && isfinite(end)))
+        return refuse_step(m, function, "no step is possible", time, size, "finite numbers and a step above ",
+                           0.0);
+    const double slack = 1e-5 * size + 1e-9 * fabs(time); /* hosts round times in their own ways */
+    if (fabs(time - now->values[0]) > slack)
+        return refuse_step(m, function, "the communication point is", time, size, "it at ", now->values[0]);
+    if (end > now->stop + slack)
+        return refuse_step(m, function, "the step ends after the stop time", time, size, "an end until ",
+                           now->stop);
+    if (MOVES)
+        return step_moving(m, size, end);
+
+    if ((has_slopes(now) ? evaluate_moved(m, size) : instance_evaluate(m)) != OK)
+        return ERROR;
+    now->values[0] = end;
+    return now->last_step = OK;
+}

@@ -1,0 +1,11 @@
+/* Initialization and steps of co-simulation. */
+#ifndef JOINTFMU_STEP_H
+#define JOINTFMU_STEP_H
+
+#include "continuous.h"
+
+/* Check parameters and inputs and leave initialization mode. */
+Status instance_initialize(Instance *m, const char *function);
+Status instance_step(Instance *m, const char *function, double time, double size);
+
+#endif

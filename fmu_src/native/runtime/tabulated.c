@@ -1,0 +1,131 @@
+#include "tabulated.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Largest relative interpolation error of load and stiffness that a table may have. */
+static const double MAX_ERROR = 1e-8;
+
+size_t joint_size(void)
+{
+    return sizeof(Joint);
+}
+
+static void text_unit(Text *text, const char *unit)
+{
+    if (unit[0] != 0) {
+        text_add(text, " ");
+        text_add(text, unit);
+    }
+}
+
+static void text_interval(Text *text, double low, double high, bool low_open, bool high_open)
+{
+    text_add(text, low_open ? "(" : "[");
+    text_number(text, low, 6);
+    text_add(text, ", ");
+    text_number(text, high, 6);
+    text_add(text, high_open ? ")" : "]");
+}
+
+static bool check_limits(const Joint *joint, Text *why)
+{
+    double ends[2 * N_LIMITS + 1];
+    parameter_limits(0, joint->c, ends);
+    for (int i = 0; i < N_LIMITS; i++) {
+        const Limit *limit = &limits[i];
+        const double value = joint->c[limit->parameter], low = ends[2 * i], high = ends[2 * i + 1];
+        const bool above = limit->low_open ? value > low : value >= low;
+        const bool below = limit->high_open ? value < high : value <= high;
+        if (above && below)
+            continue;
+        const Variable *variable = &variables[FIRST_PARAMETER + limit->parameter];
+        text_add(why, variable->name);
+        text_add(why, " = ");
+        text_number(why, value, 6);
+        text_unit(why, variable->unit);
+        text_add(why, " is outside ");
+        text_interval(why, low, high, limit->low_open, limit->high_open);
+        text_add(why, ": ");
+        text_add(why, limit->doc);
+        return false;
+    }
+    return true;
+}
+
+bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
+{
+    memcpy(joint->c, parameters, N_PARAMETERS * sizeof(double));
+    law_constants(joint->c, 0, joint->c + N_PARAMETERS);
+    return check_limits(joint, why) && kind_tabulate(joint, why);
+}
+
+bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
+{
+    for (int factor = 1; factor <= 16; factor *= 2) {
+        if (!tabulate(joint, steps * factor, why)) {
+            if (why->length > 0)
+                return false;
+            text_add(why, "the table needs more than ");
+            text_number(why, CURVE_NODES, 6);
+            text_add(why, " nodes: the law is not smooth enough with these parameters");
+            return false;
+        }
+        if (joint->curve.error <= MAX_ERROR)
+            return true;
+    }
+    text_add(why, "the table of ");
+    text_number(why, joint->curve.n, 6);
+    text_add(why, " nodes has an interpolation error of ");
+    text_number(why, joint->curve.error, 2);
+    text_add(why, ", allowed is 1e-08: the law is not smooth enough with these parameters");
+    return false;
+}
+
+/* Low and high end of every warning. */
+static void outside(const Joint *joint, const double *inputs, double *ends)
+{
+    double x[N_INPUTS + 2];
+    memcpy(x, inputs, N_INPUTS * sizeof(double));
+    x[N_INPUTS] = joint->curve.end.x;
+    x[N_INPUTS + 1] = joint->curve.end.y;
+    outside_limits(x, joint->c, ends);
+}
+
+static double watched(const Warning *warning, const double *inputs, const double *outputs)
+{
+    return warning->variable < N_INPUTS ? inputs[warning->variable] : outputs[warning->variable - N_INPUTS];
+}
+
+unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)
+{
+    double ends[2 * N_WARNINGS];
+    unsigned bits = 0;
+    outside(joint, inputs, ends);
+    for (unsigned i = 0; i < N_WARNINGS; i++) {
+        const double value = watched(&warnings[i], inputs, outputs);
+        if (value < ends[2 * i] || value > ends[2 * i + 1])
+            bits |= 1u << i;
+    }
+    return bits;
+}
+
+void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text)
+{
+    double ends[2 * N_WARNINGS];
+    unsigned i = 0;
+    while (i + 1 < N_WARNINGS && bit != 1u << i)
+        i++;
+    outside(joint, inputs, ends);
+    const Variable *variable = &variables[FIRST_INPUT + warnings[i].variable];
+    const double low = ends[2 * i], high = ends[2 * i + 1];
+    text_add(text, variable->name);
+    text_add(text, " = ");
+    text_number(text, watched(&warnings[i], inputs, outputs), 6);
+    text_unit(text, variable->unit);
+    text_add(text, " is outside ");
+    text_interval(text, low, high, isinf(low), isinf(high));
+    text_unit(text, variable->unit);
+    text_add(text, ": ");
+    text_add(text, warnings[i].doc);
+}

@@ -1,0 +1,109 @@
+"""The partners' FMUs: inertia, mass and loads that a system model needs beside a joint."""
+
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from jointfmu.joints.model import Model, Ramp, Variable
+from jointfmu.parameters import ParameterFile, entries, read_document
+from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
+from jointfmu.quantity import build, flat_fields
+
+
+def _model(
+    parameters: type[Any],
+    doc: str,
+    inputs: Sequence[Variable],
+    outputs: Sequence[Variable],
+    states: int,
+    ramp: Ramp,
+) -> Model:
+    return Model(
+        name=parameters.__name__,
+        joint="partner",
+        doc=doc,
+        parameters=parameters,
+        spring=lambda partner: partner,
+        inputs=inputs,
+        outputs=outputs,
+        evaluate=lambda partner, values: partner.outputs(values),
+        outside=(),
+        ramp=ramp,
+        # states depend on no input, the rate of the speed on the inputs and the position
+        dependencies={v.name: (v.name,) for v in outputs[:states]}
+        | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
+        states=states,
+        moves=True,
+    )
+
+
+PARTNERS: dict[str, Model] = {
+    model.name: model
+    for model in (
+        _model(
+            RotationalInertia,
+            "Rotational inertia with its weight: torques in, motion out",
+            (
+                Variable("tau_a", "N.m", "torque on the inertia"),
+                Variable("tau_b", "N.m", "further torque on the inertia"),
+            ),
+            (
+                Variable("phi", "rad", "angle, zero where the centre of mass hangs down", 1e-3),
+                Variable("w", "rad/s", "speed", 1e-1),
+                Variable("a", "rad/s2", "acceleration", 1e2),
+            ),
+            2,
+            Ramp("tau_a", 1.0, 1e-3, 1e-3),
+        ),
+        _model(
+            TranslationalMass,
+            "Mass: forces in, motion out",
+            (
+                Variable("f_a", "N", "force on the mass", 1e3),
+                Variable("f_b", "N", "further force on the mass", 1e3),
+            ),
+            (
+                Variable("s", "m", "displacement", 1e-6),
+                Variable("v", "m/s", "speed", 1e-3),
+                Variable("a", "m/s2", "acceleration", 1e2),
+            ),
+            2,
+            Ramp("f_a", 1e3, 1.0, 1e-5),
+        ),
+        _model(
+            TorqueProfile,
+            "Torque over time: a ramp that stays and a pulse, without corners",
+            (Variable("tau_in", "N.m", "torque that is added"),),
+            (Variable("tau", "N.m", "torque"),),
+            0,
+            Ramp("tau_in", 1.0, 1e-3, 1e-3),
+        ),
+        _model(
+            ForceProfile,
+            "Force over time: a ramp that stays and a pulse, without corners",
+            (Variable("f_in", "N", "force that is added", 1e3),),
+            (Variable("f", "N", "force", 1e3),),
+            0,
+            Ramp("f_in", 1e3, 1.0, 1e-3),
+        ),
+    )
+}
+
+
+def parameters(name: str) -> ParameterFile:
+    """The parameters of a partner, models/partners/NAME.toml, in the form of a joint's.
+
+    Raises ValueError with one line that names the file, the entry and what is allowed.
+    """
+    path = Path(str(files("jointfmu_models") / "partners" / f"{name}.toml"))
+    document = read_document(path, "a partner's parameter file")
+    if document.get("partner") != name:
+        raise ValueError(f"{path}: partner = {document.get('partner')!r}, expected {name!r}")
+    cls = PARTNERS[name].parameters
+    body = {key: entry for key, entry in document.items() if key not in ("schema", "partner")}
+    values, origins, sources = entries(path, dict(flat_fields(cls)), body)
+    try:
+        return ParameterFile("partner", name, build(cls, values), origins, sources)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
