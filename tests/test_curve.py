@@ -154,6 +154,57 @@ def test_inverse_at_the_ends(curves):
         assert np.shape(curve.inverse(curve.load[-1])) == ()
 
 
+@given(
+    nodes=node_lists(),
+    coefficients=st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=6),
+    t=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=10),
+)
+def test_energy_of_a_polynomial(nodes, coefficients, t):
+    p = Polynomial(coefficients)
+    x = nodes[0] + (nodes[-1] - nodes[0]) * np.array(t)
+    found = polynomial_curve(p, nodes).energy(x)
+    antiderivative = p.integ()
+    scale = (Polynomial(np.abs(coefficients))(np.max(np.abs(nodes))) + 1e-300) * (np.ptp(nodes) + 1.0)
+    # round-off of the data, 60 times the data in the coefficients; the closed form subtracts
+    tolerance = 1e3 * EPS * scale * (1.0 + np.max(np.abs(nodes)))
+    np.testing.assert_allclose(found, antiderivative(x) - antiderivative(nodes[0]), rtol=0.0, atol=tolerance)
+
+
+@pytest.mark.parametrize("name", [*SETS, "drive"])
+def test_load_is_the_slope_of_the_energy(curves, name):
+    """Between the nodes; a segment's energy is one polynomial, of degree six, as the stencil wants it."""
+    curve = curves[name]
+    x0, h = curve.displacement[:-1], np.diff(curve.displacement)
+    x = x0 + h * (0.5 + 0.1 * np.arange(-3, 4)[:, None])
+    energy = curve.energy(x)
+    slope = STENCIL @ (energy - energy[3]) / (0.1 * h)
+    # the table's last digit of the energy, over a tenth of a segment
+    noise = 10.0 * EPS * (energy[3] + np.abs(curve.displacement[1:] * slope)) / (0.1 * h)
+    assert np.all(np.abs(slope - curve.derivatives(x[3], 0)[0]) <= noise + 1e-12 * slope)
+    assert energy[3, 0] > 0.0
+
+
+def test_energy_of_the_closing():
+    """V = p L z^4 (a/4 + b z/5 + c z^2/6) from first touch on, without loss at the smallest z."""
+    curve = approach_curve(ZHAO)
+    p, length = curve.closed, -curve.displacement[0]
+    i = int(np.searchsorted(curve.displacement, 0.0))
+    c = 0.5 * curve.bend_end[i - 1] * length**2 / p - 6.0
+    z = np.array([1e-3, 1e-2, 0.1, 0.5, 1.0])
+    expected = p * length * z**4 * (c / 4.0 + (1.0 - 2.0 * c) * z / 5.0 + c * z**2 / 6.0)
+    # x = (z - 1) L keeps 1e-16 of L, the load grows with z^3
+    np.testing.assert_allclose(curve.energy((z - 1.0) * length), expected, rtol=1e-11)
+    assert curve.energy(curve.displacement[0]) == 0.0
+
+
+def test_energy_beyond_the_ends_is_that_of_the_tangents():
+    """y = 1 + 2x + x^2 on [0, 1]: 7/3 in between."""
+    found = straight_ends().energy([-3.0, 0.0, 1.0, 11.0])
+    # -3 + 2*9/2; 7/3 + 4*10 + 4*100/2
+    np.testing.assert_allclose(found, [6.0, 0.0, 7.0 / 3.0, 7.0 / 3.0 + 240.0], rtol=1e-12)  # round-off
+    assert np.shape(straight_ends().energy(0.5)) == ()
+
+
 def straight_ends():
     """y = 1 + 2x + x^2 on [0, 1]: stiffness 2 and 4 at its ends."""
     return polynomial_curve(Polynomial([1.0, 2.0, 1.0]), np.linspace(0.0, 1.0, 4))

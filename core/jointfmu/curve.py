@@ -36,6 +36,8 @@ _TO_POLYNOMIAL = np.array(  # (y0, s0, c0, y1, s1, c1) on [0, 1] -> coefficients
         [-6, -3, -0.5, 6, -3, 0.5],
     ]
 )
+_MEANS = 1.0 / np.arange(1.0, 7.0)
+"""Means of 1, t, ... t^5 over [0, 1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +56,15 @@ class Curve:
     bend_end: Array
     error: float = 0.0
     _coefficients: Array = field(init=False, repr=False)
+    _energies: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         h = np.diff(self.displacement)
         y, s = self.load, self.stiffness
         data = np.stack([y[:-1], s[:-1] * h, self.bend_start * h**2, y[1:], s[1:] * h, self.bend_end * h**2])
         object.__setattr__(self, "_coefficients", _TO_POLYNOMIAL @ data)
+        whole = h * (_MEANS @ self._coefficients)
+        object.__setattr__(self, "_energies", np.concatenate([[0.0], np.cumsum(whole)]))
 
     @property
     def closed(self) -> float:
@@ -92,6 +97,21 @@ class Curve:
         out[0] = out[0] + (x - inside) * out[1]
         beyond = x != inside
         return out[:2] + [np.where(beyond, 0.0, value) for value in out[2:]]
+
+    def energy(self, x: ArrayLike) -> Array:
+        """Integral (...) of the load from the first node to displacements x (...)."""
+        x = np.asarray(x, dtype=np.float64)
+        nodes = self.displacement
+        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
+        inside = np.clip(x, nodes[0], nodes[-1])
+        step = inside - nodes[i]
+        t = step / (nodes[i + 1] - nodes[i])
+        mean = np.zeros_like(t)
+        for part, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
+            mean = mean * t + part * coefficient
+        load, stiffness = self.derivatives(inside, 1)
+        beyond = x - inside
+        return np.asarray(self._energies[i] + step * mean + beyond * (load + 0.5 * beyond * stiffness))
 
     def inverse(self, load: ArrayLike) -> Array:
         """Displacement (...) at which the table carries a load (...), to round-off.

@@ -9,6 +9,7 @@ _FOLDERS = (
     "harmonic_drive",
     "bolted_joint",
     "gear_contact",
+    "gear_mesh",
 )
 KINDS: dict[str, Kind] = {name: import_module(f".{name}", __name__).KIND for name in _FOLDERS}
 """{name: joint}, in the order in which they are shown."""
