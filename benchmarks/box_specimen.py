@@ -11,11 +11,11 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+import box_specimen_lengths as box
 import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu import plots
-from jointfmu.fem import box_specimen
 from jointfmu.parameters import default
 from jointfmu.reference import points
 
@@ -76,21 +76,21 @@ def table(found: Array, even: Array) -> None:
     row("  computed [%]", rise[1], "8.1f")
 
 
-def choices(assembly: box_specimen.Assembly) -> None:
+def choices(assembly: box.Assembly) -> None:
     """Rise from 9 to 15 kN with every choice of the law, at the same lengths."""
     joint = default("bolted_joint").values
     for area, spot in CHOICES:
         one = replace(joint, critical_area=area, spot_stiffness=spot)
-        found = box_specimen.frequencies(assembly, one, STATES[:2])
+        found = box.frequencies(assembly, one, STATES[:2])
         row(f"{area}, {spot}: 9 kN [Hz]", found[0])
         row("  rise to 15 kN [%]", 100 * (found[1] / found[0] - 1), "8.1f")
 
 
-def levelling(assembly: box_specimen.Assembly, plot: Path | None) -> None:
+def levelling(assembly: box.Assembly, plot: Path | None) -> None:
     """f1 over the preload (Fig. 12)."""
     joint = default("bolted_joint").values
     states = [(float(p), 0.0) for p in PRELOADS]
-    found, even = (box_specimen.frequencies(assembly, joint, states, count=1, even=e) for e in (False, True))
+    found, even = (box.frequencies(assembly, joint, states, count=1, even=e) for e in (False, True))
     for preload, f, g in zip(PRELOADS, found[:, 0], even[:, 0], strict=True):
         print(f"{preload / 1e3:5.0f} kN: f1 {f:8.2f} Hz, with uniform pressure {g:8.2f} Hz")
     slopes = np.diff(found[:, 0]) / np.diff(PRELOADS) * 1e3
@@ -106,15 +106,15 @@ def levelling(assembly: box_specimen.Assembly, plot: Path | None) -> None:
             axes.legend()
 
 
-def identify(assembly: box_specimen.Assembly) -> box_specimen.Assembly:
+def identify(assembly: box.Assembly) -> box.Assembly:
     """Fit the lengths anew."""
-    start = box_specimen.specimen(assembly, START)
-    found = box_specimen.identify(start, default("bolted_joint").values, STATES[0][0], measured()[0])
+    start = box.specimen(assembly, START)
+    found = box.identify(start, default("bolted_joint").values, STATES[0][0], measured()[0])
     for name, value in found.lengths.items():
         print(f"{name:17s} {1e3 * value:7.1f} mm, +- {100 * found.deviation[name]:.0f} %")
     row("error of the fit [%]", 100 * found.error, "8.1f")
     row("singular values of the slopes", np.linalg.svd(found.slope)[1], "8.3f")
-    return box_specimen.specimen(assembly, list(found.lengths.values()))
+    return box.specimen(assembly, list(found.lengths.values()))
 
 
 def main() -> None:
@@ -123,13 +123,13 @@ def main() -> None:
     parser.add_argument("--identify", action="store_true", help="fit the lengths anew")
     parser.add_argument("--plot", type=Path, help="draw f1 over the preload")
     args = parser.parse_args()
-    assembly = box_specimen.shipped()
+    assembly = box.shipped()
     if args.identify:
         assembly = identify(assembly)
     joint = default("bolted_joint").values
-    found, even = (box_specimen.frequencies(assembly, joint, STATES, even=e) for e in (False, True))
+    found, even = (box.frequencies(assembly, joint, STATES, even=e) for e in (False, True))
     table(found, even)
-    fine = box_specimen.frequencies(assembly, joint, STATES[:1], refinement=1.0)
+    fine = box.frequencies(assembly, joint, STATES[:1], refinement=1.0)
     row("9 kN on elements half as long, change [%]", 100 * (fine[0] / found[0] - 1), "8.2f")
     choices(assembly)
     levelling(assembly, args.plot)

@@ -3,7 +3,7 @@
     python benchmarks/box_specimen_search.py [--fits N] [--seed S]
 
 Coarse bricks, and bolts whose pressure decays as in the default parameters of the joint, make a fit a
-matter of half a minute. Six lengths: those of jointfmu.fem.box_specimen and a ledge inside the walls; a
+matter of half a minute. Six lengths: those of box_specimen_lengths and a ledge inside the walls; a
 seventh for the floor of a closed box. Prints the best fits to the frequencies at 9 kN, and how these rise
 to 15 kN.
 """

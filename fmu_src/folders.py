@@ -19,13 +19,18 @@ def part(model: Model, builder: str) -> ModuleType | None:
     return import_module(f".{_PARTNERS}.{builder}", __package__)
 
 
+def own_folder(model: Model) -> Path:
+    """The folder."""
+    own = model.joint in KINDS
+    return joints.folder(KINDS[model.joint]) if own else Path(__file__).with_name(_PARTNERS)
+
+
 def asset(model: Model, name: str) -> Path:
     """A file that every FMU needs of its folder.
 
     Raises ValueError if it is not there.
     """
-    own = model.joint in KINDS
-    folder = joints.folder(KINDS[model.joint]) if own else Path(__file__).with_name(_PARTNERS)
+    folder = own_folder(model)
     if not (folder / name).is_file():
         raise ValueError(f"{model.name}: {folder / name} is missing; expected it beside the other parts")
     return folder / name

@@ -34,10 +34,10 @@ class Slave:
             for name in (*start, *inputs, *outputs):
                 if name not in self._refs:
                     raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(self._refs)}")
-            one = opened.enter_context(slave(folder, description, self.messages))
-            self._fmu = one.fmu
+            instance = opened.enter_context(slave(folder, description, self.messages))
+            self._fmu = instance.fmu
             try:
-                one.begin()
+                instance.begin()
                 self._fmu.setReal([self._refs[n] for n in start], list(start.values()))
                 self._fmu.exitInitializationMode()
             except FMICallException as error:
@@ -89,20 +89,20 @@ def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late
     late  : the body gets the force of the communication point before, as in masters that step all
             FMUs side by side; else the present one
     """
-    found = np.empty((count + 1, 2))
-    found[0] = body.get()
-    joint.set(*found[0])
+    states = np.empty((count + 1, 2))
+    states[0] = body.get()
+    joint.set(*states[0])
     (force,) = joint.get()
     for k in range(count):
         body.set(load, force)
         body.step(k * step, step)
         if late:
             (force,) = joint.get()
-        found[k + 1] = body.get()
-        joint.set(*found[k + 1])
+        states[k + 1] = body.get()
+        joint.set(*states[k + 1])
         if not late:
             (force,) = joint.get()
-    return found
+    return states
 
 
 def peak(signal: Array, step: float) -> float:

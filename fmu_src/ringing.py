@@ -1,38 +1,36 @@
 """What a nonlinear joint does in a system, by running FMUs: resonance over the load, and free decay."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from jointfmu.joints import KINDS
 from jointfmu.progress import track
+from jointfmu.systems import system, systems
 
+from .joints import part
 from .master import Array, Slave, damping_ratio, motion, peak
-from .systems import system
+from .partners import PARTNERS
 
 PER_PERIOD, PERIODS = 100, 25
 RESONANCE_TOLERANCE = 5e-3
 """Peak of the spectrum against sqrt(K/J) [1]."""
 DAMPING_TOLERANCE = 1e-2
 """Decrement of the free decay against the stated damping [1]."""
-LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
-"""Torques over the rated torque [1]."""
 MOST_DAMPED = 0.1
 """Damping ratio [1] up to which there are enough periods to find frequency and decrement."""
-PRELOADS = (3e3, 9e3, 15e3, 30e3)
 _LEAST_DAMPED = 1e-6
 """Damping ratio [1] below which the decrement, found to 2e-9, is not compared."""
-_RELEASE = 1e-3
-"""First deflection from the working point, of the one that a load of 1 N m or 1 kN makes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ringing:
     """Free motion at one working point.
 
-    load            : torque offset [N.m] or preload [N]
+    load            : on the joint, SI
     frequency       : peak of the simulated signal's spectrum [rad/s]
     expected        : sqrt(K/J) with the joint's stiffness there [rad/s]
     damping, stated : ratios [1], of the decay and of the joint's own damping
@@ -56,114 +54,129 @@ class Ringing:
         if self.stated > _LEAST_DAMPED:
             pairs.append(("damping", self.damping, self.stated, DAMPING_TOLERANCE))
         return [
-            f"load = {self.load:g}: {name} {found:.6g}, expected {expected:.6g} within {allowed:g}"
-            for name, found, expected, allowed in pairs
-            if not abs(found - expected) <= allowed * expected
+            f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {allowed:g}"
+            for name, simulated, expected, allowed in pairs
+            if not abs(simulated - expected) <= allowed * expected
         ]
 
 
-class Point(NamedTuple):
-    """A working point: its load, the constant force or torque there, the position of rest, and the joint's
-    stiffness and damping with the inertia on it (SI units)."""
+class Rest(NamedTuple):
+    """A working point: the constant force or torque there, the position of rest, and the joint's stiffness
+    and damping (SI units)."""
 
-    load: float
     force: float
-    rest: float
-    inertia: float
+    position: float
     stiffness: float
     damping: float
 
 
+class Axis(NamedTuple):
+    """Name of what a plot shows, its unit there, and the factor from SI to it."""
+
+    name: str
+    unit: str
+    factor: float
+
+    @property
+    def label(self) -> str:
+        """Name and unit."""
+        return f"{self.name} [{self.unit}]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """How a joint rings with a body on it: RINGING in the joint's file.
+
+    fmu     : of the joint, motion in
+    motion  : its inputs, position and speed of the body
+    force   : its output, the force or torque on the body
+    partner : FMU of the body
+    loads   : folder of the FMUs -> the loads that show the joint, SI
+    start   : load -> {input: value} of the joint's FMU under it
+    rest    : (folder of the FMUs, load) -> working point; ValueError where nothing rings
+    release : force or torque whose deflection is the first one [N or N.m]
+    load, deflection : as plots show them
+    doc     : how the body is held, for the report
+    stiffness : variable of the joint that the body feels
+    """
+
+    fmu: str
+    motion: tuple[str, str]
+    force: str
+    partner: str
+    loads: Callable[[Path], Sequence[float]]
+    start: Callable[[float], Mapping[str, float]]
+    rest: Callable[[Path, float], Rest]
+    release: float
+    load: Axis
+    deflection: Axis
+    doc: str
+    stiffness: str
+
+
+def body_on(joint: str) -> Body:
+    """How a joint rings with a body on it; ValueError if it says nothing of that."""
+    ringing = part(KINDS[joint], "ringing")
+    if ringing is None:
+        rings = [name for name, kind in KINDS.items() if part(kind, "ringing")]
+        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(rings)}")
+    body: Body = ringing.RINGING
+    return body
+
+
 def examples(folder: Path) -> dict[str, list[Ringing]]:
-    """Both example systems over their loads; `folder` has the FMUs (FMI 2.0)."""
-    return {"robot_joint": robot_joint(folder), "bolted_column": bolted_column(folder)}
+    """The systems whose joint says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
+    return {
+        name: ring(name, folder)
+        for name, example in systems().items()
+        if part(KINDS[example.joint], "ringing")
+    }
 
 
-def robot_joint(
-    folder: Path, torques: Sequence[float] | None = None, inertia: float | None = None
+def ring(
+    name: str, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
-    """The link of the robot joint, motor held, about working points under a torque.
+    """The body of a system on its joint, about working points under a load.
 
-    folder  : of the FMUs (FMI 2.0) HarmonicDriveSpring and RotationalInertia
-    torques : [N.m]; None: six from zero to the drive's rated torque
-    inertia : [kg.m2] of the link; None: that of the example system
+    folder  : of the FMUs (FMI 2.0) of the joint and of the body
+    loads   : SI; None: those that show the joint
+    inertia : [kg.m2 or kg] of the body; None: that of the system
 
     Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
     """
-    body_inertia = system("robot_joint").values["link.J"] if inertia is None else inertia
-    path = folder / "HarmonicDriveSpring.fmu"
-    if torques is None:
-        with Slave(path, {}, (), ("rated_torque",)) as drive:
-            torques = [share * drive.get()[0] for share in LOADING]
-    found = []
-    for torque in track(torques, "ring", len(torques)):
-        with Slave(path, {"w2": 1.0}, ("w1",), ("tau",)) as dashpot:
-            (damping,) = dashpot.get()
-        with Slave(path, {}, ("phi2", "w2"), ("tau", "K_WTS")) as law:
-            angle, stiffness = _wound_up(law, torque)
-        start = {"J": body_inertia, "phi": angle + _RELEASE / stiffness}
-        with (
-            Slave(path, {}, ("phi2", "w2"), ("tau2",)) as joint,
-            Slave(folder / "RotationalInertia.fmu", start, ("tau_a", "tau_b"), ("phi", "w")) as body,
-        ):
-            point = Point(torque, torque, angle, body_inertia, stiffness, damping)
-            found.append(_ring(joint, body, point))
-    return found
+    example = system(name)
+    body = body_on(example.joint)
+    if loads is None:
+        loads = body.loads(folder)
+    if inertia is None:
+        inertia = example.inertia
+    key = example.body.rpartition(".")[2]
+    return [_ring_at(body, folder, load, key, inertia) for load in track(loads, "ring", len(loads))]
 
 
-def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
-    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m], by Newton's method."""
-    angle = 0.0
-    for _ in range(60):
-        drive.set(angle, 0.0)
-        tau, stiffness = drive.get()
-        if abs(tau - torque) <= 1e-12 * abs(torque):
-            break
-        angle += (torque - tau) / stiffness
-    return angle, stiffness
+def _ring_at(body: Body, folder: Path, load: float, key: str, inertia: float) -> Ringing:
+    """Free motion about one working point of a body whose inertia is the parameter `key`."""
+    rest, partner = body.rest(folder, load), PARTNERS[body.partner]
+    states = [v.name for v in partner.outputs[: partner.states]]
+    start = {key: inertia, states[0]: rest.position + body.release / rest.stiffness}
+    forces = [v.name for v in partner.inputs]
+    with (
+        Slave(folder / f"{body.fmu}.fmu", body.start(load), body.motion, (body.force,)) as joint,
+        Slave(folder / f"{body.partner}.fmu", start, forces, states) as mass,
+    ):
+        return _ring(joint, mass, rest, load, inertia)
 
 
-def bolted_column(
-    folder: Path, preloads: Sequence[float] | None = None, mass: float | None = None
-) -> list[Ringing]:
-    """The column on its joint over the preload.
-
-    folder   : of the FMUs (FMI 2.0) BoltedJoint and TranslationalMass
-    preloads : [N] per bolt; None: PRELOADS
-    mass     : [kg] of the column; None: that of the example system
-
-    Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
-    """
-    body_mass = system("bolted_column").values["column.m"] if mass is None else mass
-    path, found = folder / "BoltedJoint.fmu", []
-    for preload in track(PRELOADS if preloads is None else preloads, "ring"):
-        with Slave(path, {"preload": preload}, (), ("K_zz", "C_zz")) as law:
-            stiffness, damping = law.get()
-        if stiffness <= 0.0:
-            raise ValueError(
-                f"load = {preload:g} N: the joint has no stiffness there; allowed are preloads > 0"
-            )
-        start = {"m": body_mass, "s": 1e3 * _RELEASE / stiffness}
-        with (
-            Slave(path, {"preload": preload}, ("s_rel_z", "v_rel_z"), ("f_z",)) as joint,
-            Slave(folder / "TranslationalMass.fmu", start, ("f_a", "f_b"), ("s", "v")) as body,
-        ):
-            found.append(_ring(joint, body, Point(preload, 0.0, 0.0, body_mass, stiffness, damping)))
-    return found
-
-
-def _ring(joint: Slave, body: Slave, at: Point) -> Ringing:
-    expected = float(np.sqrt(at.stiffness / at.inertia))
-    stated = at.damping / (2.0 * at.inertia * expected)
+def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) -> Ringing:
+    expected = float(np.sqrt(rest.stiffness / inertia))
+    stated = rest.damping / (2.0 * inertia * expected)
     if not stated < MOST_DAMPED:
         raise ValueError(
-            f"load = {at.load:g}: damping ratio {stated:.3g} with the inertia {at.inertia:g}; allowed is "
+            f"load = {load:g}: damping ratio {stated:.3g} with the inertia {inertia:g}; allowed is "
             f"less than {MOST_DAMPED:g}, so that there are periods to count: take a larger inertia"
         )
     step = 2.0 * np.pi / (expected * PER_PERIOD)
-    signal = motion(joint, body, at.force, step, PERIODS * PER_PERIOD)[:, 0] - at.rest
+    signal = motion(joint, body, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     messages = tuple(dict.fromkeys(joint.messages + body.messages))
-    return Ringing(
-        at.load, peak(signal, step), expected, damping_ratio(signal), stated, time, signal, messages
-    )
+    return Ringing(load, peak(signal, step), expected, damping_ratio(signal), stated, time, signal, messages)

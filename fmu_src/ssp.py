@@ -10,6 +10,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flatten
+from jointfmu.systems import System, system, systems
 from jointfmu.units import UNITS
 
 from .archive import pack, workshop
@@ -17,7 +18,6 @@ from .native.build import build
 from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
-from .systems import SYSTEMS, System, system
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {
@@ -37,8 +37,8 @@ def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = Tr
     The archives hold FMUs of FMI 2.0. Raises what `native.build.build` raises, and ValueError if no
     system has the joint.
     """
-    kinds = {name: system(name).joint for name in SYSTEMS}
-    names = [name for name in SYSTEMS if parameters is None or kinds[name] == parameters.joint]
+    kinds = {name: each.joint for name, each in systems().items()}
+    names = [name for name, kind in kinds.items() if parameters is None or kind == parameters.joint]
     if parameters and not names:
         allowed = ", ".join(sorted(set(kinds.values())))
         raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
@@ -58,11 +58,11 @@ def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = Tr
 def pack_system(name: str, out: Path, joint: ParameterFile) -> Path:
     """Write `out/ssp/name.ssp` of FMUs in `out/fmi2`, with the parameters of its joint."""
     ssd = structure(name)
-    found = system(name)
+    example = system(name)
     members = {"SystemStructure.ssd": ssd}
     every: dict[str, tuple[Any, str]] = {}
     for component, fmu in components(ssd).items():
-        own = values(found, component, fmu, joint)
+        own = values(example, component, fmu, joint)
         every |= {f"{component}.{variable}": value for variable, value in own.items()}
         members[f"resources/{fmu}.fmu"] = (out / "fmi2" / f"{fmu}.fmu").read_bytes()
         members[f"parameters/{component}.ssv"] = parameter_set(name, own)
@@ -84,7 +84,7 @@ def components(ssd: bytes) -> dict[str, str]:
     return {node.get("name", ""): Path(node.get("source", "")).stem for node in nodes}
 
 
-def values(found: System, component: str, fmu: str, joint: ParameterFile) -> dict[str, tuple[Any, str]]:
+def values(example: System, component: str, fmu: str, joint: ParameterFile) -> dict[str, tuple[Any, str]]:
     """{variable: (value, unit)} of a component: of the joint's file, and of the system's.
 
     In a system the loads of joints come late, as in every master that steps its FMUs side by side.
@@ -95,11 +95,10 @@ def values(found: System, component: str, fmu: str, joint: ParameterFile) -> dic
         given = {n: v for n, v in flatten(joint.values).items() if n in fields}
         own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
         inputs = {v.name: v.unit for v in model.inputs}
-        state = {n.split(".", 1)[1]: v for n, v in found.values.items() if n.startswith("joint_state.")}
-        return own | {n: (v, inputs[n]) for n, v in state.items()}
+        return own | {n: (v, inputs[n]) for n, v in example.joint_state.items()}
     fields = PARTNERS[fmu].parameter_fields()
     named: dict[str, float] = {}
-    for name, value in found.values.items():
+    for name, value in example.values.items():
         group, _, variable = name.partition(".")
         if group == component:
             named[variable] = value

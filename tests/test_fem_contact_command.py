@@ -11,7 +11,7 @@ import pytest
 from jointfmu.cli import main
 from jointfmu.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.parameters import load
+from jointfmu.parameters import default, load
 
 PLATES = """
 schema = 1
@@ -73,6 +73,7 @@ def test_what_is_computed(computed):
     assert found["area"] == pytest.approx(area, rel=1e-9)
     assert found["p_max"] > found["p_mean"] == pytest.approx(20e3 / found["area"])
     assert len(found["between"]) == 4
+    assert found["warnings"] == []
     assert [found[name] for name in ("K_N", "K_rx", "K_ry")] == [
         found["meshes"][-1][name] for name in ("K_N", "K_rx", "K_ry")
     ]
@@ -111,6 +112,15 @@ def test_vtu_for_paraview(plates, tmp_path):
     mean = mesh.point_data["pressure"][mesh.cells_dict["quad"]].mean(axis=1)
     assert area.sum() == pytest.approx(0.1 * 0.06 - math.pi * 0.009**2, rel=1e-9)
     assert area @ mean == pytest.approx(20e3, rel=5e-3)  # trapezoidal rule; 1e-2 is refused by an import
+
+
+def test_a_pressure_beyond_the_hardness_is_said(plates, capsys):
+    assert main([*COARSE, str(plates), "--preload", "1e9"]) == 0
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert said.err.startswith("warning: the greatest pressure, ")
+    hardness = default("bolted_joint").values.hardness
+    assert f"above the hardness of the softer body, {hardness:.4g} Pa" in said.err
 
 
 def test_refinement_prints_changes(plates, capsys):

@@ -168,6 +168,27 @@ def test_calculix_result(name, nodes):
     assert field.pressure.min() > 1e6
 
 
+def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
+    """NODE TO SURFACE contact, by CalculiX 2.20: of the open end it lists the nearer nodes only."""
+    path = DATA / "blocks_open.frd"
+    listed = path.read_text().split(" -4  CONTACT")[1].split(" -3")[0].count("\n -1")
+    assert listed < 35
+    with pytest.raises(ValueError, match=r"node \d+: is open \(no pressure\), with 17 of 35 nodes"):
+        Reading(**UNITS).field(path)
+    kept, _ = Reading(**UNITS, open="keep").field(path)
+    assert kept.area.size == 35
+    assert kept.area.sum() == pytest.approx(1.2e-3, rel=1e-5)  # five digits of the coordinates
+    dropped, _ = Reading(**UNITS, open="drop").field(path)
+    assert dropped.area.size == 18
+    for field in (kept, dropped):
+        assert field.force == pytest.approx(160e3, rel=1e-3)  # what presses less what draws
+    broken = tmp_path / "a.frd"
+    head, contact = path.read_text().split(" -4  CONTACT")
+    broken.write_text(head + " -4  CONTACT" + contact.replace(" 0.00000E+00", "         NaN", 1))
+    with pytest.raises(ValueError, match=r"line \d+: .* is no node with 6 numbers"):
+        Reading(**UNITS, open="keep").field(broken)
+
+
 def test_middles_of_upright_edges_are_where_calculix_has_them():
     """Every middle node of every boundary face lies between its corners, on the upright faces too."""
     from jointfmu.fields import frd

@@ -15,8 +15,10 @@ from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
+from jointfmu.joints import register, unregister
+from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.published import p_between
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern, pressures
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 
@@ -43,12 +45,12 @@ FIELD = field()
 def reduced(request):
     shape = pressure_shape(JOINT, field(request.param), PRELOAD)
     joint = replace(JOINT, A_0=float(FIELD.area.sum()))
-    return joint, shape, reduce(joint, shape, PRELOAD)
+    return joint, shape, reduce(joint, shape, PRELOAD, pressures)
 
 
 def direct(joint, shape, load):
     """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
-    spring = BoltedJointSpring(joint, Sums.of(joint, PRELOAD).curve, shape)
+    spring = BoltedJointSpring(joint, Sums.of(joint, PRELOAD, pressures).curve, shape)
     force = load.preload * PRELOAD
     moment = load.moment * force * joint.row_distance * joint.row_bolts
     start = spring.tightened(force, moment)
@@ -67,7 +69,7 @@ def test_points_keep_the_sums(reduced):
     assert found.points < 0.35 * found.nodes
     assert found.deviation <= TOLERANCE
     rng = np.random.default_rng(11)
-    lowest = Sums.of(joint, PRELOAD).curve.displacement[0]
+    lowest = Sums.of(joint, PRELOAD, pressures).curve.displacement[0]
     for _ in range(60):
         load = Load(float(np.exp(rng.uniform(*np.log(PRELOADS)))), found.moment * rng.uniform(-1, 1), 0.0)
         start, _, peak = direct(joint, shape, load)
@@ -93,7 +95,7 @@ def test_points_balance(reduced):
 
 def test_few_nodes_stay_as_they_are():
     shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
-    assert reduce(JOINT, shape, PRELOAD).shape is shape
+    assert reduce(JOINT, shape, PRELOAD, pressures).shape is shape
 
 
 def _parts(one):
@@ -133,6 +135,20 @@ def test_a_force_more_than_one_per_cent_off_is_refused(factor):
 def test_other_joints_have_no_field():
     with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
         with_field(default("gear_contact"), FIELD, PRELOAD, "test")
+
+
+def test_a_joint_of_another_name_may_have_a_field():
+    """Whatever joint has the part `field` gets its own parameter set with the field."""
+    toy = replace(KIND, name="toy", models=())
+    register(toy)
+    try:
+        few = ContactField(*(a[:50] for a in _parts(FIELD)))
+        file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
+    finally:
+        unregister(toy)
+    assert (file.joint, found.nodes) == ("toy", 50)
+    assert isinstance(file.values, toy.parameters)
+    assert len(file.values.pattern.share) == 50
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +239,7 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
         got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
         np.testing.assert_allclose(got, expected, rtol=TOLERANCE)
         assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
-    library.write(tmp_path, file, [(PRELOAD, 0.0)])
+    library.write(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
     assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
 
 

@@ -21,10 +21,9 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import build as native_build
 from jointfmu_fmu_src.native import compiler
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.systems import SYSTEMS
 from pythonfmu import FmuBuilder
 
-from jointfmu import cli, ramp
+from jointfmu import cli, ramp, systems
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, dump
 
@@ -263,7 +262,7 @@ def test_the_main_job_builds_checks_and_reports(tmp_path: Path, capsys: Capture)
     for flavour in ("fmi2", "fmi3", "python"):
         partners = [] if flavour == "python" else list(PARTNERS)
         assert {p.stem for p in (tmp_path / flavour).iterdir()} == {*NAMES, *partners}
-    assert {p.stem for p in (tmp_path / "ssp").iterdir()} == set(SYSTEMS)
+    assert {p.stem for p in (tmp_path / "ssp").iterdir()} == set(systems.names())
     report = tmp_path / "report"
     assert {p.name for p in report.iterdir()} == {"index.html", *(f"{n}.csv" for n in NAMES)}
     for name in NAMES:

@@ -15,9 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jointfmu_fmu_src.joints import part
+from jointfmu_fmu_src.joints.bolted_joint.modelica import tight
 from jointfmu_fmu_src.modelica import library, tables
 from jointfmu_fmu_src.modelica.text import identifier
-from jointfmu_fmu_src.systems import system
 from scipy.integrate import solve_ivp
 
 from jointfmu.cli import main
@@ -27,6 +28,7 @@ from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import ForceProfile, TorqueProfile
+from jointfmu.systems import system
 
 REPOSITORY = Path(__file__).parent.parent
 COMMITTED = REPOSITORY / "models/modelica"
@@ -147,6 +149,23 @@ def test_wrappers_connect_every_input_once(files: dict[str, str]):
             assert len(re.findall(rf"fmu\.{v.name}\b", text)) == 1, f"{name}.{v.name}"
 
 
+def test_a_joint_without_a_part_keeps_its_wrapper_and_leaves_the_rest(
+    files: dict[str, str], monkeypatch: pytest.MonkeyPatch
+):
+    def none(kind: Any, builder: str) -> Any:
+        return None if kind.name == "gear_contact" else part(kind, builder)
+
+    monkeypatch.setattr(library, "part", none)
+    less = library.library()
+    gone = {"Components/GearContact.mo", "Data/GearContact.mo", "Data/Beveloid_gear_of_Yu_2022.mo"}
+    assert set(files) - set(less) == gone
+    for name in gone:
+        package, leaf = name.removesuffix(".mo").split("/")
+        assert leaf not in less[f"{package}/package.order"].split()
+    for name in ("Wrappers/GearContact.mo", "Data/HarmonicDrive.mo", "Examples/BoltedColumn.mo"):
+        assert less[name] == files[name]
+
+
 # ---- tables ----
 
 
@@ -161,8 +180,8 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
-    tight = tables.tightened(bolted, 15e3, 4500.0)
-    total = tables.curve_of(tight.table)
+    joint = tight.tightened(bolted, 15e3, 4500.0)
+    total = tables.curve_of(joint.table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.motion(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):
@@ -170,14 +189,14 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
         load, stiffness = (float(x) for x in total.derivatives(-s_z))
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
-        eta = np.interp(-s_z, *tight.damping.T)
-        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * tables.DAMPING_TOLERANCE)
+        eta = np.interp(-s_z, *joint.damping.T)
+        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * tight.DAMPING_TOLERANCE)
 
 
 @pytest.mark.parametrize("preload", [0.0, -1.0, math.nan, 1e9])
 def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload: float):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt"):
-        tables.tightened(bolted, preload, 0.0)
+        tight.tightened(bolted, preload, 0.0)
 
 
 # ---- the command ----
@@ -298,7 +317,7 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
         damping = max(abs(exact["C_zz"] * v[2]), 1.0)
         for i, axis in enumerate("xyz"):
             error = abs(found[f"joint.f[{i + 1}]"][k] - exact[f"f_{axis}"])
-            allowed = EXACT * scale + (2.0 * tables.DAMPING_TOLERANCE * damping if axis == "z" else 0.0)
+            allowed = EXACT * scale + (2.0 * tight.DAMPING_TOLERANCE * damping if axis == "z" else 0.0)
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
 
 

@@ -648,6 +648,15 @@ def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
     assert "my own" in other
 
 
+def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
+    """Then the page has no terminals, and the plot shows the first output over the driven input."""
+    model = MODELS["GearContact"]
+    text = documentation(replace(model, name="Other"), default(model.joint))["index.html"].decode()
+    assert "<h3>Terminals</h3>" not in text
+    assert "<h3>Terminals</h3>" in pages(model.name)["index.html"].decode()
+    assert ("s_rel [um]" in text, "K_N [N/um]" in text) == (True, False)
+
+
 def test_the_licence_is_that_of_the_repository(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     text = (Path(__file__).parent.parent / "LICENSE").read_text(encoding="utf-8")
     assert pages(name)["licenses/license.txt"].decode() == text

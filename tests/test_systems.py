@@ -3,10 +3,13 @@
 import ctypes
 import json
 import math
+import re
+import shutil
 import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from xml.etree.ElementTree import tostring
@@ -22,10 +25,10 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import ringing, ssp
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.checks import check_ringing
+from jointfmu_fmu_src.joints.harmonic_drive.ringing import LOADING
 from jointfmu_fmu_src.master import Slave, motion
 from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.systems import SYSTEMS, system
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
@@ -39,6 +42,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import flatten
+from jointfmu.systems import names, system, systems
 
 Array = NDArray[np.float64]
 Values = dict[str, float]
@@ -258,7 +262,7 @@ def test_a_pendulum_swings(built: Path, version: str, kind: str, error: float) -
 # Archives
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", names())
 def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) -> None:
     path = built / "ssp" / f"{name}.ssp"
     found = read_ssd(str(path))  # checked against the schema of SSP
@@ -285,7 +289,7 @@ def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) 
         assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} < set(archive.namelist())
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", names())
 def test_parameters_come_from_the_files(built: Path, name: str) -> None:
     path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
     every = {p.name: float(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
@@ -695,6 +699,47 @@ def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
 
 
+# The list of systems
+
+
+def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = Path(str(files("jointfmu_models"))) / "systems"
+    copy = tmp_path / "systems"
+    shutil.copytree(folder, copy)
+    monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
+    shipped = names()
+    assert set(shipped) == {path.stem for path in folder.glob("*.toml")}
+    text = (folder / "robot_joint.toml").read_text(encoding="utf-8")
+    (copy / "a_second_arm.toml").write_text(text.replace("value = 0.05", "value = 0.07"), encoding="utf-8")
+    assert set(names()) == {"a_second_arm", *shipped}
+    assert systems()["a_second_arm"].inertia == 0.07
+    assert next(iter(systems())) == "a_second_arm"  # a drive's before a bolted joint's
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"link.J"', '"link.I"', "body = 'link.I', allowed are motor.J, link.J"),
+        ('"tau"', '"preload"', "load = 'preload', allowed are phi1, w1"),
+    ],
+)
+def test_a_system_refuses_names_that_are_not_there(
+    old: str, new: str, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
+    (tmp_path / "systems").mkdir()
+    (tmp_path / "systems" / "arm.toml").write_text(text.replace(old, new), encoding="utf-8")
+    monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
+    with pytest.raises(ValueError, match=re.escape(said)):
+        system("arm")
+
+
+def test_a_joint_that_does_not_ring_is_refused() -> None:
+    said = "joint 'gear_contact' does not say how it rings, allowed are harmonic_drive, bolted_joint"
+    with pytest.raises(ValueError, match=said):
+        ringing.body_on("gear_contact")
+
+
 # jointfmu ring
 
 
@@ -735,7 +780,7 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     folder = ["--fmus", str(built / "fmi2"), "--json"]
     assert cli.main(["ring", "robot_joint", *folder, "--inertia", "0.2"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in ringing.LOADING]
+    assert [row["load"] for row in found["rows"]] == [x * DRIVE.joint.rated_torque for x in LOADING]
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0

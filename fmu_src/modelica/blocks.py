@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
 from jointfmu.units import UNITS
 
@@ -24,7 +25,6 @@ _TAKES_FORCE = (
     'Between inertias take a component of <a href=\\"modelica://JointStiffness.Components\\">Components</a>'
     "{other}."
 )
-_OTHER = {"HarmonicDriveCompliance": " or the FMU HarmonicDriveSpring"}
 _TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
 
 
@@ -51,8 +51,7 @@ def wrapper(model: Model) -> dict[str, Any]:
     """Content of the model that puts an FMU between flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
-    motion_in = all(kind != "inflow" for t in flanges for _, kind in t.members.values())
-    note = _TAKES_MOTION if motion_in else _TAKES_FORCE.format(other=_OTHER.get(model.name, ""))
+    note = _TAKES_MOTION if _takes_motion(model) else _TAKES_FORCE.format(other=_other(model))
     parameters = [
         {
             "name": v.name,
@@ -70,6 +69,16 @@ def wrapper(model: Model) -> dict[str, Any]:
         "parameters": parameters,
         "terminals": [_flange(t, _ports(model)) for t in flanges],
     }
+
+
+def _takes_motion(model: Model) -> bool:
+    return all(kind != "inflow" for t in terminals(model) for _, kind in t.members.values())
+
+
+def _other(model: Model) -> str:
+    """The FMU of the same joint that belongs between inertias, if there is one."""
+    names = [other.name for other in KINDS[model.joint].models if _takes_motion(other)]
+    return f" or the FMU {names[0]}" if names else ""
 
 
 def _ports(model: Model) -> dict[str, tuple[float, float]]:
@@ -119,8 +128,8 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
         "adaptor": _ADAPTORS[rotational, takes_motion],
         "use_rate": str(rate is not None).lower(),
         "connections": [
-            (one, other, _line(places[one], places[other], shaft if one == terminal.name else "{0,0,127}"))
-            for one, other in [(terminal.name, f"{adaptor}.flange"), *wires]
+            (start, end, _line(places[start], places[end], shaft if start == terminal.name else "{0,0,127}"))
+            for start, end in [(terminal.name, f"{adaptor}.flange"), *wires]
         ],
         "x": flip * -100,
         "y": y,

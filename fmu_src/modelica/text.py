@@ -1,8 +1,10 @@
-"""Numbers and texts as Modelica writes them."""
+"""Numbers and texts as Modelica writes them, and the templates that they go to."""
 
 import re
+from pathlib import Path
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from numpy.typing import NDArray
 
 
@@ -25,3 +27,19 @@ def identifier(name: str) -> str:
     """A Modelica identifier of a title."""
     words = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
     return words[0].upper() + words[1:] if words[:1].isalpha() else f"Joint_{words}"
+
+
+def environment(*folders: Path) -> Environment:
+    """Templates of the folders, then those of the library; an unknown name is an error."""
+    return Environment(
+        loader=FileSystemLoader([*folders, Path(__file__).parent / "templates"]),
+        undefined=StrictUndefined,
+        variable_start_string="<<",
+        variable_end_string=">>",
+        block_start_string="<%",
+        block_end_string="%>",
+        comment_start_string="<#",
+        comment_end_string="#>",
+        keep_trailing_newline=True,
+        autoescape=False,
+    )

@@ -4,16 +4,12 @@ Everything here is a call into the package. What depends on parameters alone is 
 functions and computed once per parameter set, into the constants c.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
-from jointfmu.joints.bolted_joint import spring as bolted_joint
-from jointfmu.joints.gear_contact import spring as gear_contact
-from jointfmu.joints.harmonic_drive import spring as harmonic_drive
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
@@ -72,25 +68,30 @@ class Graph:
         self.functions = settled
 
     @property
+    def has_law(self) -> bool:
+        """Whether there is an interface law, and so a table and its ends."""
+        return any(f.name == "law_head" for f in self.functions)
+
+    @property
     def c(self) -> ca.SX:
         """The constants' symbols."""
         return ca.vertcat(*self.theta.values(), *self.symbols)
 
 
-def graph(model: Model, parameters: ParameterFile) -> Graph:
-    """All functions of an FMU; parameters that it does not expose have their value."""
+def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph", Model], None]) -> Graph:
+    """All functions of an FMU; parameters that it does not expose have their value.
+
+    functions : adds those of the joint
+    """
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
         theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
         joint = build(model.parameters, {**flatten(parameters.values), **theta})
         found = Graph(theta, joint, limits(joint))
-        if model.moves:
-            _partner(found, model)
-        else:
+        functions(found, model)
+        if found.has_law:
             _bounds(found, model)
-            kinds = {"harmonic_drive": _drive, "bolted_joint": _bolted, "gear_contact": _gear}
-            kinds[model.joint](found, model)
         found.settle()
     finally:
         ca.GlobalOptions.setNumpyMode(before)
@@ -106,14 +107,6 @@ def limits(joint: Any) -> list[Limit]:
     """Intervals of parameters that other parameters decide."""
     own = joint.limits() if hasattr(joint, "limits") else []
     return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
-
-
-def _partner(g: Graph, model: Model) -> None:
-    names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
-    v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
-    found = model.evaluate(g.joint, v)
-    doc = "time, inputs, states -> outputs"
-    g.add_with_seed("outputs", doc, list(v.values()), [found[o.name] for o in model.outputs])
 
 
 def _bounds(g: Graph, model: Model) -> None:
@@ -181,7 +174,7 @@ def _regimes(spots: Spots) -> tuple[list[Any], list[Spots]]:
     ]
 
 
-def _law(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
+def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
     """The interface law: what the inversion, the tables and the outputs need of it."""
     spots, u = law.spots(), ca.SX.sym("u")
     switches, regimes = _regimes(spots)
@@ -202,85 +195,3 @@ def _law(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
         if state is not None:
             y = ca.vertcat(*map(ca.SX, state(regime, u)))
             g.add(f"law_state_{k}", "log-area -> state, its slopes", [u], [*y.nz, *ca.jacobian(y, u).nz])
-
-
-def _drive(g: Graph, model: Model) -> None:
-    drive = g.joint
-    _law(g, drive.law, ("normal", "tangential"))
-    torque, peak, pressure, z, local, pair, slope = symbols("x", 7)
-    g.add("peak", "torque -> peak pressure, its slope", [torque], harmonic_drive.peak_pressure(drive, torque))
-    length = harmonic_drive.contact_length(drive)
-    head = [length, drive.torque_smoothing, drive.max_torque, drive.pair_scale, drive.K_FTS0]
-    g.add("drive_head", "-> contact length, T_s, largest torque, pair_scale, K_FTS0", [], head)
-    height = harmonic_drive.height_at(drive, peak, pressure)
-    g.add(
-        "lobe_height",
-        "peak, pressure -> height [m] where the axis has this pressure",
-        [peak, pressure],
-        [height],
-    )
-    g.add(
-        "lobe_local",
-        "peak, height -> pressure on the axis there",
-        [peak, z],
-        [harmonic_drive.local(drive, peak, z)],
-    )
-    end = harmonic_drive.angle_at(drive, local, pressure)
-    g.add("lobe_end", "pressure on the axis, pressure -> t where it is met", [local, pressure], [end])
-    sine, cosine = symbols("t", 2)
-    point = harmonic_drive.lobe_point(drive, sine, cosine, z, local)
-    y = [point.pressure, point.along**2, point.square - point.along**2, 2.0 / np.pi * point.stretch]
-    doc = "sin t, cos t, height, pressure on the axis -> pressure, weights of k_n and k_t, d theta/d t"
-    g.add("lobe", doc, [sine, cosine, z, local], y)
-    doc = "K_TS on the paper's scale, its slope -> K_WTS, its slope"
-    g.add("in_series", doc, [pair, slope], harmonic_drive.in_series(drive, pair, slope))
-    v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
-    x, load, stiffness = symbols("curve", 3)
-    if "tau" in v:
-        argument, out = v["tau"], {"phi_rel": x, **harmonic_drive.parts(drive, load, stiffness)}
-    else:
-        argument = harmonic_drive.wind_up(drive, list(v.values()))
-        out = harmonic_drive.torques(drive, list(v.values()), load, stiffness)
-    g.add_with_seed("argument", "inputs -> argument of the curve", [*v.values()], [argument])
-    y = [out[o.name] for o in model.outputs]
-    doc = "inputs, wind-up, torque and stiffness of the curve -> outputs"
-    g.add_with_seed("outputs", doc, [*v.values(), x, load, stiffness], y)
-
-
-def _gear(g: Graph, model: Model) -> None:
-    joint = g.joint
-
-    def state(spots: Spots, u: Any) -> list[Any]:
-        area = spots.total("area", u)
-        return [area, spots.total("elastic_area", u) / area]
-
-    _law(g, joint, ("normal",), state)
-    f, approach, stiffness, area, elastic = symbols("x", 5)
-    g.add_with_seed("argument", "inputs -> pressure", [f], [np.maximum(f, 0.0) / joint.A_0])
-    out = gear_contact.contact(joint, f, approach, stiffness, area, elastic)
-    doc = "inputs, approach, stiffness of the curve, real area, elastic part -> outputs"
-    y = [out[o.name] for o in model.outputs]
-    g.add_with_seed("outputs", doc, [f, approach, stiffness, area, elastic], y)
-
-
-def _bolted(g: Graph, model: Model) -> None:
-    joint = g.joint
-    _law(g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)])
-    node = symbols("node", 4)
-    preload, moment, *rest = symbols("v", 8)
-    pressure = bolted_joint.node_pressure(joint, node[0], node[1], preload, moment)
-    doc = "equal, tilt, preload, moment -> pressure of a node at tightening"
-    g.add_with_seed("node_pressure", doc, [node[0], node[1], preload, moment], [pressure], fixed=2)
-    s_rel, v_rel = rest[:3], rest[3:]
-    tightened, *curve = symbols("p", 5)
-    works = symbols("w", 2)
-    parts = bolted_joint.node_parts(joint, node[2], node[3], s_rel, tightened, curve, works)
-    doc = "x2, y2, s_rel, pressure at tightening, pressure and 3 derivatives, works -> parts of a node"
-    x = [*node[2:], *s_rel, tightened, *curve, *works]
-    g.add_with_seed("node_parts", doc, x, list(parts.values()), fixed=2)
-    sums = dict(zip(parts, symbols("sum", len(parts)), strict=True))
-    p_max = ca.SX.sym("p_max")
-    out = bolted_joint.motion(joint, sums, s_rel, v_rel, p_max)
-    doc = "sums of the parts, s_rel, v_rel, largest pressure -> outputs"
-    y = [out[o.name] for o in model.outputs]
-    g.add_with_seed("outputs", doc, [*sums.values(), *s_rel, *v_rel, p_max], y)

@@ -154,7 +154,8 @@ def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[s
 def _panels(model: Model) -> tuple[Panel, ...]:
     """What the plot shows; of a joint that does not say it, the first output over the driven input."""
     own = part(model, "page")
-    return own.PANELS[model.name] if own else (Panel(model.ramp.input, (model.outputs[0].name,)),)
+    found = own.PANELS.get(model.name) if own else None
+    return found or (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
 
 def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..joints.clamped import clamped
 from ..parameters import ParameterFile, default, load
 from ..quantity import flatten
 
@@ -22,8 +23,25 @@ def assembly_arguments(sub: argparse.ArgumentParser) -> None:
 
 
 def joint_file(path: Path | None) -> ParameterFile:
-    """The bolted joint's parameters: of a file, or the default."""
-    return load(path, "bolted_joint") if path else default("bolted_joint")
+    """Parameters of a joint with bolts: of a file, or the default of the first such joint."""
+    joints = list(clamped())
+    if path is None:
+        return default(joints[0])
+    file = load(path)
+    if file.joint not in joints:
+        allowed = " or ".join(repr(name) for name in joints)
+        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {allowed}")
+    return file
+
+
+def beyond_law(peak: float, hardness: float) -> list[str]:
+    """The warning if the greatest pressure [Pa] is one that no interface law has."""
+    if peak <= hardness:
+        return []
+    return [
+        f"the greatest pressure, {peak:.4g} Pa, is above the hardness of the softer body, {hardness:.4g} Pa, "
+        "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
+    ]
 
 
 def without_fem(error: Exception) -> ValueError:

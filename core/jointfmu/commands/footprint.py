@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ from .. import plots
 from ..parameters import ParameterFile, check_writable, dump, write_text
 from . import footprint_compute
 from .common import Parser, command
-from .finite_elements import joint_file
+from .finite_elements import beyond_law, joint_file
 
 if TYPE_CHECKING:
     from ..fields.contact import ContactField
@@ -73,7 +74,12 @@ def _bring(args: argparse.Namespace) -> int:
     if args.out:
         write_text(args.out, dump(file))
     found = _findings(args, file, field, reduction)
-    print(json.dumps(found) if args.json else "\n".join(_lines(found, start.values.A_0)))
+    if args.json:
+        print(json.dumps(found))
+    else:
+        print("\n".join(_lines(found, start.values.A_0)))
+        for warning in found["warnings"]:
+            print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 
@@ -124,6 +130,7 @@ def _findings(
         "largest_moment": reduction.moment * args.preload * joint.row_distance * joint.row_bolts,
         "deviation_beyond": reduction.beyond,
         "written": [str(path) for path in (args.out, args.plot) if path],
+        "warnings": beyond_law(float(field.pressure.max()), float(joint.hardness)),
     }
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from .. import plots
 from ..curve import Curve, approach_curve
 from ..parameters import ParameterFile, check_writable, dump, write_text
 from .common import command
-from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem
+from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.convergence import MeshResult
@@ -69,11 +70,14 @@ def run(args: argparse.Namespace) -> int:
         raise without_fem(error) from None
     written = _write(args, file, solution)
     found = _findings(solution, moment, args.preload)
+    warnings = beyond_law(solution.peak, float(file.values.hardness))
     if args.json:
-        print(json.dumps(found | {"meshes": list(_meshes(rows)), "written": written}))
+        print(json.dumps(found | {"meshes": list(_meshes(rows)), "written": written, "warnings": warnings}))
     else:
         print("\n".join([*_lines(found), *_table(rows)]))
         print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 

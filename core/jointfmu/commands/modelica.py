@@ -5,32 +5,36 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ..joints import KINDS
+from ..joints.kind import Kind
 from ..parameters import load
-from .common import command, without_package
+from .common import command, flag, without_package
 
 
 def add(commands: Any) -> None:
     """Declare the command."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file of one joint (TOML)")
-    make.add_argument(
-        "--preload", type=float, nargs="+", default=[], metavar="F", help="bolted joint: preload per bolt [N]"
-    )
-    make.add_argument(
-        "--moment", type=float, metavar="M", help="bolted joint: bending moment [N.m] (default: 0)"
-    )
+    for name, kinds in _inputs().items():
+        first = any(name == kind.working_point[0] for kind in kinds)
+        make.add_argument(
+            flag(name),
+            type=float,
+            nargs="+" if first else None,
+            metavar="VALUE",
+            help="; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
+            + ("" if first else " (default: 0)"),
+        )
     make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
 
 
 def _modelica(args: argparse.Namespace) -> int:
     file = load(args.params) if args.params else None
-    if args.moment is not None and not args.preload:
-        raise ValueError("--moment needs --preload, the force of each bolt [N]")
+    points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
     try:
         from jointfmu_fmu_src.modelica import library
 
-        states = [(force, args.moment or 0.0) for force in args.preload]
-        written = library.write(args.out, file, states)
+        written = library.write(args.out, file, points)
     except ImportError as error:
         raise without_package(error, "write the library") from None
     if args.json:
@@ -38,3 +42,25 @@ def _modelica(args: argparse.Namespace) -> int:
     else:
         print(f"wrote {args.out / library.NAME}: {len(written)} files")
     return 0
+
+
+def _inputs() -> dict[str, list[Kind]]:
+    """{input that working points give: joints that have it}."""
+    names = dict.fromkeys(name for kind in KINDS.values() for name in kind.working_point)
+    return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
+
+
+def _meaning(kind: Kind, name: str) -> str:
+    variable = kind.variables[name]
+    return f"{variable.doc} [{variable.unit}]"
+
+
+def _points(kind: Kind, args: argparse.Namespace) -> list[tuple[float, ...]]:
+    """The working points asked for: values of the first input, each with those of the others, else zero."""
+    first, *others = kind.working_point
+    given = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
+    values: list[float] = getattr(args, first) or []
+    if given and not values:
+        needed = f"{flag(first)}, the {_meaning(kind, first)}"
+        raise ValueError(f"{flag(next(iter(given)))} needs {needed}")
+    return [(value, *(given.get(name, 0.0) for name in others)) for value in values]

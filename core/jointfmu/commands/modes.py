@@ -2,15 +2,16 @@
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..curve import approach_curve
-from ..joints.bolted_joint.spring import shear_ratio
+from ..joints.clamped import clamping
 from ..parameters import check_writable, write_bytes
 from .common import command
-from .finite_elements import assembly_arguments, joint_file, with_assembly, without_fem
+from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.modes import Modes
@@ -47,8 +48,8 @@ def run(args: argparse.Namespace) -> int:
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)
-    joint = with_assembly(joint_file(args.params), assembly, whole=False).values
-    law, shear = approach_curve(joint), float(shear_ratio(joint))
+    file = with_assembly(joint_file(args.params), assembly, whole=False)
+    law, shear = approach_curve(file.values), float(clamping(file.joint).shear_ratio(file.values))
     try:
         contact = BoltedContact.of(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
@@ -58,13 +59,16 @@ def run(args: argparse.Namespace) -> int:
         raise without_fem(error) from None
     if args.vtu:
         write_bytes(args.vtu, shapes.vtu(contact.bodies, found))
+    warnings = beyond_law(solution.peak, float(file.values.hardness))
     if args.json:
-        print(json.dumps(_document(args, assembly.name, found, even)))
+        print(json.dumps(_document(args, assembly.name, found, even) | {"warnings": warnings}))
     else:
         print(
             f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {found.mass:.4g} kg"
         )
         print("\n".join(_table(found, even)))
+        for warning in warnings:
+            print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 

@@ -10,18 +10,18 @@ from typing import Any
 import numpy as np
 
 from .. import columns, plots
+from ..joints import KINDS
 from ..parameters import check_writable, write_text
+from ..systems import System, system, systems
 from .common import command, without_package
-
-SYSTEMS = {"robot_joint": ("N.m", "kg.m2"), "bolted_column": ("N", "kg")}
-"""{system: (unit of the load, unit of the inertia)}."""
 
 
 def add(commands: Any) -> None:
     """Declare the command."""
     text = "run a joint's FMU with a body on it and find resonance and damping over the load"
     ring = command(commands, "ring", _ring, text)
-    ring.add_argument("system", choices=SYSTEMS, metavar="SYSTEM", help="robot_joint or bolted_column")
+    examples = systems()
+    ring.add_argument("system", choices=list(examples), metavar="SYSTEM", help=" or ".join(examples))
     ring.add_argument(
         "--fmus",
         type=Path,
@@ -34,33 +34,41 @@ def add(commands: Any) -> None:
         type=float,
         nargs="+",
         metavar="VALUE",
-        help="robot_joint: torque [N.m] (default: up to rated torque); bolted_column: preload per bolt [N]",
+        help="; ".join(f"{name}: {_load(example)}" for name, example in examples.items())
+        + " (default: several that show the joint)",
     )
+    units = " or ".join(dict.fromkeys(example.inertia_unit for example in examples.values()))
     ring.add_argument(
-        "--inertia", type=float, metavar="VALUE", help="of the body [kg.m2 or kg] (default: of the example)"
+        "--inertia", type=float, metavar="VALUE", help=f"of the body [{units}] (default: of the example)"
     )
     ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
     ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
 
 
+def _load(example: System) -> str:
+    """What loads the joint of a system, with its unit."""
+    return f"{KINDS[example.joint].variables[example.load].doc} [{example.load_unit}]"
+
+
 def _ring(args: argparse.Namespace) -> int:
-    _check(args)
+    example = system(args.system)
+    _check(args, example.inertia_unit)
     try:
         from jointfmu_fmu_src import ringing
         from jointfmu_fmu_src.report.systems import SIZE, draw
     except ImportError as error:
         raise without_package(error, "run a system") from None
-    found = getattr(ringing, args.system)(args.fmus, args.load, args.inertia)
-    rows = [_row(point) for point in found]
-    for message in dict.fromkeys(text for point in found for text in point.messages):
+    points = ringing.ring(args.system, args.fmus, args.load, args.inertia)
+    rows = [_row(point) for point in points]
+    for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
-    table = _table(rows, SYSTEMS[args.system][0])
+    table = _table(rows, example.load_unit)
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
         with plots.drawing(args.plot, SIZE) as figure:
-            draw(figure, found, args.system)
-    misses = [line for point in found for line in point.misses]
+            draw(figure, points, ringing.body_on(example.joint))
+    misses = [line for point in points for line in point.misses]
     if args.json:
         print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
     else:
@@ -72,13 +80,12 @@ def _ring(args: argparse.Namespace) -> int:
     return int(bool(misses))
 
 
-def _check(args: argparse.Namespace) -> None:
-    """Refuse what no FMU would, before the work."""
+def _check(args: argparse.Namespace, unit: str) -> None:
+    """Refuse what no FMU would, before the work; `unit` is the inertia's."""
     for value in args.load or ():
         if not math.isfinite(value):
             raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
     if args.inertia is not None and not 0.0 < args.inertia < math.inf:
-        unit = SYSTEMS[args.system][1]
         raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
     if args.csv:
         check_writable(args.csv)

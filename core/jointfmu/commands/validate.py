@@ -15,7 +15,7 @@ def add(commands: Any) -> None:
     sub.add_argument(
         "--frequencies",
         action="store_true",
-        help="add the natural frequencies of Zhao 2018 by finite elements (half a minute)",
+        help="add the measured natural frequencies, by finite elements (half a minute)",
     )
 
 

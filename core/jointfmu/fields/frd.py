@@ -5,6 +5,7 @@ The format is that of CalculiX GraphiX (cgx, appendix "Result Format"): nodes in
 """
 
 from collections.abc import Iterator, Mapping
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +60,7 @@ def read(path: Path, length: float, pressure: float) -> NodalResult:
         pressure=values * pressure,
         faces=boundary(cells),
         body=bodies(cells, names.size),
+        left_out=True,
     )
 
 
@@ -109,7 +111,7 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
         values = [float(line[i : i + 12]) for i in range(13, len(line.rstrip()), 12)]
     except ValueError:
         values = []
-    if len(values) < least or not line.startswith(" -1"):
+    if len(values) < least or not line.startswith(" -1") or not all(map(isfinite, values)):
         raise ValueError(f"{path}: line {number + 1}: {line[:60]!r} is no node with {least} numbers")
     return name, values
 
@@ -137,7 +139,11 @@ def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, 
 
 
 def _pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:
-    """Nodes and contact pressures of the last contact result, which lists zeros for all other nodes."""
+    """Nodes and contact pressures of the last contact result.
+
+    Surface to surface contact lists zeros for all other nodes, node to surface contact leaves those out
+    whose gap is too large for a spring.
+    """
     starts = [i for i, line in enumerate(lines) if line.startswith(" -4") and line[5:13].strip() == DATASET]
     if not starts:
         there = sorted({line[5:13].strip() for line in lines if line.startswith(" -4")})

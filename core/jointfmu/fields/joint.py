@@ -1,11 +1,12 @@
-"""From a nodal contact result to a bolted joint's parameter file that has the field."""
+"""From a nodal contact result to the parameter file of a joint with bolts that has the field."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint.spring import BoltedJoint
+from ..joints import KINDS
+from ..joints.clamped import Clamped, clamping
 from ..parameters import ORIGINS, ParameterFile
 from ..quantity import build, flatten
 from .contact import Array, ContactField
@@ -28,11 +29,12 @@ def with_field(
     tilted: ContactField | None = None,
     moment: float | None = None,
 ) -> tuple[ParameterFile, Reduction]:
-    """A bolted joint with the pressure of a field instead of a pattern of bolts, and its contact area.
+    """A joint with the pressure of a field instead of a pattern of bolts, and its contact area.
 
     Parameters
     ----------
-    file    : of a bolted joint; its `n_bolts`, `row_bolts`, `row_distance` say what the forces mean
+    file    : of a joint of joints.clamped; its `n_bolts`, `row_bolts`, `row_distance` give the forces
+              their meaning
     preload : [N] of each bolt, at which the field was computed
     source  : where the field comes from, for the file
     kind    : of the values, one of parameters.ORIGINS
@@ -40,16 +42,15 @@ def with_field(
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
 
-    Raises ValueError if the joint is none of bolts, if a field's force differs from that of the bolts by
-    more than FORCE_ERROR, if the two fields do not fit each other, or if the pressures' own moment is far
-    from the stated one.
+    Raises ValueError if the joint's pressure cannot be a field, if a field's force differs from that of the
+    bolts by more than FORCE_ERROR, if the two fields do not fit each other, or if the pressures' own moment
+    is far from the stated one.
     """
-    if file.joint != "bolted_joint":
-        raise ValueError(f"joint = {file.joint!r} has no field of pressure; expected 'bolted_joint'")
+    pressures = clamping(file.joint).pressures
     if kind not in ORIGINS:
         raise ValueError(f"kind = {kind!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment)
-    reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload)
+    reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     points = reduction.shape
     lists = {
         "share": points.share,
@@ -64,7 +65,7 @@ def with_field(
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(
         file,
-        values=build(BoltedJoint, kept | given),
+        values=build(KINDS[file.joint].parameters, kept | given),
         origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
         | dict.fromkeys(given, kind),
         sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
@@ -80,7 +81,7 @@ def _rule(tilted: ContactField | None, moment: float | None) -> str:
 
 
 def pressure_shape(
-    joint: BoltedJoint,
+    joint: Clamped,
     field: ContactField,
     preload: float,
     tilted: ContactField | None = None,
@@ -114,7 +115,7 @@ def pressure_shape(
     return PressureShape(share, position, equal, added * joint.row_distance * area / moment)
 
 
-def _proportional(joint: BoltedJoint, share: Array, y: Array, equal: Array) -> Array:
+def _proportional(joint: Clamped, share: Array, y: Array, equal: Array) -> Array:
     """What a moment adds if it grows with the distance from the centre of pressure."""
     force = share * equal
     away = y - force @ y
@@ -124,7 +125,7 @@ def _proportional(joint: BoltedJoint, share: Array, y: Array, equal: Array) -> A
     return np.asarray(joint.row_distance * equal * away / spread)
 
 
-def _force(joint: BoltedJoint, field: ContactField, preload: float, name: str) -> float:
+def _force(joint: Clamped, field: ContactField, preload: float, name: str) -> float:
     """The bolts' force over the field's [1], near 1."""
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf)")

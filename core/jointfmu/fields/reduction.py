@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint.spring import BoltedJoint
+from ..joints.clamped import Clamped, Pressures
 from ..progress import track
 from .result import Array, Nodes
 from .sums import PRELOADS, SEED, Load, Row, Sums, balance, first_loads, further_loads, largest_moment
@@ -67,19 +67,20 @@ class Reduction:
         return int(self.shape.share.size)
 
 
-def reduce(joint: BoltedJoint, shape: PressureShape, preload: float) -> Reduction:
+def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
     """The fewest points found that keep a field's sums within TOLERANCE.
 
-    preload : [N] per bolt, the field's; loads are tried from PRELOADS of it, from pressed together to fully
-              open, with moments up to the one at which a row of bolts has no force left or nodes that
-              carried the part OPENED of the preload are open, whichever comes first
+    preload   : [N] per bolt, the field's; loads are tried from PRELOADS of it, from pressed together to
+                fully open, with moments up to the one at which a row of bolts has no force left or nodes
+                that carried the part OPENED of the preload are open, whichever comes first
+    pressures : of the joint, those of joints.clamped.Clamping
 
     Raises RuntimeError if no points do and there are more than MOST nodes.
     """
     nodes = shape.share.size
     if nodes <= FEW:
         return Reduction(shape, nodes)
-    rng, sums = np.random.default_rng(SEED), Sums.of(joint, preload)
+    rng, sums = np.random.default_rng(SEED), Sums.of(joint, preload, pressures)
     for size in (CANDIDATES, 2 * CANDIDATES, 4 * CANDIDATES):
         few = rng.choice(nodes, min(size, nodes), replace=False)
         found = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))

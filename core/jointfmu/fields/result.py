@@ -30,6 +30,7 @@ class NodalResult:
     faces    : each (k, 3 | 4 | 6 | 8 | 9) places of nodes in these arrays: faces of the surface, or
                boundary faces of the bodies; corners first, then the middles of their edges, then the centre
     body     : (n) number of the body that a node belongs to, if there are bodies
+    left_out : whether the file leaves open nodes out: on the contact, NaN means no pressure
     """
 
     path: Path
@@ -40,6 +41,7 @@ class NodalResult:
     area: Array | None = None
     faces: Sequence[Nodes] = ()
     body: NDArray[np.int64] | None = None
+    left_out: bool = False
 
     def at(self, i: int) -> str:
         """The file and the place of node i, for messages."""

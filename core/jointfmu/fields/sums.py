@@ -10,7 +10,7 @@ from scipy.stats import qmc
 
 from ..curve import Curve, approach_curve
 from ..footprint.shape import PressureShape
-from ..joints.bolted_joint.spring import BoltedJoint, pressures
+from ..joints.clamped import Clamped, Pressures
 from .result import Array
 
 PRELOADS = (0.05, 3.0)
@@ -60,28 +60,30 @@ class Row:
 class Sums:
     """The functions whose sums a joint needs, on its curve of pressure over approach.
 
-    preload : [N] per bolt, the field's
-    table   : pressures and approaches, where Newton's method begins
+    preload   : [N] per bolt, the field's
+    pressures : of the joint, those of joints.clamped.Clamping
+    table     : pressures and approaches, where Newton's method begins
     """
 
-    joint: BoltedJoint
+    joint: Clamped
     curve: Curve
     preload: float
+    pressures: Pressures
     table: tuple[Array, Array]
 
     @classmethod
-    def of(cls, joint: BoltedJoint, preload: float) -> "Sums":
+    def of(cls, joint: Clamped, preload: float, pressures: Pressures) -> "Sums":
         """Of a joint at a preload [N] per bolt."""
         curve = approach_curve(joint)
         x = curve.displacement
         fine = (x[:-1, None] + np.diff(x)[:, None] * _TABLE).ravel()
-        return cls(joint, curve, preload, (curve.derivatives(fine, 0)[0], fine))
+        return cls(joint, curve, preload, pressures, (curve.derivatives(fine, 0)[0], fine))
 
     def approach(self, shape: PressureShape, load: Load) -> Array:
         """Approach (n) [m] at tightening: the table's, after one step of Newton's method."""
         force = load.preload * self.preload
         moment = load.moment * force * self.joint.row_distance * self.joint.row_bolts
-        p = pressures(self.joint, shape, force, moment)
+        p = self.pressures(self.joint, shape, force, moment)
         slow = p < _FAST * self.curve.closed
         start = np.interp(p, *self.table)
         value, slope = self.curve.derivatives(start, 1)
@@ -129,7 +131,7 @@ def balance(shape: PressureShape) -> Array:
     return np.column_stack([np.ones_like(shape.share), shape.position, both, *moments])
 
 
-def largest_moment(joint: BoltedJoint, shape: PressureShape) -> float:
+def largest_moment(joint: Clamped, shape: PressureShape) -> float:
     """Over the one at which a row of bolts has no force left [1]: up to where the sums are to be kept.
 
     There, or where nodes that carried the part OPENED of the preload are open.

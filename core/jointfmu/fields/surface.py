@@ -81,7 +81,10 @@ def surface(result: NodalResult, plane: Plane) -> Surface:
         faces = _faces(result, plane)
         area = nodal_areas(inside, faces)
         index = np.unique(np.concatenate([block.ravel() for block in faces]))
-    found = Surface(result, index, area[index], inside[index], result.pressure[index])
+    pressure = result.pressure[index]
+    if result.left_out:
+        pressure = np.nan_to_num(pressure, nan=0.0)
+    found = Surface(result, index, area[index], inside[index], pressure)
     _check(found)
     return found
 

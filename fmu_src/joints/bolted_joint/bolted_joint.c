@@ -1,4 +1,4 @@
-#include "bolted.h"
+#include "bolted_joint.h"
 
 #include <math.h>
 

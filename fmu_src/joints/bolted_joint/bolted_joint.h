@@ -1,6 +1,6 @@
 /* Bolted joint: every node follows the curve of pressure over approach from its pressure at tightening. */
-#ifndef JOINTFMU_BOLTED_H
-#define JOINTFMU_BOLTED_H
+#ifndef JOINTFMU_BOLTED_JOINT_H
+#define JOINTFMU_BOLTED_JOINT_H
 
 #include "approach.h"
 

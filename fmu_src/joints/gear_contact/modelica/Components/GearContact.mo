@@ -1,7 +1,7 @@
 within JointStiffness.Components;
 model GearContact "Contact of two rough tooth flanks along their normal"
   extends Modelica.Mechanics.Translational.Interfaces.PartialCompliant;
-  parameter JointStiffness.Data.GearContact data = JointStiffness.Data.<< records.gear_contact >>() "The contact"
+  parameter JointStiffness.Data.GearContact data = JointStiffness.Data.<< record >>() "The contact"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Distance s_rel0=0 "Distance of the flanges at first touch";
   Modelica.Units.SI.Position approach(nominal=1e-6) "<< docs.s_rel >>, negative while apart";
@@ -24,7 +24,7 @@ equation
 <h4>Law</h4>
 << html.law >>
 <h4>Not in this table</h4>
-<p>Real area and its elastic part are not given; the FMU gives them. The table ends where the hardness presses on the whole nominal area, << ends.gear_contact >>; beyond, the last tangent continues without a warning.</p>
+<p>Real area and its elastic part are not given; the FMU gives them. The table ends where the hardness presses on the whole nominal area, << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>

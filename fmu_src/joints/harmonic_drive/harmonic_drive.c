@@ -1,4 +1,4 @@
-#include "drive.h"
+#include "harmonic_drive.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "gear.h"
+#include "gear_contact.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
-/* A partner of the joints in a system (inertia, mass, source): its equations, without tables. The list of
- * variables is one array, so that time, inputs and states stand in one row. */
+/* A model of equations, without tables: a partner of the joints in a system (inertia, mass, source), or a
+ * joint that has none. The list of variables is one array, so that time, inputs and states stand in one row. */
 #include <string.h>
 
 #include "joint.h"

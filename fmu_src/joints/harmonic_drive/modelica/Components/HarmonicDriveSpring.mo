@@ -1,6 +1,6 @@
 within JointStiffness.Components;
 model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive between two flanges"
-  parameter JointStiffness.Data.HarmonicDrive data = JointStiffness.Data.<< records.harmonic_drive >>() "The drive"
+  parameter JointStiffness.Data.HarmonicDrive data = JointStiffness.Data.<< record >>() "The drive"
     annotation (choicesAllMatching=true);
   parameter Real ratio(min=Modelica.Constants.small) = data.ratio "<< meta.ratio >>";
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "<< meta.d >>";
@@ -49,7 +49,7 @@ equation
 <h4>Law</h4>
 << html.law >>
 <h4>Not in this table</h4>
-<p>The parameters of the law are those of the record <code>data</code>, fixed. Damping is the viscous <code>d</code> alone. The table is odd in the wind-up and ends at << ends.harmonic_drive >>; beyond, the last tangent continues without a warning.</p>
+<p>The parameters of the law are those of the record <code>data</code>, fixed. Damping is the viscous <code>d</code> alone. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>

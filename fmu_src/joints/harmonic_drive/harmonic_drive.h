@@ -1,6 +1,6 @@
 /* Harmonic drive: torque over wind-up, odd; with the stiffness of the contact pair tabulated first. */
-#ifndef JOINTFMU_DRIVE_H
-#define JOINTFMU_DRIVE_H
+#ifndef JOINTFMU_HARMONIC_DRIVE_H
+#define JOINTFMU_HARMONIC_DRIVE_H
 
 #include "table.h"
 #include "spots.h"

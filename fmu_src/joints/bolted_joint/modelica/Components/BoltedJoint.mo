@@ -1,6 +1,6 @@
 within JointStiffness.Components;
 model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
-  parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.<< records.bolted_joint >>() "The tightened joint"
+  parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.<< record >>() "The tightened joint"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "<< meta.mass >>";
   parameter StateSelect stateSelect=StateSelect.default "Priority to use s_rel and v_rel as states"

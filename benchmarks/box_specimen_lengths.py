@@ -7,24 +7,21 @@ middle the bolts sit.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from importlib.resources import files
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..curve import Curve, approach_curve
-from ..joints.bolted_joint.spring import BoltedJoint, shear_ratio
-from .assembly import load
-from .assembly_modes import computed, uniform
-from .bolts import BoltGrid
-from .elasticity import Array
-from .geometry import Assembly, BoxSection
-from .joint import BoltedContact
+from jointfmu.fem import assembly_modes
+from jointfmu.fem.assembly import load
+from jointfmu.fem.assembly_modes import REFINEMENT
+from jointfmu.fem.bolts import BoltGrid
+from jointfmu.fem.elasticity import Array
+from jointfmu.fem.geometry import Assembly, BoxSection
+from jointfmu.joints.bolted_joint.frequencies import FREQUENCIES
+from jointfmu.joints.bolted_joint.spring import BoltedJoint, shear_ratio
 
 LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")
-REFINEMENT = 0.5
-"""Of the meshes [1]; twice as fine ones lower the frequencies by less than 1 % (docs/finite_elements.md)."""
 STEP = 0.01
 """Relative step of the difference quotients: well above what a new mesh changes at random."""
 RANGE = 0.1
@@ -72,7 +69,7 @@ def specimen(start: Assembly, lengths: Sequence[float]) -> Assembly:
 
 def shipped() -> Assembly:
     """The assembly with the identified lengths."""
-    return load(Path(str(files("jointfmu_models") / "assemblies" / "box_specimen_by_frequency.toml")))
+    return load(FREQUENCIES.path)
 
 
 def lengths_of(assembly: Assembly) -> Array:
@@ -83,29 +80,10 @@ def lengths_of(assembly: Assembly) -> Array:
 
 
 def frequencies(
-    assembly: Assembly,
-    joint: BoltedJoint,
-    states: Sequence[tuple[float, float]],
-    refinement: float = REFINEMENT,
-    count: int = 6,
-    even: bool = False,
+    assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
-    """Natural frequencies (states, count) [Hz] of an assembly.
-
-    joint  : gives the interface law; its area is that of the assembly
-    states : preloads [N] per bolt and moments [N.m]
-    even   : with the bolts' force spread evenly over the contact, instead of the computed field
-    """
-    law, shear = _interface(assembly, joint)
-    contact = BoltedContact.of(assembly, refinement)
-    found = []
-    for preload, moment in states:
-        if even:
-            force = float(assembly.bolt_forces(preload, moment).sum())
-            found.append(uniform(contact, law, force, shear, count).frequency)
-        else:
-            found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
-    return np.array(found)
+    """As those of assembly_modes, with the joint's own shear."""
+    return assembly_modes.frequencies(assembly, joint, float(shear_ratio(joint)), states, **options)
 
 
 def identify(
@@ -120,15 +98,9 @@ def identify(
 
     def error(ratio: Array) -> Array:
         box = specimen(start, (ratio * first).tolist())
-        found = frequencies(box, joint, [(preload, 0.0)], refinement, measured.size)
+        found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, count=measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
     fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=8)
     lengths = dict(zip(LENGTHS, (fit.x * first).tolist(), strict=True))
     return Identification(lengths, np.asarray(fit.fun), np.asarray(fit.jac) * fit.x)
-
-
-def _interface(assembly: Assembly, joint: BoltedJoint) -> tuple[Curve, float]:
-    """The law with the contact area of an assembly, and its tangential over normal stiffness."""
-    joint = replace(joint, A_0=assembly.contact_area)
-    return approach_curve(joint), float(shear_ratio(joint))

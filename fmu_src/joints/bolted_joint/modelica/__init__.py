@@ -1,0 +1,50 @@
+"""The joint in the Modelica library: tightened to a preload under a moment, one record for each."""
+
+from collections.abc import Sequence
+
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import ParameterFile
+
+from ....modelica.records import Component, Record, WorkingPoint, numbers
+from ....modelica.text import identifier, matrix
+from .tight import DAMPING_TOLERANCE, STRONGEST, tightened
+
+TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
+"""Preload [N] per bolt and moment [N.m]: Zhao 2018, Table 3."""
+
+
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+    spring = BoltedJointSpring.of(file.values)
+    return [_record(file.name, spring, *point) for point in points]
+
+
+def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> Record:
+    tight = tightened(spring, preload, moment)
+    rest = spring.motion(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    values = {
+        "preload": preload,
+        "moment": moment,
+        "mass": spring.joint.mass,
+        "shear": tight.shear,
+        "eta_t": float(rest["eta_t"]),
+    }
+    force = f"{preload / 1e3:g} kN"
+    return Record(
+        name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
+        title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
+        table=tight.table,
+        values=numbers(values) | {"damping": matrix(tight.damping)},
+        more="; where the force is below the one at tightening, relative to that",
+    )
+
+
+COMPONENT = Component(
+    name="BoltedJoint",
+    base="BoltedJoint",
+    points=TIGHTENED,
+    records=_records,
+    texts=lambda joint: {
+        "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
+        "strongest": f"{STRONGEST:g}",
+    },
+)

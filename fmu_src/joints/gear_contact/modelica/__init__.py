@@ -1,0 +1,28 @@
+"""The contact in the Modelica library: force over approach from first touch."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointfmu.joints.gear_contact.spring import GearContactSpring
+from jointfmu.parameters import ParameterFile
+
+from ....modelica.records import Component, Record, WorkingPoint
+from ....modelica.tables import Table, thinned
+from ....modelica.text import identifier
+
+
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+    contact = GearContactSpring.of(file.values)
+    pressure = thinned(contact.curve)
+    approach = pressure.rows[:, :1] - contact.curve.displacement[0]
+    table = Table(np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.error)
+    return [Record(name=identifier(file.name), title=file.name, table=table)]
+
+
+COMPONENT = Component(
+    name="GearContact",
+    base="GearContact",
+    records=_records,
+    texts=lambda contact: {"end": f"{contact.end / 1e3:g} kN"},
+)

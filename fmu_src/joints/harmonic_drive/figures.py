@@ -1,0 +1,85 @@
+"""Figures of the report: stiffness over torque, torque over wind-up."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure as Canvas
+
+from jointfmu.ramp import Ramp
+from jointfmu.validation import Row
+
+from ...drawing import BLUE, GREEN, GREY, RED, labels, svg
+from ...report.figure import Figure
+
+_FMU = "HarmonicDriveCompliance"
+
+
+def figures(outcome: Any) -> list[Figure]:
+    """The figures of an outcome of the main job."""
+    result = outcome.ramps[_FMU]
+    return [
+        Figure(
+            "Harmonic drive: stiffness over torque",
+            "Left: K_WTS and its parts on the drive's scale, as the FMU gives them. Right: the contact "
+            "pair on the scale of the paper's figures. Open circles were used to calibrate.",
+            stiffness(result, outcome.rows),
+            f"{_FMU}.csv",
+        ),
+        Figure(
+            "Harmonic drive: torque over wind-up",
+            "The integral of dT/K_WTS, odd in the torque.",
+            torque_angle(result),
+            f"{_FMU}.csv",
+        ),
+    ]
+
+
+def stiffness(result: Ramp, rows: list[Row]) -> str:
+    """K_WTS and its parts over torque, with the published points on the curves."""
+
+    def draw(canvas: Canvas) -> None:
+        c = result.columns
+        drive, pair = canvas.subplots(1, 2)
+        for name, color in (("K_WTS", BLUE), ("K_TS", RED), ("K_FTS", GREEN)):
+            drive.plot(c["tau"], c[name] / 1e3, color=color, label=name)
+        pair.plot(c["tau"], c["K_TS_pair"], color=RED, label="K_TS on the paper's scale")
+        least = {row.point.where["torque"]: row for row in rows if row.point.quantity == "K_TS_least"}
+        most = [r for r in rows if r.point.quantity == "K_TS" and "deformation" in r.point.where]
+        x = [r.point.where["torque"] for r in most]
+        pair.plot(x, [r.computed for r in most], "_", color=GREY, ms=14, label="largest and least over w")
+        pair.plot(list(least), [r.computed for r in least.values()], "_", color=GREY, ms=14)
+        for row in rows:
+            target = {"K_WTS": drive, "K_TS": pair, "K_TS_least": pair}.get(row.point.quantity)
+            if target is None:
+                continue
+            filled = row.point.role == "validation"
+            scale = 1e-3 if target is drive else 1.0
+            target.plot(
+                row.point.where["torque"],
+                float(row.point.value) * scale,
+                "o",
+                color="black",
+                mfc="black" if filled else "white",
+                ms=5,
+            )
+        for axes in (drive, pair):
+            axes.plot([], [], "o", color="black", mfc="white", ms=5, label="published, calibrates")
+            axes.plot([], [], "o", color="black", ms=5, label="published, validates")
+            axes.legend(loc="best", fontsize=8)
+        labels(drive, "torque [N m]", "stiffness [kN m/rad]")
+        labels(pair, "torque [N m]", "K_TS [N m/rad]")
+
+    return svg(draw, (9.6, 4.2))
+
+
+def torque_angle(result: Ramp) -> str:
+    """Wind-up over torque, both signs."""
+
+    def draw(canvas: Canvas) -> None:
+        axes = canvas.subplots()
+        tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
+        axes.plot(np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau]), color=BLUE)
+        axes.set_xlabel("wind-up at the output [arcmin]")
+        axes.set_ylabel("torque [N m]")
+
+    return svg(draw)

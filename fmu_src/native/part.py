@@ -1,0 +1,89 @@
+"""What a joint's file `native.py` gives: its functions, the numbers that its C takes, the C it shares."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+
+from jointfmu import curve
+from jointfmu.joints.model import Model
+
+from .c_text import number
+from .graph import Graph
+
+TABLES = ("tabulated", "curve", "spots")
+"""Shared C of every joint that tabulates its law."""
+APPROACH = (*TABLES, "approach")
+"""The same with the curve of pressure over approach."""
+
+
+@dataclass(frozen=True, slots=True)
+class Definitions:
+    """Constants of C.
+
+    counts : {name: whole number}, as an enum
+    macros : {name: number}
+    arrays : {declaration: rows}, of double
+    """
+
+    counts: Mapping[str, int] = field(default_factory=dict)
+    macros: Mapping[str, float] = field(default_factory=dict)
+    arrays: Mapping[str, Sequence[str]] = field(default_factory=dict)
+
+    def __or__(self, other: "Definitions") -> "Definitions":
+        return Definitions(
+            {**self.counts, **other.counts}, {**self.macros, **other.macros}, {**self.arrays, **other.arrays}
+        )
+
+
+def column(name: str, size: str, values: Any) -> Definitions:
+    """An array `name[size]`."""
+    return Definitions({size: len(values)}, {}, {f"{name}[{size}]": [number(x) for x in values]})
+
+
+def quadrature(prefix: str, nodes: Any) -> Definitions:
+    """Nodes `PREFIX[N_PREFIX]` and weights `PREFIX_WEIGHTS[N_PREFIX]` of a quadrature."""
+    places = column(prefix, f"N_{prefix}", nodes[0])
+    weights = column(f"{prefix}_WEIGHTS", f"N_{prefix}", nodes[1])
+    return places | weights
+
+
+def nothing(graph: Graph, model: Model) -> Definitions:
+    """No constants."""
+    return Definitions()
+
+
+@dataclass(frozen=True, slots=True)
+class NativePart:
+    """How a joint becomes C.
+
+    functions   : adds the functions that its C calls to a graph
+    shared      : files of `runtime/` that it uses, beside those of every FMU
+    definitions : its constants
+    """
+
+    functions: Callable[[Graph, Model], None]
+    shared: Sequence[str]
+    definitions: Callable[[Graph, Model], Definitions] = nothing
+
+
+def _equations(g: Graph, model: Model) -> None:
+    names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
+    v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
+    found = model.evaluate(g.joint, v)
+    doc = "time, inputs, states -> outputs"
+    g.add_with_seed("outputs", doc, list(v.values()), [found[o.name] for o in model.outputs])
+
+
+EQUATIONS = NativePart(_equations, ("equations",))
+"""Of a model whose outputs are closed functions of time, inputs and states."""
+
+
+def shared_definitions(shared: Sequence[str]) -> Definitions:
+    """Constants of the shared C."""
+    if "approach" not in shared:
+        return Definitions()
+    steps = {"APPROACH_STEPS": curve.STEPS, "CLOSING_STEPS": curve.CLOSING_STEPS}
+    ratio = {"CLOSING_RATIO": curve.CLOSING_RATIO}
+    return Definitions(steps, ratio) | quadrature("APPROACH_GAUSS", curve.GAUSS)
