@@ -23,7 +23,7 @@ def figures(outcome: Any) -> list[Figure]:
     return [
         Figure(
             "Gear mesh: stiffness and deflection over the mesh cycle",
-            "At constant forces of the mesh: tooth pairs come and go, and flanks that carry more are stiffer.",
+            "At constant forces: tooth pairs come and go, and flanks that carry more are stiffer.",
             cycle(GearMeshSpring.of(default("gear_mesh").values)),
         ),
         Figure(
