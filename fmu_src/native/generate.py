@@ -10,11 +10,10 @@ from uuid import NAMESPACE_URL, uuid5
 import casadi as ca
 import numpy as np
 
-from jointfmu import __version__, curve, table
+from jointfmu import __version__, curve, interface, table
 from jointfmu.footprint import lobes
 from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.shape import PressureShape
-from jointfmu.joints import harmonic_drive
+from jointfmu.joints import bolted_joint, harmonic_drive
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import flatten, interval
 
@@ -32,6 +31,25 @@ _KINDS = {
     "gear_contact": ("gear", (*_TABLES, "gear", "approach")),
     "partner": ("system", ("system",)),
 }
+NUMBERS = (
+    (curve, "MAX_ERROR"),
+    (interface, "LEAST"),
+    (interface, "MOST"),
+    (interface, "FLATTEST"),
+    (interface, "STEEPEST"),
+    (interface, "CLOSE"),
+    (interface, "NOTHING"),
+    (interface, "SIDE"),
+)
+"""Numbers of the package that C has under the same name, for every joint with tables."""
+COUNTS = ((curve, "FINEST"), (interface, "MOST_STEPS"))
+"""The same as whole numbers."""
+DRIVE_NUMBERS = ((table, "CELL"), (harmonic_drive, "SOFTEST"), (harmonic_drive, "STIFFEST"))
+DRIVE_COUNTS = (
+    (table, "MOST_CELLS"),
+    (harmonic_drive, "PAIR_STEPS"),
+    (harmonic_drive, "MOST_PAIR_STEPS"),
+)
 _SHORT = 60
 """Lines of a function that is worth to be inline: what a step evaluates is short."""
 _GENERATED = (
@@ -266,17 +284,13 @@ def _numbers(g: Graph, model: Model, names: dict[str, int]) -> tuple[dict[str, s
         rows = [[_number(x) for x in column] for column in nodes]
         return {f"{prefix}[N_{prefix}]": rows[0], f"{prefix}_WEIGHTS[N_{prefix}]": rows[1]}
 
+    macros = {name: _number(getattr(module, name)) for module, name in NUMBERS}
+    names |= {name: getattr(module, name) for module, name in COUNTS} | {"CURVE_NODES": curve.MOST_NODES}
     if model.joint == "harmonic_drive":
-        names["N_DRIVE_HEAD"] = 5
         names["ARGUMENT_IS_LOAD"] = int(model.inputs[0].name == "tau")
         names["DRIVE_STEPS"] = harmonic_drive.STEPS
-        macros = {
-            "CELL": _number(table.CELL),
-            "MOST_CELLS": f"{table.MOST_CELLS}.0",
-            "PAIR_STEPS": f"{harmonic_drive.PAIR_STEPS}.0",
-            "SOFTEST": _number(harmonic_drive.SOFTEST),
-            "STIFFEST": _number(harmonic_drive.STIFFEST),
-        }
+        names |= {name: getattr(module, name) for module, name in DRIVE_COUNTS}
+        macros |= {name: _number(getattr(module, name)) for module, name in DRIVE_NUMBERS}
         names["N_PLACES"], names["N_HEIGHTS"] = lobes.PLACES.size, lobes.HEIGHTS.size
         return macros, {
             "PLACES[N_PLACES]": [_number(x) for x in lobes.PLACES],
@@ -286,28 +300,22 @@ def _numbers(g: Graph, model: Model, names: dict[str, int]) -> tuple[dict[str, s
             **gauss("DRIVE_GAUSS", harmonic_drive.GAUSS),
         }
     names["APPROACH_STEPS"], names["CLOSING_STEPS"] = curve.STEPS, curve.CLOSING_STEPS
-    macros = {"CLOSING_RATIO": _number(curve.CLOSING_RATIO)}
+    macros["CLOSING_RATIO"] = _number(curve.CLOSING_RATIO)
     arrays = gauss("APPROACH_GAUSS", curve.GAUSS)
     if model.joint == "bolted_joint":
-        rows = merged(pressure_shape(g.joint.pattern))
-        names |= {"SHARE": 0, "EQUAL": 1, "TILT": 2, "X2": 3, "Y2": 4, "N_NODES": len(rows)}
-        count = {f.name: len(f.y) for f in g.functions}
-        names["N_PARTS"] = count["node_parts"]
-        names["N_OUTPUTS_X"] = count["node_parts"] + 7
+        rows = nodes(g.joint)
+        names |= {f"SUM_{name.upper()}": k for k, name in enumerate(bolted_joint.SUMS)}
+        names |= {"N_SUMS": len(bolted_joint.SUMS), "N_NODES": len(rows)}
+        names |= {name: k for k, name in enumerate(("SHARE", "SHARE_X2", "SHARE_Y2", "EQUAL", "TILT"))}
         arrays["NODES[N_NODES][5]"] = ["{" + ", ".join(_number(x) for x in row) + "}" for row in rows]
     return macros, arrays
 
 
-def merged(shape: PressureShape) -> np.ndarray[Any, Any]:
-    """Rows (n, 5) of share, equal, tilt, x2, y2: nodes that always have the same pressure as one.
-
-    x2, y2 [m2] are the means of their squared distances from the centroid.
-    """
-    keys = np.round(np.column_stack([shape.equal, shape.tilt]), 11)
-    _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    share = np.bincount(group.ravel(), shape.share)
-    squares = [np.bincount(group.ravel(), shape.share * shape.position[:, k] ** 2) / share for k in (0, 1)]
-    return np.column_stack([share, shape.equal[first], shape.tilt[first], *squares])
+def nodes(joint: bolted_joint.BoltedJoint) -> np.ndarray[Any, Any]:
+    """Rows (n, 5) of share, share times x2 and y2, equal, tilt of the nodes that differ in pressure."""
+    shape = pressure_shape(joint.pattern).merged()
+    share = shape.share
+    return np.column_stack([share, share * shape.x2, share * shape.y2, shape.equal, shape.tilt])
 
 
 def _array(declaration: str, rows: Iterable[str]) -> str:

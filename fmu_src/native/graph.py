@@ -11,6 +11,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from jointfmu.curve import closing
 from jointfmu.joints import bolted_joint, gear_contact, harmonic_drive
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
@@ -203,6 +204,12 @@ def _law(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
             g.add(f"law_state_{k}", "log-area -> state, its slopes", [u], [*y.nz, *ca.jacobian(y, u).nz])
 
 
+def _closing(g: Graph) -> None:
+    p, k, bend, z = symbols("x", 4)
+    doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, load, stiffness, its slope"
+    g.add("closing", doc, [p, k, bend, z], closing(p, k, bend, z))
+
+
 def _drive(g: Graph, model: Model) -> None:
     drive = g.joint
     _law(g, drive.law, ("normal", "tangential"))
@@ -254,6 +261,7 @@ def _gear(g: Graph, model: Model) -> None:
         return [area, spots.total("elastic_area", u) / area]
 
     _law(g, joint, ("normal",), state)
+    _closing(g)
     f, approach, stiffness, area, elastic = symbols("x", 5)
     g.add_with_seed("argument", "inputs -> pressure", [f], [np.maximum(f, 0.0) / joint.A_0])
     out = gear_contact.contact(joint, f, approach, stiffness, area, elastic)
@@ -265,21 +273,19 @@ def _gear(g: Graph, model: Model) -> None:
 def _bolted(g: Graph, model: Model) -> None:
     joint = g.joint
     _law(g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)])
-    node = symbols("node", 4)
+    _closing(g)
+    equal, tilt, mean, shift = symbols("node", 4)
     preload, moment, *rest = symbols("v", 8)
-    pressure = bolted_joint.node_pressure(joint, node[0], node[1], preload, moment)
-    doc = "equal, tilt, preload, moment -> pressure of a node at tightening"
-    g.add_with_seed("node_pressure", doc, [node[0], node[1], preload, moment], [pressure], fixed=2)
+    doc = "preload, moment -> mean pressure, pressure that the moment adds"
+    bolts = bolted_joint.bolt_pressures(joint, preload, moment)
+    g.add_with_seed("bolt_pressures", doc, [preload, moment], bolts)
+    doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
+    pressure = bolted_joint.shaped_pressure(equal, tilt, mean, shift)
+    g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)
     s_rel, v_rel = rest[:3], rest[3:]
-    tightened, *curve = symbols("p", 5)
-    works = symbols("w", 2)
-    parts = bolted_joint.node_parts(joint, node[2], node[3], s_rel, tightened, curve, works)
-    doc = "x2, y2, s_rel, pressure at tightening, pressure and 3 derivatives, works -> parts of a node"
-    x = [*node[2:], *s_rel, tightened, *curve, *works]
-    g.add_with_seed("node_parts", doc, x, list(parts.values()), fixed=2)
-    sums = dict(zip(parts, symbols("sum", len(parts)), strict=True))
+    sums = dict(zip(bolted_joint.SUMS, symbols("sum", len(bolted_joint.SUMS)), strict=True))
     p_max = ca.SX.sym("p_max")
     out = bolted_joint.motion(joint, sums, s_rel, v_rel, p_max)
-    doc = "sums of the parts, s_rel, v_rel, largest pressure -> outputs"
+    doc = f"sums over the nodes ({', '.join(sums)}), s_rel, v_rel, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs]
     g.add_with_seed("outputs", doc, [*sums.values(), *s_rel, *v_rel, p_max], y)
