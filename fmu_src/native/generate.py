@@ -13,6 +13,7 @@ import numpy as np
 from jointfmu import __version__, curve, interface, table
 from jointfmu.footprint import lobes
 from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.footprint.shape import MergedShape
 from jointfmu.joints import bolted_joint, harmonic_drive
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import flatten, interval
@@ -210,7 +211,7 @@ def _law(g: Graph, model: Model) -> tuple[str, str]:
         "N_LAW_ENDS": count["law_ends"],
         "N_LAW_SWITCHES": regimes - 1,
         "N_LAW_TABLE": count["law_table_0"],
-        "N_LAW_STATE": state // 2,
+        "N_LAW_STATE": state // 3,
     }
     numbers, arrays = _numbers(g, model, names)
     series = ["law_load", "law_table", *(["law_state"] if state else [])]
@@ -303,19 +304,22 @@ def _numbers(g: Graph, model: Model, names: dict[str, int]) -> tuple[dict[str, s
     macros["CLOSING_RATIO"] = _number(curve.CLOSING_RATIO)
     arrays = gauss("APPROACH_GAUSS", curve.GAUSS)
     if model.joint == "bolted_joint":
-        rows = nodes(g.joint)
+        shape = pressure_shape(g.joint.pattern)
         names |= {f"SUM_{name.upper()}": k for k, name in enumerate(bolted_joint.SUMS)}
-        names |= {"N_SUMS": len(bolted_joint.SUMS), "N_NODES": len(rows)}
+        names["N_SUMS"] = len(bolted_joint.SUMS)
         names |= {name: k for k, name in enumerate(("SHARE", "SHARE_X2", "SHARE_Y2", "EQUAL", "TILT"))}
-        arrays["NODES[N_NODES][5]"] = ["{" + ", ".join(_number(x) for x in row) + "}" for row in rows]
+        for name, rows in (("NODES", nodes(shape.merged())), ("EVEN_NODES", nodes(shape.merged(moment=False)))):
+            names[f"N_{name}"] = len(rows)
+            texts = [", ".join(_number(x) for x in row) for row in rows]
+            arrays[f"{name}[N_{name}][5]"] = [f"{{{text}}}" for text in texts]
     return macros, arrays
 
 
-def nodes(joint: bolted_joint.BoltedJoint) -> np.ndarray[Any, Any]:
-    """Rows (n, 5) of share, share times x2 and y2, equal, tilt of the nodes that differ in pressure."""
-    shape = pressure_shape(joint.pattern).merged()
+def nodes(shape: MergedShape) -> np.ndarray[Any, Any]:
+    """Rows (n, 5) of share, share times x2 and y2, equal, tilt; neighbours have similar pressures."""
     share = shape.share
-    return np.column_stack([share, share * shape.x2, share * shape.y2, shape.equal, shape.tilt])
+    rows = np.column_stack([share, share * shape.x2, share * shape.y2, shape.equal, shape.tilt])
+    return rows[np.lexsort((shape.equal, shape.tilt > 0.0))]
 
 
 def _array(declaration: str, rows: Iterable[str]) -> str:

@@ -201,7 +201,10 @@ def _law(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
         g.add(f"law_table_{k}", doc, [u], rows)
         if state is not None:
             y = ca.vertcat(*map(ca.SX, state(regime, u)))
-            g.add(f"law_state_{k}", "log-area -> state, its slopes", [u], [*y.nz, *ca.jacobian(y, u).nz])
+            slope, rate = ca.jacobian(y, u), regime.total("normal", u) / regime.slope("load", u)
+            doc = "log-area -> state, its slopes, theirs, slope of du/d approach"
+            rows = [y, slope, ca.jacobian(slope, u), ca.jacobian(rate, u)]
+            g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
 def _closing(g: Graph) -> None:

@@ -6,24 +6,19 @@
 _Static_assert(N_LAW_TABLE == 4, "load and normal stiffness with slopes");
 _Static_assert(CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
-/* The law at a node of the table. */
-typedef struct {
-    double x, value[N_LAW_STATE], slope[N_LAW_STATE]; /* slopes in the approach x */
-} StateNode;
+enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, slope of du/dx */
 
-static void set_state(Approach *approach, int segment, const double *value)
-{
-    memset(approach->state[segment], 0, sizeof approach->state[segment]);
-    for (int q = 0; q < N_LAW_STATE; q++)
-        approach->state[segment][q][0] = value[q];
-}
+/* A node of the table: the curve and the state beside. */
+typedef struct {
+    Node curve, state[N_LAW_STATE];
+} Point;
 
 /* How the contact closes: from separation to the node at zero approach, so that the approach does not start
  * at minus infinity. */
-static bool close(Approach *approach, Curve *curve, const Node *end, const double *state)
+static bool close(Approach *approach, Curve *curve, const Point *end)
 {
     for (int i = 0; i <= CLOSING_STEPS; i++) {
-        const double at[4] = {end->y, end->s, end->bend, (double)i / CLOSING_STEPS};
+        const double at[4] = {end->curve.y, end->curve.s, end->curve.bend, (double)i / CLOSING_STEPS};
         double y[4];
         closing(at, NULL, y);
         const Node node = {.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
@@ -31,29 +26,35 @@ static bool close(Approach *approach, Curve *curve, const Node *end, const doubl
             curve_piece(curve, node);
         else if (!curve_add(curve, node))
             return false;
-        set_state(approach, i, state);
+        memset(approach->state[i], 0, sizeof approach->state[i]);
+        for (int q = 0; q < N_LAW_STATE; q++)
+            approach->state[i][q][0] = end->state[q].y;
     }
     return true;
 }
 
-static Node node_at(const Spots *spots, const double *c, double u, double left, double right, double x,
-                    StateNode *state)
+static Point point_at(const Spots *spots, const double *c, double u, double left, double right, double x)
 {
-    double y[N_LAW_TABLE], side[N_LAW_TABLE], law[2 * N_LAW_STATE];
+    double y[N_LAW_TABLE], side[N_LAW_TABLE], law[STATE_ROWS];
     const double inside = fmin(fmax(u, left + SIDE), right - SIDE);
     spots_table(spots, c, u, y);
     if (inside != u)
         spots_table(spots, c, inside, side);
     else
         memcpy(side, y, sizeof side);
-    const double k = y[2] / spots->area;
-    state->x = x;
+    const double k = y[2] / spots->area, rate = side[2] / side[1]; /* du/dx */
+    Point point = {.curve = {.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]}};
     law_state[spots_regime(spots, inside)](&inside, c, law);
     for (int q = 0; q < N_LAW_STATE; q++) {
-        state->value[q] = law[q] + (u - inside) * law[N_LAW_STATE + q];
-        state->slope[q] = law[N_LAW_STATE + q] * side[2] / side[1];
+        const double slope = law[N_LAW_STATE + q], bend = law[2 * N_LAW_STATE + q];
+        point.state[q] = (Node){
+            .x = x,
+            .y = law[q] + (u - inside) * slope,
+            .s = slope * rate,
+            .bend = (bend * rate + slope * law[STATE_ROWS - 1]) * rate,
+        };
     }
-    return (Node){.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]};
+    return point;
 }
 
 /* Approach between two log-areas [m]. */
@@ -67,48 +68,6 @@ static double rise(const Spots *spots, const double *c, double u, double half)
     return half * sum;
 }
 
-/* The quintic through value and slope at three places, 0, `middle` and 1, by divided differences; then its
- * powers on the first part or the second. */
-static void quintic(const double *y, const double *s, double middle, double *first, double *second)
-{
-    const double z[6] = {0.0, 0.0, middle, middle, 1.0, 1.0};
-    double d[6] = {y[0], y[0], y[1], y[1], y[2], y[2]};
-    for (int order = 1; order < 6; order++)
-        for (int i = 5; i >= order; i--)
-            d[i] = z[i] == z[i - order] ? s[i / 2] : (d[i] - d[i - 1]) / (z[i] - z[i - order]);
-    double a[6] = {d[5]};
-    for (int i = 4; i >= 0; i--) {
-        for (int k = 5; k > 0; k--)
-            a[k] = a[k - 1] - z[i] * a[k];
-        a[0] = d[i] - z[i] * a[0];
-    }
-    double power = 1.0;
-    for (int k = 0; k < 6; k++, power *= middle)
-        first[k] = a[k] * power;
-    for (int k = 0; k < 5; k++)
-        for (int i = 4; i >= k; i--)
-            a[i] += middle * a[i + 1];
-    power = 1.0;
-    for (int k = 0; k < 6; k++, power *= 1.0 - middle)
-        second[k] = a[k] * power;
-}
-
-/* The state on the last two segments, from the nodes at their ends. */
-static void add_state(Approach *approach, const Curve *curve, const StateNode *three)
-{
-    const double length = three[2].x - three[0].x;
-    const int segment = curve->n - 3;
-    for (int q = 0; q < N_LAW_STATE; q++) {
-        double y[3], s[3];
-        for (int k = 0; k < 3; k++) {
-            y[k] = three[k].value[q];
-            s[k] = three[k].slope[q] * length;
-        }
-        quintic(y, s, (three[1].x - three[0].x) / length, approach->state[segment][q],
-                approach->state[segment + 1][q]);
-    }
-}
-
 /* One regime of the stiffness, from the approach x on, where it ends is written; false: the table is full. */
 static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, const double *c, double left,
                       double right, int steps, double *x)
@@ -118,23 +77,22 @@ static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, cons
         return false;
     const int n = 2 * (int)fmax(pairs, 1.0);
     const double step = (right - left) / n;
-    StateNode three[3];
-    const Node begin = node_at(spots, c, left, left, right, *x, &three[0]);
+    Point from = point_at(spots, c, left, left, right, *x);
     if (curve->n == 0) {
-        approach->closed = begin.y;
-        if (!close(approach, curve, &begin, three[0].value))
+        approach->closed = from.curve.y;
+        if (!close(approach, curve, &from))
             return false;
     }
-    curve_piece(curve, begin);
+    curve_piece(curve, from.curve);
     for (int i = 0; i < n; i++) {
         const double u = i + 1 == n ? right : left + (i + 1) * step;
         *x += rise(spots, c, left + i * step, 0.5 * step);
-        if (!curve_add(curve, node_at(spots, c, u, left, right, *x, &three[i % 2 + 1])))
+        const Point to = point_at(spots, c, u, left, right, *x);
+        if (!curve_add(curve, to.curve))
             return false;
-        if (i % 2 == 1) {
-            add_state(approach, curve, three);
-            three[0] = three[2];
-        }
+        for (int q = 0; q < N_LAW_STATE; q++)
+            curve_polynomial(&from.state[q], &to.state[q], approach->state[curve->n - 2][q]);
+        from = to;
     }
     return true;
 }
@@ -174,7 +132,7 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
 bool approach_exact(const Spots *spots, const double *c, double pressure, double u, double *value,
                     double *slope, Text *why)
 {
-    double rate, law[2 * N_LAW_STATE];
+    double rate, law[STATE_ROWS];
     if (!spots_solve(spots, c, pressure, &u, &rate, why))
         return false;
     law_state[spots_regime(spots, u)](&u, c, law);

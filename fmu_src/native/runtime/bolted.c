@@ -39,14 +39,18 @@ static void tighten(Joint *joint, const double *inputs)
     Kind *kind = &joint->kind;
     if (kind->tight && kind->preload == inputs[PRELOAD] && kind->moment == inputs[MOMENT])
         return;
+    const bool even = inputs[MOMENT] == 0.0;
+    kind->nodes = even ? EVEN_NODES : NODES;
+    kind->n_nodes = even ? N_EVEN_NODES : N_NODES;
     double bolts[2], tightened = 0.0, largest = -1.0;
+    int segment = 0;
     bolt_pressures(inputs + PRELOAD, joint->c, bolts);
-    for (int i = 0; i < N_NODES; i++) {
-        const double x[4] = {NODES[i][EQUAL], NODES[i][TILT], bolts[0], bolts[1]};
+    for (int i = 0; i < kind->n_nodes; i++) {
+        const double *node = kind->nodes[i], x[4] = {node[EQUAL], node[TILT], bolts[0], bolts[1]};
         double pressure, carried;
         shaped_pressure(x, joint->c, &pressure);
-        kind->start[i] = curve_inverse(&joint->curve, pressure, &carried);
-        tightened += NODES[i][SHARE] * carried;
+        kind->start[i] = curve_inverse(&joint->curve, pressure, &segment, &carried);
+        tightened += node[SHARE] * carried;
         if (pressure > largest) {
             largest = pressure;
             kind->tightest = i;
@@ -101,36 +105,39 @@ static void empty_slot(const Joint *joint, Moments *slot, Polynomials *sum)
     *slot = (Moments){.segment = 0};
 }
 
-static void add_moments(Moments *slot, int i, double t)
+static inline void add_moments(Moments *slot, const double *node, double t)
 {
     const double square = t * t, fourth = square * square;
     const double power[6] = {1.0, t, square, t * square, fourth, t * fourth};
     for (int k = 0; k < 5; k++) {
-        slot->share[k] += NODES[i][SHARE] * power[k];
-        slot->x2[k] += NODES[i][SHARE_X2] * power[k];
-        slot->y2[k] += NODES[i][SHARE_Y2] * power[k];
+        slot->share[k] += node[SHARE] * power[k];
+        slot->x2[k] += node[SHARE_X2] * power[k];
+        slot->y2[k] += node[SHARE_Y2] * power[k];
     }
-    slot->share[5] += NODES[i][SHARE] * power[5];
+    slot->share[5] += node[SHARE] * power[5];
 }
 
 static double inside(const Curve *curve, double x)
 {
-    return fmin(fmax(x, curve->first.x), curve->end.x);
+    return x < curve->first.x ? curve->first.x : (x > curve->end.x ? curve->end.x : x);
 }
 
 /* Add a node to a cell in whose middle its approach is x: to the sum if it is open or on one segment in all
- * of the cell, else to the list. */
-static void add_to_cell(Joint *joint, int i, double x, Polynomials *sum)
+ * of the cell, else to the list. The search begins at a segment and leaves the one that was found. */
+static inline void add_to_cell(Joint *joint, int i, double x, int *nearest, Polynomials *sum)
 {
+    const double *node = joint->kind.nodes[i];
     const Curve *curve = &joint->curve;
     Kind *kind = &joint->kind;
     const double low = x - 0.51 * kind->width, high = x + 0.51 * kind->width; /* half, and round-off */
     if (high < curve->first.x) { /* open: no pressure, and the works of the closing's end */
         for (int q = 0; q < N_LAW_STATE; q++)
-            sum->works[q][0] += NODES[i][SHARE] * kind->approach.state[0][q][0];
+            sum->works[q][0] += node[SHARE] * kind->approach.state[0][q][0];
         return;
     }
-    const int segment = curve_segment(curve, inside(curve, low));
+    int segment = *nearest;
+    if (!(low >= curve->x[segment] && low < curve->x[segment + 1]))
+        *nearest = segment = curve_segment(curve, inside(curve, low));
     if (!(low >= curve->first.x && high < curve->x[segment + 1])) {
         kind->list[kind->listed++] = (Passing){(unsigned short)i, (unsigned short)segment};
         return;
@@ -140,7 +147,7 @@ static void add_to_cell(Joint *joint, int i, double x, Polynomials *sum)
         empty_slot(joint, slot, sum);
         slot->segment = segment + 1;
     }
-    add_moments(slot, i, (x - curve->x[segment]) * curve->per[segment]);
+    add_moments(slot, node, (x - curve->x[segment]) * curve->per[segment]);
 }
 
 static void make_cell(Joint *joint, Cell *cell, double place)
@@ -152,8 +159,9 @@ static void make_cell(Joint *joint, Cell *cell, double place)
         kind->tightening++;
     }
     *cell = (Cell){.place = place, .tightening = kind->tightening, .first = kind->listed};
-    for (int i = 0; i < N_NODES; i++)
-        add_to_cell(joint, i, kind->start[i] - middle, &cell->sum);
+    int nearest = 0;
+    for (int i = 0; i < kind->n_nodes; i++)
+        add_to_cell(joint, i, kind->start[i] - middle, &nearest, &cell->sum);
     for (int k = 0; k < SLOTS; k++)
         empty_slot(joint, &kind->slots[k], &cell->sum);
     cell->passing = kind->listed - cell->first;
@@ -200,7 +208,7 @@ static bool add_outside(const Joint *joint, double x, double *curve, double *wor
 
 /* Add a node at an approach, times `weight`; the search begins at a segment that is not behind its own. With
  * `order` 0 the last derivative of each sum is left out. */
-static inline bool add_node(const Joint *joint, int i, int segment, double x, double weight, int order,
+static inline bool add_node(const Joint *joint, const double *node, int segment, double x, double weight, int order,
                             Sums *sums, Text *why)
 {
     const Curve *c = &joint->curve;
@@ -215,8 +223,7 @@ static inline bool add_node(const Joint *joint, int i, int segment, double x, do
     } else if (!add_outside(joint, x, curve, works, slopes, why)) {
         return false;
     }
-    const double share = weight * NODES[i][SHARE];
-    const double x2 = weight * NODES[i][SHARE_X2], y2 = weight * NODES[i][SHARE_Y2];
+    const double share = weight * node[SHARE], x2 = weight * node[SHARE_X2], y2 = weight * node[SHARE_Y2];
     for (int k = 0; k < 4 + order; k++)
         sums->pressure[k] += share * curve[k];
     for (int k = 0; k < 1 + order; k++) {
@@ -232,10 +239,10 @@ static inline bool add_node(const Joint *joint, int i, int segment, double x, do
 }
 
 /* Add a node that may be anywhere. */
-static bool add_any(const Joint *joint, int i, double x, double weight, Sums *sums, Text *why)
+static bool add_any(const Joint *joint, const double *node, double x, double weight, Sums *sums, Text *why)
 {
     const int segment = curve_segment(&joint->curve, inside(&joint->curve, x));
-    return add_node(joint, i, segment, x, weight, 1, sums, why);
+    return add_node(joint, node, segment, x, weight, 1, sums, why);
 }
 
 /* A polynomial at z and its first derivatives in the approach; `per` is that of z. */
@@ -257,8 +264,8 @@ static inline bool press(Joint *joint, double apart, int order, Sums *sums, Text
     Kind *kind = &joint->kind;
     *sums = (Sums){.pressure = {0.0}};
     if (!(fabs(apart) < FAR * kind->width)) {
-        for (int i = 0; i < N_NODES; i++)
-            if (!add_any(joint, i, kind->start[i] - apart, 1.0, sums, why))
+        for (int i = 0; i < kind->n_nodes; i++)
+            if (!add_any(joint, kind->nodes[i], kind->start[i] - apart, 1.0, sums, why))
                 return false;
         return true;
     }
@@ -272,7 +279,7 @@ static inline bool press(Joint *joint, double apart, int order, Sums *sums, Text
     for (int k = 0; k < cell->passing; k++) {
         const Passing *passing = &kind->list[cell->first + k];
         const double x = kind->start[passing->node] - apart;
-        if (!add_node(joint, passing->node, passing->segment, x, 1.0, order, sums, why))
+        if (!add_node(joint, kind->nodes[passing->node], passing->segment, x, 1.0, order, sums, why))
             return false;
     }
     return true;
@@ -312,33 +319,36 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
     return true;
 }
 
-/* Rates of a node's pressure and approach at tightening along a seed; an open node stays open. */
-static void tightening_rate(const Joint *joint, int i, const double *inputs, const double *seed,
-                            double *pressure, double *approach)
-{
-    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
-    double x[6] = {NODES[i][EQUAL], NODES[i][TILT]}, y[2];
-    bolt_pressures(at, joint->c, x + 2);
-    bolt_pressures_seed(at, joint->c, x + 4);
-    shaped_pressure_seed(x, joint->c, pressure);
-    curve_at(&joint->curve, joint->kind.start[i], 1, y);
-    if (!(y[1] > 0.0))
-        *pressure = 0.0;
-    *approach = y[1] > 0.0 ? *pressure / y[1] : 0.0;
-}
-
-/* Add the rates of all arguments of `outputs` by what a seed changes at tightening. */
+/* Add the rates of all arguments of `outputs` by what a seed changes at tightening, of all nodes: a moment
+ * that is none yet may become one. An open node stays open. */
 static bool add_tightening(const Joint *joint, const double *inputs, const double *seed, double *rates,
                            Text *why)
 {
-    const double apart = inputs[S_REL + 2];
+    const Curve *curve = &joint->curve;
+    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
+    double x[6], y[2], carried, pressure, rate, largest = -1.0;
+    int segment = 0;
     Sums sums = {.pressure = {0.0}};
+    bolt_pressures(at, joint->c, x + 2);
+    bolt_pressures_seed(at, joint->c, x + 4);
     for (int i = 0; i < N_NODES; i++) {
-        double pressure, approach;
-        tightening_rate(joint, i, inputs, seed, &pressure, &approach);
-        rates[SUM_TIGHTENED] += NODES[i][SHARE] * pressure;
-        if (!add_any(joint, i, joint->kind.start[i] - apart, approach, &sums, why))
+        x[0] = NODES[i][EQUAL];
+        x[1] = NODES[i][TILT];
+        shaped_pressure(x, joint->c, &pressure);
+        shaped_pressure_seed(x, joint->c, &rate);
+        const double start = joint->kind.nodes == NODES
+                                 ? joint->kind.start[i]
+                                 : curve_inverse(curve, pressure, &segment, &carried);
+        curve_at(curve, start, 1, y);
+        const double approach = y[1] > 0.0 ? rate / y[1] : 0.0;
+        rates[SUM_TIGHTENED] += NODES[i][SHARE] * approach * y[1];
+        if (!add_any(joint, NODES[i], start - inputs[S_REL + 2], approach, &sums, why))
             return false;
+        if (pressure > largest) {
+            largest = pressure;
+            curve_at(curve, start - inputs[S_REL + 2], 1, y);
+            rates[X_P_MAX] = y[1] * approach;
+        }
     }
     fill(&sums, 1, 1.0, rates);
     return true;
@@ -348,7 +358,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *seed, do
 {
     const Kind *kind = &joint->kind;
     const double apart = inputs[S_REL + 2];
-    double x[2 * N_X] = {0.0}, *rates = x + N_X, largest[2], pressure, approach;
+    double x[2 * N_X] = {0.0}, *rates = x + N_X, largest[2];
     Sums sums;
     Text ignored;
     text_clear(&ignored);
@@ -362,9 +372,8 @@ void joint_derivative(Joint *joint, const double *inputs, const double *seed, do
     x[SUM_TIGHTENED] = kind->tightened;
     memcpy(x + X_S_REL, inputs + S_REL, 6 * sizeof *x);
     memcpy(rates + X_S_REL, seed + S_REL, 6 * sizeof *x);
-    tightening_rate(joint, kind->tightest, inputs, seed, &pressure, &approach);
     curve_at(&joint->curve, kind->start[kind->tightest] - apart, 1, largest);
     x[X_P_MAX] = largest[0];
-    rates[X_P_MAX] = largest[1] * (approach - seed[S_REL + 2]);
+    rates[X_P_MAX] -= largest[1] * seed[S_REL + 2];
     outputs_seed(x, joint->c, result);
 }

@@ -49,6 +49,8 @@ typedef struct {
     bool tight;             /* the values at tightening are those of this preload and moment */
     double preload, moment;
     unsigned long long tightening; /* counted */
+    const double (*nodes)[5]; /* NODES, or without a moment the fewer EVEN_NODES */
+    int n_nodes;
     double start[N_NODES];  /* approach of each node at tightening */
     double tightened;       /* sum of the pressures times share */
     int tightest;           /* node with the largest pressure */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-static void polynomial(const Node *p, const Node *q, double *a)
+void curve_polynomial(const Node *p, const Node *q, double *a)
 {
     const double h = q->x - p->x;
     const double s0 = p->s * h, c0 = p->bend * h * h, s1 = q->s * h, c1 = q->bend * h * h;
@@ -43,7 +43,7 @@ static void measure(Curve *curve)
 {
     const Node *last = curve->last;
     double coarse[6];
-    polynomial(&last[0], &last[2], coarse);
+    curve_polynomial(&last[0], &last[2], coarse);
     const double length = last[2].x - last[0].x;
     for (int k = 0; k < 2; k++) {
         const double *fine = curve->a[curve->n - 3 + k];
@@ -65,7 +65,7 @@ bool curve_add(Curve *curve, Node node)
     curve->last[0] = curve->last[1];
     curve->last[1] = curve->last[2];
     curve->last[2] = node;
-    polynomial(&curve->last[1], &curve->last[2], curve->a[curve->n - 1]);
+    curve_polynomial(&curve->last[1], &curve->last[2], curve->a[curve->n - 1]);
     curve->x[curve->n++] = node.x;
     if (++curve->piece % 2 == 1)
         measure(curve);

@@ -69,6 +69,9 @@ void curve_piece(Curve *curve, Node node);
 bool curve_add(Curve *curve, Node node);
 void curve_finish(Curve *curve);
 
+/* The polynomial in t from 0 to 1 between two nodes. */
+void curve_polynomial(const Node *p, const Node *q, double *a);
+
 /* Segment that holds an x of the table, which ends with curve->end.x. */
 static inline int curve_segment(const Curve *curve, double x)
 {
@@ -143,11 +146,13 @@ static inline double curve_guess(const Curve *curve, int i, double load)
 double curve_inverse_safe(const Curve *curve, double load);
 
 /* The same, and the load at the displacement as it is rounded: one step of third order from the cubic, where
- * that is near enough for round-off. */
-static inline double curve_inverse(const Curve *curve, double load, double *carried)
+ * that is near enough for round-off. The search begins at a segment, 0 if none is known, and leaves its own. */
+static inline double curve_inverse(const Curve *curve, double load, int *segment, double *carried)
 {
     if (load > curve->first.y && load < curve->end.y) {
-        const int i = curve_segment_of_load(curve, load);
+        int i = *segment;
+        if (!(load >= curve->a[i][0] && load < curve->a[i + 1][0]))
+            *segment = i = curve_segment_of_load(curve, load);
         const double *a = curve->a[i];
         const double t = curve_guess(curve, i, load), s = curve_slope(a, t);
         const double bend = (a[2] + t * 3.0 * a[3]) + t * t * (6.0 * a[4] + t * 10.0 * a[5]); /* half of it */

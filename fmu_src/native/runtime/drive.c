@@ -261,8 +261,11 @@ bool kind_tabulate(Joint *joint, Text *why)
 static void look_up(const Joint *joint, const double *inputs, int order, double *x, double *y)
 {
     double at, carried;
+    int nearest = 0;
     argument(inputs, joint->c, &at);
-    const double size = fabs(at), phi = ARGUMENT_IS_LOAD ? curve_inverse(&joint->curve, size, &carried) : size;
+    const double size = fabs(at);
+    const double phi =
+        ARGUMENT_IS_LOAD ? curve_inverse(&joint->curve, size, &nearest, &carried) : size;
     curve_at(&joint->curve, phi, order, y);
     *x = copysign(phi, at);
     y[0] = copysign(y[0], at);

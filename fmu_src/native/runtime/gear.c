@@ -26,7 +26,8 @@ static bool look_up(const Joint *joint, double pressure, double *x, double *slop
     const Kind *kind = &joint->kind;
     const Curve *curve = &joint->curve;
     double y[3], carried;
-    const double delta = curve_inverse(curve, pressure, &carried);
+    int nearest = 0;
+    const double delta = curve_inverse(curve, pressure, &nearest, &carried);
     curve_at(curve, delta, 2, y);
     const double compliance = y[1] > 0.0 ? 1.0 / y[1] : 0.0;
     x[0] = delta - curve->x[0];
