@@ -308,7 +308,10 @@ def _numbers(g: Graph, model: Model, names: dict[str, int]) -> tuple[dict[str, s
         names |= {f"SUM_{name.upper()}": k for k, name in enumerate(bolted_joint.SUMS)}
         names["N_SUMS"] = len(bolted_joint.SUMS)
         names |= {name: k for k, name in enumerate(("SHARE", "SHARE_X2", "SHARE_Y2", "EQUAL", "TILT"))}
-        for name, rows in (("NODES", nodes(shape.merged())), ("EVEN_NODES", nodes(shape.merged(moment=False)))):
+        for name, rows in (
+            ("NODES", nodes(shape.merged())),
+            ("EVEN_NODES", nodes(shape.merged(moment=False))),
+        ):
             names[f"N_{name}"] = len(rows)
             texts = [", ".join(_number(x) for x in row) for row in rows]
             arrays[f"{name}[N_{name}][5]"] = [f"{{{text}}}" for text in texts]

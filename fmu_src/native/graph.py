@@ -201,10 +201,18 @@ def _law(g: Graph, law: Any, table: Sequence[str], state: Any = None) -> None:
         g.add(f"law_table_{k}", doc, [u], rows)
         if state is not None:
             y = ca.vertcat(*map(ca.SX, state(regime, u)))
-            slope, rate = ca.jacobian(y, u), regime.total("normal", u) / regime.slope("load", u)
+            slope = ca.jacobian(y, u)
             doc = "log-area -> state, its slopes, theirs, slope of du/d approach"
-            rows = [y, slope, ca.jacobian(slope, u), ca.jacobian(rate, u)]
+            rows = [y, slope, ca.jacobian(slope, u), _rate_slope(regime, u)]
             g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
+
+
+def _rate_slope(spots: Spots, u: Any) -> Any:
+    """Slope of du/d approach = K/F' in u, without a derivative of the sums."""
+    largest = sum(term.spot(u) for term in spots.terms["load"])
+    rise = spots.slope("load", u)
+    bend = spots.m * (rise + spots.weight * ca.jacobian(largest, u))
+    return (spots.slope("normal", u) - spots.total("normal", u) * bend / rise) / rise
 
 
 def _closing(g: Graph) -> None:

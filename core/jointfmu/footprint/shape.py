@@ -41,7 +41,7 @@ class PressureShape:
         tilt = self.tilt if moment else 0.0 * self.tilt
         keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
         _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        share = np.bincount(group.ravel(), self.share)
+        share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
         return MergedShape(share, self.equal[first], tilt[first], x2, y2)
 

@@ -55,7 +55,9 @@ def bolt_pattern(joint: BoltedJoint) -> BoltPattern:
     )
 
 
-def pressures(joint: BoltedJoint, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike) -> Array:
+def pressures(
+    joint: BoltedJoint, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
+) -> Array:
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row

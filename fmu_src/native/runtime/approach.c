@@ -1,3 +1,4 @@
+/* Repeats `approach_curve` of the package: the table for every parameter set; the laws in it are generated. */
 #include "approach.h"
 
 #include <math.h>

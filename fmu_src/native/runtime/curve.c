@@ -1,3 +1,4 @@
+/* Repeats `Curve` and `assemble` of the package, with faster ways to find a segment. */
 #include "curve.h"
 
 #include <math.h>

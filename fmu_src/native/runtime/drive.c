@@ -1,3 +1,5 @@
+/* Repeats harmonic_drive.py of the package, `stiffness_tables`, `pair_table` and `torque_curve`: the sums and
+ * tables that are made for every parameter set; the laws in them are generated. */
 #include "drive.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Repeats `largest_spot` of the package for a single pressure; the law in it is generated. */
 #include "spots.h"
 
 #include <math.h>
