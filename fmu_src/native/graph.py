@@ -14,7 +14,7 @@ from jointfmu.curve import closing
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
-from jointfmu.quantity import Limit, build, flatten
+from jointfmu.quantity import Limit, build
 
 Symbols = Sequence[Any]
 
@@ -88,7 +88,7 @@ def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph",
     ca.GlobalOptions.setNumpyMode(1)
     try:
         theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
-        joint = build(model.parameters, {**flatten(parameters.values), **theta})
+        joint = build(model.parameters, {**parameters.flat, **theta})
         found = Graph(theta, joint, limits(joint))
         functions(found, model)
         if found.has_law:
