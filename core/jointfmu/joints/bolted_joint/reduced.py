@@ -25,7 +25,8 @@ from ...quantity import flatten
 from ..model import Variable
 from ..reduced import Reduced
 from . import KIND
-from .spring import BoltedJoint, BoltedJointSpring, node_pressure, shear_ratio
+from .law import BoltedJoint, node_pressure, shear_ratio
+from .spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
 

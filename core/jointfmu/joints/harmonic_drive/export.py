@@ -3,7 +3,8 @@
 from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
-from .spring import HarmonicDrive, HarmonicDriveSpring
+from .law import HarmonicDrive
+from .spring import HarmonicDriveSpring
 
 if TYPE_CHECKING:
     from ...export.tables import Table

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from ....export.exports import Exports, LoadCurve
 from ....quantity import quantity
-from ..spring import BoltedJoint, BoltedJointSpring, shear_ratio
+from ..law import BoltedJoint, shear_ratio
+from ..spring import BoltedJointSpring
 
 if TYPE_CHECKING:
     from ....curve import Curve
