@@ -117,7 +117,8 @@ def motion(
     K_t = rho * K_n
     eta_n = sums["plastic"] / sums["elastic"]
     eta_t = mindlin.loss_factor(joint.traction_ratio)
-    C_n, C_t = eta_n * np.sqrt(joint.mass * K_n), eta_t * np.sqrt(joint.mass * K_t)
+    C_n = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
+    C_t = mindlin.viscous_equivalent(eta_t, joint.mass, K_t)
     K_rx, K_ry = area * sums["about_x"], area * sums["about_y"]
     return {
         "f_x": 0.0 - K_t * s_rel[0] - C_t * v_rel[0],
