@@ -11,6 +11,7 @@ class Beyond(NamedTuple):
     """Where the table ends: an input far beyond it, what answers, its stiffness, what the warning says.
 
     inverse : the stiffness is that of the input over the answer, not of the answer over the input
+    lever   : of the input, by which the answer's slope is larger than the stiffness
     """
 
     driven: str
@@ -19,6 +20,7 @@ class Beyond(NamedTuple):
     stiffness: str
     text: str
     inverse: bool = False
+    lever: float = 1.0
 
 
 class Refused(NamedTuple):
@@ -45,8 +47,10 @@ class Case:
     outputs        : (spring, inputs) -> outputs, by the spring's own function
     inputs, results, parameters : the contract, {variable: unit}; the FMU may have more
     ranges         : inputs of random states, all inside the tables
+    place          : makes inputs of random numbers in `ranges`, where not each range stands for itself
     span           : inputs over the range of the tables, for the benchmark
     state          : one state with nothing zero
+    sizes          : of inputs, for differences, where `state` does not give them
     good           : what is set for an ordinary state, the other inputs zero
     rest           : inputs that are not zero where nothing moves
     base           : parameters with which every other one has its effect
@@ -76,8 +80,10 @@ class Case:
     results: Mapping[str, str]
     parameters: Mapping[str, str]
     ranges: Mapping[str, tuple[float, float]]
+    place: Callable[[Inputs], Inputs] = dict
     span: Mapping[str, tuple[float, float]]
     state: Inputs
+    sizes: Inputs = field(default_factory=dict)
     good: Inputs
     rest: Inputs = field(default_factory=dict)
     base: Mapping[str, Any] = field(default_factory=dict)

@@ -58,8 +58,9 @@ TUNED = {name: case.tuned for name, case in CASES.items()}
 
 def random_inputs(name: str, count: int, seed: int) -> list[Inputs]:
     """Inputs at random, inside the tables."""
-    rng = np.random.default_rng(seed)
-    return [{k: float(rng.uniform(*limits)) for k, limits in RANGES[name].items()} for _ in range(count)]
+    rng, ranges = np.random.default_rng(seed), CASES[name].ranges
+    drawn = [{k: float(rng.uniform(*limits)) for k, limits in ranges.items()} for _ in range(count)]
+    return [CASES[name].place(inputs) for inputs in drawn]
 
 
 def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:

@@ -76,7 +76,7 @@ def differences(
     name: str, state: Inputs, moved: str, changes: dict[str, Any] | None = None
 ) -> tuple[dict[str, float], float]:
     """Derivatives by central differences of fourth order of the package, and the size of the input."""
-    expected, size = package(name, changes), abs(STATE[name][moved])
+    expected, size = package(name, changes), abs((STATE[name] | CASES[name].sizes)[moved])
     h = 1e-3 * size
     up, down, far, back = (expected(state | {moved: state[moved] + k * h}) for k in (1, -1, 2, -2))
     return {o: (8.0 * (up[o] - down[o]) - (far[o] - back[o])) / (12.0 * h) for o in up}, size

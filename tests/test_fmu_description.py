@@ -26,7 +26,7 @@ SHOWN = {"deg": DEGREE, "arcmin": DEGREE / 60.0, "rev/min": 2.0 * math.pi / 60.0
 PREFIX = {"M": 1e6, "G": 1e9, "k": 1e3, "m": 1e-3, "u": 1e-6}
 BASE: dict[str, dict[str, int]] = {
     "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "rad": {"rad": 1}, "1": {},
-    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2},
+    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
 }  # fmt: skip
 
 

@@ -133,7 +133,7 @@ def test_an_instance_may_move_between_threads(fmu: Host) -> None:
 @pytest.fixture(scope="module")
 def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("other_parameters")
-    for joint in ("harmonic_drive", "bolted_joint", "gear_contact"):
+    for joint in KINDS:
         build([], ["python"], default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out)
     return out / "python"
 

@@ -268,7 +268,7 @@ def test_a_wrong_call_repeated_by_the_host_does_not_crash_the_process(fmus: Path
 def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     fmu: Host, name: str, beyond: Beyond
 ) -> None:
-    driven, far, answer, stiffness, text, inverse = beyond
+    driven, far, answer, stiffness, text, inverse, lever = beyond
     instance = fmu(name).start(GOOD[name])
     assert not instance.messages
     x, found = [far, 1.5 * far, 2.0 * far], []
@@ -284,7 +284,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     y = [f[answer] for f in found]
     # a straight line: three points, to round-off of values much larger than their difference
     assert y[2] - y[1] == pytest.approx(y[1] - y[0], rel=1e-9)
-    slope = abs((y[1] - y[0]) / (x[1] - x[0]))
+    slope = abs((y[1] - y[0]) / (x[1] - x[0])) / lever
     if inverse:
         slope = 1.0 / slope
     assert [f[stiffness] for f in found] == pytest.approx([slope] * 3, rel=1e-9)

@@ -512,7 +512,9 @@ def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
             assert step > 0.0
         else:
             assert flow.get("variableKind") == "outflow"
-            step = outputs(name, rest | {motion: 1e-7})[variable] - outputs(name, rest)[variable]
+            step = (
+                outputs(name, rest | {motion: rest[motion] + 1e-7})[variable] - outputs(name, rest)[variable]
+            )
             assert step < 0.0
 
 

@@ -28,7 +28,7 @@ def name(request: pytest.FixtureRequest) -> str:
 def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     host: Host, version: str, exchange: bool, name: str, beyond: Beyond
 ) -> None:
-    driven, far, answer, stiffness, text, inverse = beyond
+    driven, far, answer, stiffness, text, inverse, lever = beyond
     instance = host(name, version, exchange=exchange).start(GOOD[name])
     assert not instance.warnings
     x, found = [far, 1.5 * far, 2.0 * far], []
@@ -40,7 +40,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     assert not [m for m in instance.messages if m.status > 1]
     y = [f[answer] for f in found]
     assert y[2] - y[1] == close(y[1] - y[0])  # a straight line
-    tangent = abs((y[1] - y[0]) / (x[1] - x[0]))
+    tangent = abs((y[1] - y[0]) / (x[1] - x[0])) / lever
     slope = 1.0 / tangent if inverse else tangent
     assert [f[stiffness] for f in found] == close([slope] * 3)
     instance.reset()
