@@ -68,7 +68,7 @@ def run(out: Path) -> Outcome:
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, folder, result)
-        outcome.checks += [same(name, out / other, result) for other in FLAVOURS if out / other != folder]
+        outcome.checks += [same(name, out / beside, result) for beside in FLAVOURS if out / beside != folder]
     for path in (p for p in outcome.systems if p.suffix == ".fmu"):
         outcome.problems += [f"{path.parent.name}/{path.stem}: {text}" for text in validate_fmu(str(path))]
     for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):

@@ -68,8 +68,8 @@ def parser() -> CommandLine:
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
-    for one in COMMANDS:
-        one.add(commands)
+    for command in COMMANDS:
+        command.add(commands)
     return top
 
 

@@ -116,14 +116,14 @@ def number(cell: str) -> float | None:
 
 def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float]]:
     """{name: (place, size of its unit)} of the columns asked for."""
-    found: dict[str, tuple[int, float]] = {}
+    places: dict[str, tuple[int, float]] = {}
     for place, cell in enumerate(head):
         match = _HEADING.match(cell)
         name = match["name"].lower() if match else ""
         if not match or name not in spec:
             continue
         allowed = ", ".join(spec[name])
-        if name in found:
+        if name in places:
             raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
         if match["unit"] is None:
             raise ValueError(
@@ -131,11 +131,11 @@ def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[
             )
         if match["unit"] not in spec[name]:
             raise ValueError(f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed}")
-        found[name] = place, spec[name][match["unit"]]
-    if not found:
+        places[name] = place, spec[name][match["unit"]]
+    if not places:
         shown = ", ".join(cell.strip() for cell in head)[:80]
         raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
-    return found
+    return places
 
 
 def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]) -> Array:

@@ -137,13 +137,13 @@ def entries(
 
 
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    found: list[tuple[str, Any]] = []
+    leaves: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            found += _leaves(value, f"{prefix}{key}.")
+            leaves += _leaves(value, f"{prefix}{key}.")
         else:
-            found.append((prefix + key, value))
-    return found
+            leaves.append((prefix + key, value))
+    return leaves
 
 
 def _input_fields(joint: str) -> dict[str, Field[Any]]:
@@ -161,8 +161,8 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
     problems = [f"unknown name {name!r}" for name in given if name not in declared]
     if problems:
         problems.append(f"allowed are {', '.join(declared)}")
-    found = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
-    problems += [text for text in found if text]
+    texts = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
+    problems += [text for text in texts if text]
     if problems:
         raise ValueError("; ".join(problems))
     return {name.removeprefix(_INPUTS): float(value) for name, value in given.items()}

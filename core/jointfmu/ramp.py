@@ -169,8 +169,8 @@ def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
     """
     from . import host
 
-    one = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
-    fmu = one(
+    flavour = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
+    fmu = flavour(
         guid=md.guid,
         unzipDirectory=folder,
         modelIdentifier=md.coSimulation.modelIdentifier,

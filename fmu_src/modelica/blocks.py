@@ -77,7 +77,7 @@ def _takes_motion(model: Model) -> bool:
 
 def _other(model: Model) -> str:
     """The FMU of the same joint that belongs between inertias, if there is one."""
-    names = [other.name for other in KINDS[model.joint].models if _takes_motion(other)]
+    names = [sibling.name for sibling in KINDS[model.joint].models if _takes_motion(sibling)]
     return f" or the FMU {names[0]}" if names else ""
 
 

@@ -81,8 +81,8 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
     packages = {
         "Examples": _examples(joints),
         "Components": _components(joints) | _plain(shared, "Components", _PARTNERS),
-        "Wrappers": {name: model.render(wrapper(each)) for name, each in MODELS.items()},
-        "Interfaces": {name: block.render(interface(each)) for name, each in MODELS.items()},
+        "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
+        "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
         "Data": _data(joints),
         "Functions": _plain(shared, "Functions", _FUNCTIONS),
     }

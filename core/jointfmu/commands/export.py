@@ -125,11 +125,11 @@ def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
 
 def _state(args: argparse.Namespace, joint: str) -> Any:
     """The joint's working point, None where none is stated."""
-    made = exports.of(joint)
-    values = {name: getattr(args, name) for name in made.working_point}
-    if made.state is None or all(value is None for value in values.values()):
+    offered = exports.of(joint)
+    values = {name: getattr(args, name) for name in offered.working_point}
+    if offered.state is None or all(value is None for value in values.values()):
         return None
-    return made.state(**{name: value or 0.0 for name, value in values.items()})
+    return offered.state(**{name: value or 0.0 for name, value in values.items()})
 
 
 def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:

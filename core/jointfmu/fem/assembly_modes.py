@@ -53,14 +53,14 @@ def frequencies(
     """
     law = approach_curve(replace(joint, A_0=assembly.contact_area))
     contact = BoltedContact.of(assembly, refinement)
-    found = []
+    rows = []
     for preload, moment in states:
         if even:
             force = float(assembly.bolt_forces(preload, moment).sum())
-            found.append(uniform(contact, law, force, shear, count).frequency)
+            rows.append(uniform(contact, law, force, shear, count).frequency)
         else:
-            found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
-    return np.array(found)
+            rows.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
+    return np.array(rows)
 
 
 def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> Modes:

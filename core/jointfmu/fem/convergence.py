@@ -78,8 +78,8 @@ def orders(rows: Sequence[MeshResult]) -> dict[str, float]:
         return {}
     before, after = changes(rows)[-2:]
     ratio = math.log(rows[-1].refinement / rows[-2].refinement)
-    found = {}
+    observed = {}
     for name in COLUMNS:
         falls = 0.0 < abs(after[name]) < abs(before[name])
-        found[name] = math.log(abs(before[name] / after[name])) / ratio if falls else math.nan
-    return found
+        observed[name] = math.log(abs(before[name] / after[name])) / ratio if falls else math.nan
+    return observed

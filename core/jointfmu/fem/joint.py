@@ -99,11 +99,11 @@ class JointSolution:
 
 def midway(bolts: Array) -> Array:
     """Middles (k, 2) [m] of neighbouring bolts: no third one lies in the circle on their connection."""
-    found = []
+    middles = []
     for i in range(len(bolts)):
         for j in range(i):
             middle = 0.5 * (bolts[i] + bolts[j])
             apart = np.hypot(*(bolts - middle).T)
             if np.sum(apart < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
-                found.append(middle)
-    return np.array(found).reshape(-1, 2)
+                middles.append(middle)
+    return np.array(middles).reshape(-1, 2)

@@ -36,9 +36,9 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
             elif kind == "more":
                 elements[-1] += [int(x) for x in row]
             else:
-                found: dict[int, object] = values if kind == "pressure" else places  # type: ignore[assignment]
+                listed: dict[int, object] = values if kind == "pressure" else places  # type: ignore[assignment]
                 name, value = int(row[0]), row[1] if kind == "pressure" else tuple(row[1:])
-                if found.setdefault(name, value) != value:
+                if listed.setdefault(name, value) != value:
                     raise ValueError(f"{where}: node {name} has a second {kind}, expected one")
     first = paths[0]
     for table, text in (
@@ -63,9 +63,9 @@ def _result(
     if missing := [node for node in used if node not in places]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
     if stray := sorted(values.keys() - set(used)):
-        others = [node for node in stray if values[node] != 0.0]
-        if others:
-            raise ValueError(f"{path}: node {others[0]} has a pressure and is in no listed element (ELIST)")
+        loaded = [node for node in stray if values[node] != 0.0]
+        if loaded:
+            raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
     index = {name: i for i, name in enumerate(used)}
     return NodalResult(
         path=path,
@@ -79,7 +79,7 @@ def _result(
 
 def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int]) -> list[Nodes]:
     """Elements of one size together; a quadrilateral whose third and fourth node agree is a triangle."""
-    found: dict[int, list[list[int]]] = {}
+    blocks: dict[int, list[list[int]]] = {}
     for element in elements:
         nodes = [node for node in element if node]
         if len(nodes) == 8 and nodes[2] == nodes[3]:
@@ -91,8 +91,8 @@ def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int])
                 f"{path}: an element has {len(nodes)} nodes, expected contact elements with 3, 4, 6 or 8: "
                 "select them before ELIST"
             )
-        found.setdefault(len(nodes), []).append([index[node] for node in nodes])
-    return [np.array(rows, dtype=np.intp) for rows in found.values()]
+        blocks.setdefault(len(nodes), []).append([index[node] for node in nodes])
+    return [np.array(rows, dtype=np.intp) for rows in blocks.values()]
 
 
 def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:

@@ -87,12 +87,12 @@ def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
 
 
 def _start(path: Path, lines: list[str], key: str, what: str) -> int:
-    found = [i for i, line in enumerate(lines) if line.startswith(key)]
-    if not found:
+    starts = [i for i, line in enumerate(lines) if line.startswith(key)]
+    if not starts:
         raise ValueError(f"{path}: has no {what}, expected a block {key.strip()}")
-    if lines[found[-1]].rstrip().endswith(("2", "3")):
-        raise ValueError(f"{path}: line {found[-1] + 1}: is binary, expected an ASCII .frd file")
-    return found[-1]
+    if lines[starts[-1]].rstrip().endswith(("2", "3")):
+        raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
+    return starts[-1]
 
 
 def _nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
@@ -117,7 +117,7 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
 
 
 def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, Nodes]:
-    found: dict[str, list[list[int]]] = {}
+    cells: dict[str, list[list[int]]] = {}
     kind, count = "", 0
     nodes: list[int] = []
     for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
@@ -132,9 +132,9 @@ def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, 
                 f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
             ) from None
         if len(nodes) == count:
-            found.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(count))])
+            cells.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(count))])
     return {
-        kind: np.array(rows, dtype=np.intp) for kind, rows in found.items() if not kind.startswith("line")
+        kind: np.array(rows, dtype=np.intp) for kind, rows in cells.items() if not kind.startswith("line")
     }
 
 

@@ -60,9 +60,9 @@ def _read(path: Path) -> Any:
         ) from None
 
 
-def _values(path: Path, found: dict[str, Any], data: str | None) -> Array:
+def _values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
     """One number per node."""
-    shown = {name: np.asarray(value) for name, value in found.items()}
+    shown = {name: np.asarray(value) for name, value in point_data.items()}
     there = (
         ", ".join(f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in shown.items()) or "none"
     )

@@ -51,8 +51,8 @@ class Reading:
         if self.open == "drop":
             kept = first.pressure > 0.0
         elif self.open == "refuse":
-            for one in filter(None, (first, second)):
-                _refuse_open(one)
+            for surface in filter(None, (first, second)):
+                _refuse_open(surface)
         if second is None:
             return first.field(kept), None
         if second.area.size != first.area.size:
@@ -103,10 +103,10 @@ class Reading:
                 raise ValueError(f"{path}: {name} {given}: a CSV file states units and plane in its heading")
 
 
-def _refuse_open(found: Surface) -> None:
-    open_nodes = np.flatnonzero(found.pressure == 0.0)
+def _refuse_open(surface: Surface) -> None:
+    open_nodes = np.flatnonzero(surface.pressure == 0.0)
     if open_nodes.size:
         raise ValueError(
-            f"{found.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
-            f"{found.area.size} nodes; state --open keep (they just touch) or --open drop (they never do)"
+            f"{surface.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+            f"{surface.area.size} nodes; state --open keep (they just touch) or --open drop (they never do)"
         )

@@ -83,9 +83,9 @@ def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pres
     rng, sums = np.random.default_rng(SEED), Sums.of(joint, preload, pressures)
     for size in (CANDIDATES, 2 * CANDIDATES, 4 * CANDIDATES):
         few = rng.choice(nodes, min(size, nodes), replace=False)
-        found = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))
-        if found is not None:
-            return found
+        reduction = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))
+        if reduction is not None:
+            return reduction
         if size >= nodes:
             break
     if nodes <= MOST:
@@ -155,13 +155,13 @@ def _weights(
         kept = directions[size > least * size[0]]
         scale = np.sqrt(size[: len(kept)])[:, None]
         try:
-            found, _ = nnls((kept @ columns.T) / scale, (kept @ rest) / scale[:, 0], maxiter=50 * len(kept))
+            shares, _ = nnls((kept @ columns.T) / scale, (kept @ rest) / scale[:, 0], maxiter=50 * len(kept))
         except RuntimeError:  # too many steps
             break
-        miss = float(np.max(np.abs(found @ columns - rest)))
+        miss = float(np.max(np.abs(shares @ columns - rest)))
         if miss > error:
             break
-        best, error = fixed + found, miss
+        best, error = fixed + shares, miss
         if error <= AIM * TOLERANCE:
             break
     return best if error <= LET_PASS * TOLERANCE else None

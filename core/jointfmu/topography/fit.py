@@ -97,11 +97,11 @@ def _search(series: Series) -> Fit:
     for length, negative, j in windows:
         if length < SHORTEST and tried:
             break
-        found = _fit(series.within(np.arange(-negative, j)))
-        if found.straight:
-            return found
-        tried.append(found)
-    return min(tried, key=lambda one: abs(one.drift) + one.deviation)
+        candidate = _fit(series.within(np.arange(-negative, j)))
+        if candidate.straight:
+            return candidate
+        tried.append(candidate)
+    return min(tried, key=lambda fitted: abs(fitted.drift) + fitted.deviation)
 
 
 def _fit(series: Series) -> Fit:
@@ -168,6 +168,6 @@ def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
     columns = [np.ones_like(t), t, t**2]
     white = solve_triangular(root, np.stack(columns, axis=1), lower=True)
     inverse = np.linalg.inv(white.T @ white)
-    found = inverse @ white.T @ solve_triangular(root, residual, lower=True)
+    coefficients = inverse @ white.T @ solve_triangular(root, residual, lower=True)
     length = float(x[-1] - x[0])
-    return float(-found[2] * length), float(np.sqrt(inverse[2, 2]) * length)
+    return float(-coefficients[2] * length), float(np.sqrt(inverse[2, 2]) * length)

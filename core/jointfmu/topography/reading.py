@@ -71,8 +71,8 @@ def _instrument(path: Path, unit: str | None) -> Heights:
         quiet = io.StringIO()
         with warnings.catch_warnings(), contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
             warnings.simplefilter("ignore")
-            found = SurfaceTopography.read_topography(str(path))
-            size, heights = found.physical_sizes, found.heights()
+            topography = SurfaceTopography.read_topography(str(path))
+            size, heights = topography.physical_sizes, topography.heights()
     except SurfaceTopography.Exceptions.CannotDetectFileFormat:
         raise ValueError(
             f"{path}: is no surface: neither our CSV nor a format of SurfaceTopography"
@@ -80,7 +80,7 @@ def _instrument(path: Path, unit: str | None) -> Heights:
     except Exception as error:  # the readers raise what they like
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
-    return _heights(path, found, size, heights, _factor(path, found.unit, unit))
+    return _heights(path, topography, size, heights, _factor(path, topography.unit, unit))
 
 
 def _factor(path: Path, stated: str | None, given: str | None) -> float:
@@ -98,13 +98,13 @@ def _factor(path: Path, stated: str | None, given: str | None) -> float:
     return float(factor)
 
 
-def _heights(path: Path, found: Any, size: Any, heights: Any, factor: float) -> Heights:
+def _heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:
     """Heights on our axes (y, x), missing points as NaN."""
     z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * factor
     if size is None or any(length is None for length in size):
         raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")
-    if z.ndim == 1 and not found.is_uniform:
-        x = np.asarray(found.positions(), dtype=np.float64) * factor
+    if z.ndim == 1 and not topography.is_uniform:
+        x = np.asarray(topography.positions(), dtype=np.float64) * factor
         return csvfile.columns(path, np.stack([x, z], axis=1), [1.0, 1.0])
     spacing = [float(length) * factor / n for length, n in zip(size, z.shape, strict=True)]
     if z.ndim == 1:
