@@ -9,7 +9,6 @@ from xml.etree.ElementTree import Element, SubElement, fromstring
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
-from jointfmu.quantity import flatten
 from jointfmu.systems import System, system, systems
 from jointfmu.units import UNITS
 
@@ -92,7 +91,7 @@ def values(example: System, component: str, fmu: str, joint: ParameterFile) -> d
     if fmu in MODELS:
         model = MODELS[fmu]
         fields = model.parameter_fields()
-        given = {n: v for n, v in flatten(joint.values).items() if n in fields}
+        given = {n: v for n, v in joint.flat.items() if n in fields}
         own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
         inputs = {v.name: v.unit for v in model.inputs}
         return own | {n: (v, inputs[n]) for n, v in example.joint_state.items()}

@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flatten
+from jointfmu.quantity import Interval
 from jointfmu.units import UNITS, display_unit
 
 
@@ -49,7 +49,7 @@ class Unknown(NamedTuple):
 
 def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
     """All variables in the order of their value references, which count from 1."""
-    values = flatten(parameters.values)
+    values = parameters.flat
     variables: list[Listed] = []
     for causality, group in (("input", model.inputs), ("output", model.outputs)):
         for i, v in enumerate(group):

@@ -12,7 +12,7 @@ from jointfmu import cli
 from jointfmu.joints import KINDS
 from jointfmu.joints.reduced import reduced
 from jointfmu.parameters import default
-from jointfmu.quantity import build, flatten
+from jointfmu.quantity import build, flat_fields, flatten
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.problem import pose
 
@@ -98,8 +98,8 @@ def test_reduced_evaluation_against_the_springs(name):
 @pytest.mark.parametrize("joint", KINDS)
 def test_one_sample_does_not_see_its_neighbours(joint):
     """Blocks share places of interpolation: the order of the error, not more."""
-    names = {"harmonic_drive": "surface.D", "bolted_joint": "surface.D", "gear_contact": "surface1.D"}
-    task = pose(default(joint), {names[joint]: "+-2%"}, None, 7)
+    dimension = next(name for name in flatten(default(joint).values) if name.endswith(".D"))
+    task = pose(default(joint), {dimension: "+-2%"}, None, 7)
     points = propagate.design(task, 64, 0)[0]
     together = propagate.run(task, points, task.loads, "")
     alone = propagate.run(task, points[40:41], task.loads, "")
@@ -269,8 +269,9 @@ def test_every_parameter_can_be_uncertain():
     """+-1 % of any number that is not counted or zero, in one study per joint."""
     for joint in KINDS:
         values = flatten(default(joint).values)
-        skipped = ("n_bolts", "row_bolts")
-        names = [n for n, v in values.items() if isinstance(v, float) and v and n not in skipped]
+        declared = dict(flat_fields(KINDS[joint].parameters))
+        counted = {name for name, item in declared.items() if item.metadata.get("whole")}
+        names = [n for n, v in values.items() if isinstance(v, float) and v and n not in counted]
         names = [n for n in names if not n.startswith("pattern.")]  # one by one, see above
         given = {name: "+-1%" for name in names if name != "traction_ratio"}
         task = pose(default(joint), given, None, 3)

@@ -40,6 +40,7 @@ class ParameterFile:
     values  : the parameter set, an instance of KINDS[joint].parameters
     origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`
     inputs  : {input: start value in its SI unit}, where it is given
+    flat    : {structured name: value} of `values`, opened once
     """
 
     joint: str
@@ -48,6 +49,10 @@ class ParameterFile:
     origins: Mapping[str, str]
     sources: Mapping[str, str]
     inputs: Mapping[str, float] = field(default_factory=dict)
+    flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "flat", flatten(self.values))
 
     def start(self, name: str) -> float:
         """Start value of an input, in its SI unit: zero unless it is given."""
@@ -171,7 +176,7 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
 def dump(parameters: ParameterFile) -> str:
     """The parameter set, with the start values of inputs, as the text of a parameter file."""
     declared = dict(flat_fields(type(parameters.values)))
-    values = sorted(flatten(parameters.values).items(), key=lambda item: "." in item[0])
+    values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
         values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]

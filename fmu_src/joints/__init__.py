@@ -16,7 +16,7 @@ def package(kind: Kind) -> str:
 def part(kind: Kind, builder: str) -> ModuleType | None:
     """What a builder finds in the joint's folder, the module of the builder's name; None if there is none."""
     name = f"{package(kind)}.{builder}"
-    return import_module(name) if find_spec(name) else None
+    return import_module(name) if find_spec(package(kind)) and find_spec(name) else None
 
 
 def folder(kind: Kind) -> Path:

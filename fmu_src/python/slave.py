@@ -20,7 +20,7 @@ from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import load
-from jointfmu.quantity import build, flatten
+from jointfmu.quantity import build
 from jointfmu.stamp import build_time
 
 T = TypeVar("T")
@@ -70,7 +70,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
         file = load(Path(self.resources) / "parameters.toml", self.model.joint)
-        self.start = flatten(file.values)
+        self.start = dict(file.flat)
         self.listed = listed(self.model, file)
         self.fields = self.model.parameter_fields()
         self.values: dict[str, Any] = {

@@ -8,7 +8,7 @@ from ..footprint.shape import PressureShape
 from ..joints import KINDS
 from ..joints.clamped import Clamped, clamping
 from ..parameters import ORIGINS, ParameterFile
-from ..quantity import build, flatten
+from ..quantity import build
 from .contact import Array, ContactField
 from .reduction import Reduction, reduce
 
@@ -61,7 +61,7 @@ def with_field(
     }
     given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
     given["A_0"] = float(np.sum(field.area))
-    kept = {n: v for n, v in flatten(file.values).items() if not n.startswith(_REPLACED)}
+    kept = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(
         file,

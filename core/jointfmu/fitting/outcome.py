@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..joints import KINDS
 from ..parameters import ParameterFile
-from ..quantity import Interval, flat_fields, flatten
+from ..quantity import Interval, flat_fields
 from ..stamp import build_time
 from .identifiability import combinations, undetermined
 from .least_squares import Array, Solution, Unknown
@@ -92,7 +92,7 @@ class Outcome:
             ],
             "facts": {name: {"value": _finite(v), "unit": unit} for name, (v, unit, _) in self.facts.items()},
             "warnings": self.warnings(),
-            "parameters": flatten(self.parameters.values),
+            "parameters": dict(self.parameters.flat),
         }
 
 
@@ -114,7 +114,7 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, wanted = flatten(start.values), []
+    values, wanted = start.flat, []
     declared = {
         n: f for n, f in flat_fields(KINDS[start.joint].parameters) if isinstance(values.get(n), float)
     }

@@ -40,7 +40,7 @@ class Kind:
     package       : import name of its folder
     default       : stem of its default parameter file
     parameters    : its parameter set
-    law           : its interface law, a value of asperity.LAWS
+    law           : its interface law, a value of asperity.LAWS; None if it has none
     law_of        : the law's parameter set out of the joint's
     models        : what it is exported as; the first is its component in a system model
     surfaces      : its rough surfaces
@@ -52,9 +52,9 @@ class Kind:
     package: str
     default: str
     parameters: type[Any]
-    law: type[Any]
     law_of: Callable[[Any], Any] = itself
     models: Sequence[Model]
+    law: type[Any] | None = None
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
     papers: Sequence[str] = ()

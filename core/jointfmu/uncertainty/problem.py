@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..joints import KINDS
 from ..joints.reduced import Reduced, reduced
 from ..parameters import ParameterFile
-from ..quantity import Interval, flat_fields, flatten, problem
+from ..quantity import Interval, flat_fields, problem
 from .distributions import Uncertain, is_relative
 from .study import samples_of, split
 
@@ -55,7 +55,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     """
     kind = KINDS[file.joint]
     curves, declared = reduced(kind), dict(flat_fields(kind.parameters))
-    base = flatten(file.values)
+    base = dict(file.flat)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     known = [*(base.keys() - lists), curves.load.name]
     if unknown := [name for name in given if name not in known]:
@@ -65,7 +65,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
     fixed = plain.pop(curves.load.name, None)
-    values = file.with_values(plain, "user", "--set").values
+    stated = file.with_values(plain, "user", "set for the study")
     for parameter in uncertain:
         if parameter.name != curves.load.name:
             _check(parameter, declared[parameter.name])
@@ -74,8 +74,8 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
         raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
-    loads = _ramp(curves, values, at, to, points, load)
-    return Problem(file.joint, flatten(values), order, loads, relative if load else None)
+    loads = _ramp(curves, stated.values, at, to, points, load)
+    return Problem(file.joint, stated.flat, order, loads, relative if load else None)
 
 
 def _check(parameter: Uncertain, item: Any) -> None:

@@ -9,7 +9,7 @@ from jointfmu.joints.harmonic_drive import spring
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, law_functions, symbols
-from ...native.part import TABLES, Definitions, NativePart, column, quadrature
+from ...native.part import TABLES, Definitions, Named, NativePart, column, named, quadrature
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -55,21 +55,16 @@ def _functions(g: Graph, model: Model) -> None:
     g.add_with_seed("outputs", doc, [*v.values(), x, load, stiffness], y)
 
 
+NUMBERS: Named = ((table, "CELL"), (spring, "SOFTEST"), (spring, "STIFFEST"))
+COUNTS: Named = ((table, "MOST_CELLS"), (spring, "PAIR_STEPS"), (spring, "MOST_PAIR_STEPS"))
+"""Numbers of the package that the C has under the same name: real ones, and whole ones."""
+
+
 def _definitions(g: Graph, model: Model) -> Definitions:
-    counts = {
-        "N_DRIVE_HEAD": 5,
-        "ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"),
-        "DRIVE_STEPS": spring.STEPS,
-    }
-    numbers = {
-        "CELL": table.CELL,
-        "MOST_CELLS": table.MOST_CELLS,
-        "PAIR_STEPS": spring.PAIR_STEPS,
-        "SOFTEST": spring.SOFTEST,
-        "STIFFEST": spring.STIFFEST,
-    }
+    counts = {"ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"), "DRIVE_STEPS": spring.STEPS}
     return (
-        Definitions(counts, numbers)
+        named(NUMBERS, COUNTS)
+        | Definitions(counts)
         | column("PLACES", "N_PLACES", lobes.PLACES)
         | column("WEIGHTS", "N_PLACES", lobes.WEIGHTS)
         | column("HEIGHTS", "N_HEIGHTS", lobes.HEIGHTS)

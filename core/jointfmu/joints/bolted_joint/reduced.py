@@ -162,16 +162,14 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.shape
-    equal, place = np.unique(np.round(shape.equal, 12), return_inverse=True)
-    shares = np.bincount(place, shape.share)
+    joint, shape = spring.joint, spring.shape.merged(moment=False)
     lowest = 1e-9 * spring.curve.closed * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)
     half, middle = 0.5 * np.diff(np.log(ends)), 0.5 * np.log(ends[1:] * ends[:-1])
     preload = np.concatenate([ends[:1], np.exp(middle[:, None] + half[:, None] * places).ravel()])
-    node = spring.curve.inverse(node_pressure(joint, equal, 0.0, preload[:, None], 0.0))
-    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shares
+    node = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, preload[:, None], 0.0))
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
     rate = joint.n_bolts * preload / K
     panels = half * (rate[1:].reshape(-1, 3) @ weights)
     integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])

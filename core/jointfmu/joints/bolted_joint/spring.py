@@ -10,7 +10,7 @@ from ...asperity import mindlin
 from ...asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
 from ...curve import Curve, approach_curve
 from ...footprint.bolts import BoltPattern, pressure_shape
-from ...footprint.shape import NodalField, PressureShape
+from ...footprint.shape import MergedShape, NodalField, PressureShape
 from ...interface import largest_spot
 from ...quantity import Interval, Limit, Number, check_limits, group, quantity
 
@@ -55,7 +55,9 @@ def bolt_pattern(joint: BoltedJoint) -> BoltPattern:
     )
 
 
-def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, moment: ArrayLike) -> Array:
+def pressures(
+    joint: BoltedJoint, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
+) -> Array:
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
@@ -67,8 +69,16 @@ def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, mome
 
 def node_pressure(joint: BoltedJoint, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
     """Pressure [Pa] of a node of the pressure shape."""
-    mean = preload * joint.n_bolts / joint.A_0
-    shift = moment / joint.row_distance / joint.A_0
+    return shaped_pressure(equal, tilt, *bolt_pressures(joint, preload, moment))
+
+
+def bolt_pressures(joint: BoltedJoint, preload: Number, moment: Number) -> tuple[Number, Number]:
+    """What `equal` and `tilt` of the pressure shape stand for [Pa]."""
+    return preload * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
+
+
+def shaped_pressure(equal: Number, tilt: Number, mean: Number, shift: Number) -> Number:
+    """Pressure [Pa] of a node of the pressure shape, given `bolt_pressures`; none where it is open."""
     return np.maximum(mean * equal + shift * tilt, 0.0)
 
 
@@ -81,6 +91,13 @@ def row_forces(joint: BoltedJoint, preload: float, moment: float) -> tuple[float
 def shear_ratio(joint: BoltedJoint) -> Number:
     """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
     return tangential_stiffness(joint, 1.0) / normal_stiffness(joint, 1.0)
+
+
+SUMS = (
+    "tightened", "pressure", "stiffness", "bend", "twist", "about_x", "about_y", "plastic", "elastic",
+)  # fmt: skip
+"""Sums over the nodes, times their shares of the area: pressure [Pa] at tightening and now with three
+derivatives in the approach, stiffness [Pa/m] times y^2 and x^2, plastic and elastic work [J]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,12 +149,22 @@ class BoltedJointSpring:
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
         """
         start, shape = self.tightened(preload, moment), self.shape
-        tightened = self.curve.derivatives(start, 0)[0]
-        curve = self.curve.derivatives(start - s_rel[2], 3)
+        p, k, bend, twist = self.curve.derivatives(start - s_rel[2], 3)
         x2, y2 = shape.position.T**2
-        each = node_parts(self.joint, x2, y2, s_rel, tightened, curve, self.works(curve[0]))
-        sums = {name: np.sum(shape.share * value) for name, value in each.items()}
-        return motion(self.joint, sums, s_rel, v_rel, np.max(curve[0]))
+        plastic, elastic = self.works(p)
+        each = {
+            "tightened": self.curve.derivatives(start, 0)[0],
+            "pressure": p,
+            "stiffness": k,
+            "bend": bend,
+            "twist": twist,
+            "about_x": k * y2,
+            "about_y": k * x2,
+            "plastic": plastic,
+            "elastic": elastic,
+        }
+        sums = {name: np.sum(shape.share * each[name]) for name in SUMS}
+        return motion(self.joint, sums, s_rel, v_rel, np.max(p))
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -149,39 +176,6 @@ class BoltedJointSpring:
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-def node_parts(
-    joint: BoltedJoint,
-    x2: Number,
-    y2: Number,
-    s_rel: Sequence[Number],
-    tightened: Number,
-    curve: Sequence[Number],
-    works: Sequence[Number],
-) -> dict[str, Number]:
-    """What a node contributes to the joint, per share of the area.
-
-    x2, y2    : [m2] squares of its distances from the centroid
-    s_rel     : [m] relative displacement
-    tightened : [Pa] its pressure at tightening
-    curve     : its pressure [Pa] now and three derivatives in the approach
-    works     : [J] plastic and elastic work at this pressure
-    """
-    x, y, _ = s_rel
-    p, k, bend, twist = curve
-    shear = 0.5 * shear_ratio(joint) * (x * x + y * y)
-    plastic, elastic = works
-    return {
-        "pressure": p,
-        "stiffness": k,
-        "normal": k + shear * twist,
-        "force": p - tightened + shear * bend,
-        "about_x": k * y2,
-        "about_y": k * x2,
-        "plastic": plastic,
-        "elastic": elastic,
-    }
-
-
 def motion(
     joint: BoltedJoint,
     sums: Mapping[str, Number],
@@ -189,12 +183,13 @@ def motion(
     v_rel: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
-    """What the joint exports, from the sums of its nodes' contributions times share.
+    """What the joint exports, from the SUMS of its nodes.
 
     A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
     plane: Hu 2023, Eq. 45, corrected.
     """
     area, rho = joint.A_0, shear_ratio(joint)
+    shear = 0.5 * rho * (s_rel[0] * s_rel[0] + s_rel[1] * s_rel[1])
     K_n = area * sums["stiffness"]
     K_t = rho * K_n
     eta_n = sums["plastic"] / sums["elastic"]
@@ -204,10 +199,10 @@ def motion(
     return {
         "f_x": 0.0 - K_t * s_rel[0] - C_t * v_rel[0],
         "f_y": 0.0 - K_t * s_rel[1] - C_t * v_rel[1],
-        "f_z": area * sums["force"] - C_n * v_rel[2],
+        "f_z": area * (sums["pressure"] - sums["tightened"] + shear * sums["bend"]) - C_n * v_rel[2],
         "K_xx": K_t,
         "K_yy": K_t,
-        "K_zz": area * sums["normal"],
+        "K_zz": area * (sums["stiffness"] + shear * sums["twist"]),
         "C_xx": C_t,
         "C_yy": C_t,
         "C_zz": C_n,

@@ -1,6 +1,6 @@
 """Torsional spring of a harmonic drive: contact of flexspline and flexible bearing (Hu 2023)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,15 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...asperity.hu2023 import Hu2023
 from ...curve import Curve, assemble, refined
 from ...footprint import lobes
-from ...footprint.lobes import (
-    PLACES,
-    WEIGHTS,
-    Lobe,
-    heights,
-    lobe,
-    piece_ends,
-    two_lobes,
-)
+from ...footprint.lobes import Lobe, Piece, lobe, lobe_pieces, two_lobes
 from ...footprint.nodes import Footprint
 from ...interface import checked_spots, largest_spot
 from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
@@ -161,15 +153,23 @@ def footprint(drive: HarmonicDrive, torque: ArrayLike) -> Footprint:
     """Nodes of one quarter of the contact pair at torques (...) [N.m]; shares stand for the whole."""
     law = drive.law
     spots = checked_spots(law)
-    return two_lobes(
-        peak_pressure(drive, torque)[0],
-        spots.total("load", np.array(spots.breaks)) / law.A_0,
-        mismatch=drive.mismatch_pressure,
-        radius=drive.radius,
-        deformation=drive.radial_deformation,
-        length=contact_length(drive),
-        cup=drive.cup_length,
-    )
+    breaks = spots.total("load", np.array(spots.breaks)) / law.A_0
+    return two_lobes(peak_pressure(drive, torque)[0], breaks, **_lobe_sizes(drive))
+
+
+def pieces(drive: HarmonicDrive, peak: Array, breaks: Array) -> Iterator[Piece]:
+    """The same nodes at peak pressures (...) [Pa], between breaks of the law [Pa], see `lobe_pieces`."""
+    return lobe_pieces(peak, breaks, **_lobe_sizes(drive))
+
+
+def _lobe_sizes(drive: HarmonicDrive) -> dict[str, float]:
+    return {
+        "mismatch": drive.mismatch_pressure,
+        "radius": drive.radius,
+        "deformation": drive.radial_deformation,
+        "length": contact_length(drive),
+        "cup": drive.cup_length,
+    }
 
 
 def pair_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
@@ -208,29 +208,21 @@ def pair_table(drive: HarmonicDrive, steps: int) -> tuple[Blocks, float]:
     """`pair_stiffness` over the log of the peak pressure, with its largest relative interpolation error.
 
     The stiffness of the nodes comes from tables over the log-pressure instead of an inversion each,
-    which makes it hundreds of times faster.
+    which makes it hundreds of times faster. Below the last edge there is no stiffness.
     """
     low, high = (float(peak_pressure(drive, torque)[0]) for torque in (0.0, drive.max_torque))
     edges, tables = stiffness_tables(drive.law, high)
     cells = 4 * int(np.clip(np.ceil(steps / PAIR_STEPS * np.log(high / low)), 1, MOST_PAIR_STEPS))
     x = np.linspace(np.log(low), np.log(high), cells + 1)
-    length = contact_length(drive)
-    z, axial = (column[..., None] for column in heights(np.exp(x), edges, length, drive.cup_length))
-    axis = local(drive, np.exp(x)[:, None, None], z)
-    limits = piece_ends(axis, edges, drive.mismatch_pressure)
     value, slope = np.zeros((2, cells + 1))
-    for i, table in enumerate(reversed(tables)):
-        width = np.diff(limits[..., i : i + 2])
-        t = limits[..., i : i + 1] + width * PLACES
-        point = lobe_point(drive, np.sin(t), np.cos(t), z, axis)
-        share = 2.0 / np.pi * axial * width * WEIGHTS * point.stretch
+    for piece, table in zip(pieces(drive, np.exp(x), edges), reversed(tables), strict=False):
+        point = piece.point
         (normal, tangential), (normal_slope, tangential_slope) = table(np.log(point.pressure))
-        across = point.square - point.along**2
-        rise = axis / point.pressure
-        value += np.sum(share * (normal * point.along**2 + tangential * across), axis=(1, 2))
-        slope += np.sum(
-            share * rise * (normal_slope * point.along**2 + tangential_slope * across), axis=(1, 2)
-        )
+        along = point.along**2
+        across = point.square - along
+        rise = piece.share * piece.axis / point.pressure
+        value += np.sum(piece.share * (normal * along + tangential * across), axis=(1, 2))
+        slope += np.sum(rise * (normal_slope * along + tangential_slope * across), axis=(1, 2))
     value, slope = drive.pair_scale * value[None], drive.pair_scale * slope[None]
     fine = Blocks.of(x[0], x[1] - x[0], value, slope)
     coarse = Blocks.of(x[0], x[2] - x[0], value[:, ::2], slope[:, ::2])

@@ -1,0 +1,1 @@
+"""The spring, for the FMU builder."""
