@@ -134,9 +134,9 @@ def _drive(
     for name, value in settings.items():
         if name not in settable:
             raise ValueError(f"{source}: unknown name {name!r}, allowed are {', '.join(settable)}")
-        kind = bool if variables[name].type == "Boolean" else float
-        if not isinstance(value, kind):
-            expected = "true or false" if kind is bool else "a number"
+        wanted = bool if variables[name].type == "Boolean" else float
+        if not isinstance(value, wanted):
+            expected = "true or false" if wanted is bool else "a number"
             raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []

@@ -19,42 +19,38 @@ if TYPE_CHECKING:
 
 
 def add(commands: Any) -> None:
-    """Declare the command and its kinds."""
+    """Declare the command and its sub-commands."""
     text = "the contact pressure of a bolted joint: from a file, or by finite elements"
     top = commands.add_parser("footprint", help=text, description=text)
-    kinds = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
-    _import(kinds)
-    footprint_compute.add(kinds)
+    steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
+    _import(steps)
+    footprint_compute.add(steps)
 
 
-def _import(kinds: Any) -> None:
-    action = command(kinds, "import", _bring, "bring a nodal contact result into a joint's parameter file")
-    action.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
-    action.add_argument(
+def _import(steps: Any) -> None:
+    step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
+    step.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
+    step.add_argument(
         "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
     )
-    action.add_argument(
+    step.add_argument(
         "--params", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
     )
-    action.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
-    action.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
-    action.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
-    action.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
-    action.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
-    action.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
-    action.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
-    action.add_argument(
-        "--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)"
-    )
-    action.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
-    action.add_argument(
-        "--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop"
-    )
-    action.add_argument(
+    step.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
+    step.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
+    step.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
+    step.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
+    step.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
+    step.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
+    step.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
+    step.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
+    step.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
+    step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
+    step.add_argument(
         "--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help="further listings"
     )
-    action.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
-    action.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
+    step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
 
 
 def _bring(args: argparse.Namespace) -> int:

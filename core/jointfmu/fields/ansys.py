@@ -30,16 +30,17 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     places: dict[int, tuple[float, ...]] = {}
     elements: list[list[int]] = []
     for path in paths:
-        for where, kind, row in _rows(path):
-            if kind == "element":
+        for where, content, row in _rows(path):
+            if content == "element":
                 elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
-            elif kind == "more":
+            elif content == "more":
                 elements[-1] += [int(x) for x in row]
             else:
-                listed: dict[int, object] = values if kind == "pressure" else places  # type: ignore[assignment]
-                name, value = int(row[0]), row[1] if kind == "pressure" else tuple(row[1:])
+                pressed = content == "pressure"
+                listed: dict[int, object] = values if pressed else places  # type: ignore[assignment]
+                name, value = int(row[0]), row[1] if pressed else tuple(row[1:])
                 if listed.setdefault(name, value) != value:
-                    raise ValueError(f"{where}: node {name} has a second {kind}, expected one")
+                    raise ValueError(f"{where}: node {name} has a second {content}, expected one")
     first = paths[0]
     for table, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
@@ -96,19 +97,19 @@ def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int])
 
 
 def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
-    """(file and line, kind, numbers) of all rows: pressure, place, element, more nodes of an element."""
+    """(file and line, content, numbers) of all rows: pressure, place, element, more nodes of an element."""
     try:
         text = path.read_text(encoding="latin-1")
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an ANSYS listing") from None
     head: list[str] = []
-    last = ""
+    before = ""
     for number, line in enumerate(text.splitlines(), 1):
         words = line.replace("(", " ").split()
         if not words:
             continue
         if words[0] in ("NODE", "ELEM") and not any(map(_is_number, words)):
-            head, last = words, ""
+            head, before = words, ""
             continue
         if words[0] in ("MINIMUM", "MAXIMUM"):
             head = []
@@ -116,10 +117,10 @@ def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
         if not head or numbers is None:
             continue
         where = f"{path}: line {number}"
-        kind, row = _kind(head, numbers, where, last)
-        if kind:
-            yield where, kind, row
-            last = kind
+        content, row = _content(head, numbers, where, before)
+        if content:
+            yield where, content, row
+            before = content
 
 
 def _is_number(word: str) -> bool:
@@ -133,7 +134,7 @@ def _numbers(line: str) -> list[float] | None:
     return [float(x.replace("D", "E").replace("d", "e")) for x in _NUMBER.findall(line)]
 
 
-def _kind(head: list[str], numbers: list[float], where: str, last: str) -> tuple[str, list[float]]:
+def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
     """What a row of a table is, and its numbers that count."""
     if head[0] == "ELEM":
         whole = all(x % 1.0 == 0.0 for x in numbers)
@@ -141,7 +142,7 @@ def _kind(head: list[str], numbers: list[float], where: str, last: str) -> tuple
             return "", []
         if len(numbers) > _ELEMENT_HEAD:
             return "element", numbers
-        return ("more", numbers) if last in ("element", "more") else ("", [])
+        return ("more", numbers) if before in ("element", "more") else ("", [])
     if PRESSURE in head and "X" not in head:
         if len(numbers) != len(head):
             raise ValueError(f"{where}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}")

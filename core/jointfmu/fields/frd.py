@@ -118,12 +118,12 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
 
 def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, Nodes]:
     cells: dict[str, list[list[int]]] = {}
-    kind, count = "", 0
+    cell_type, count = "", 0
     nodes: list[int] = []
     for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
         try:
             if line.startswith(" -1"):
-                kind, count = TYPES[int(line[13:18])]
+                cell_type, count = TYPES[int(line[13:18])]
                 nodes = []
                 continue
             nodes += [index[int(line[i : i + 10])] for i in range(3, len(line.rstrip()), 10)]
@@ -132,9 +132,11 @@ def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, 
                 f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
             ) from None
         if len(nodes) == count:
-            cells.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(count))])
+            cells.setdefault(cell_type, []).append([nodes[i] for i in ORDER.get(cell_type, range(count))])
     return {
-        kind: np.array(rows, dtype=np.intp) for kind, rows in cells.items() if not kind.startswith("line")
+        cell_type: np.array(rows, dtype=np.intp)
+        for cell_type, rows in cells.items()
+        if not cell_type.startswith("line")
     }
 
 

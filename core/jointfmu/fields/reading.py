@@ -66,17 +66,17 @@ class Reading:
         return surface(self._result(path, beside), self.plane)
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
-        kind = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
+        format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
         for given, name, only in ((self.data, "--data", "mesh"), (beside, "--with", "ansys")):
-            if given and kind != only:
-                raise ValueError(f"{path}: is read as {kind}, {name} is for the format {only}")
-        if kind == "csv":
+            if given and format != only:
+                raise ValueError(f"{path}: is read as {format}, {name} is for the format {only}")
+        if format == "csv":
             self._stated_by_file(path)
             return csvfile.read(path)
         length, pressure = self._units(path)
-        if kind == "ansys":
+        if format == "ansys":
             return ansys.read([path, *beside], length, pressure)
-        if kind == "frd":
+        if format == "frd":
             return frd.read(path, length, pressure)
         return meshfile.read(path, length, pressure, self.data)
 

@@ -135,11 +135,11 @@ def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Ma
 
 
 def fitted(
-    start: ParameterFile, values: Mapping[str, float], kind: str, origin: str, span: str
+    start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
     """The file with fitted values; their source says from what, when and over which range."""
-    file = start.with_values(values, kind, f"fitted to {origin}, {today()}, {span}")
-    return replace(file, name=f"fitted to {origin}")
+    file = start.with_values(values, origin, f"fitted to {data}, {today()}, {span}")
+    return replace(file, name=f"fitted to {data}")
 
 
 def today() -> str:

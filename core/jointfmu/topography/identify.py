@@ -59,11 +59,11 @@ def identify(
     """
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
-    kinds = {isinstance(surface, Areal) for surface in surfaces}
-    if len(kinds) == 2:
+    areal = {isinstance(surface, Areal) for surface in surfaces}
+    if len(areal) == 2:
         raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
     prepared = [prepare(surface, form) for surface in surfaces]
-    directions = ("areal", "x", "y") if kinds == {True} else ("profile",)
+    directions = ("areal", "x", "y") if areal == {True} else ("profile",)
     low, high = span or (None, None)
     results = []
     for direction in directions:

@@ -61,11 +61,11 @@ def _source(identified: Identification, result: Result, surface: RoughSurface, w
     D, G = _dimension_and_roughness(result, surface)
     shown = D if which == "D" else G
     if surface.areal:
-        kind = "of the surface"
+        extent = "of the surface"
     else:
-        kind = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
+        extent = "of the profile" if result.direction in ("profile", "areal") else f"along {result.direction}"
     files = " and ".join(identified.names) + (" (equivalent surface)" if len(identified.names) == 2 else "")
     return (
         f"identified from {files} by {how[result.method]} {result.fit.low:.3g} to {result.fit.high:.3g} m; "
-        f"{kind}; 95 % interval {shown.low:.4g} to {shown.high:.4g}"
+        f"{extent}; 95 % interval {shown.low:.4g} to {shown.high:.4g}"
     )

@@ -73,7 +73,9 @@ class Journal:
         self.file.truncate(end)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, error_type: type[BaseException] | None, error: Any, trace: TracebackType | None
+    ) -> None:
         self.file.close()
 
     def add(self, entry: Mapping[str, Any]) -> None:

@@ -18,10 +18,10 @@ def bands_csv(task: Problem, bands: Bands) -> str:
     load = task.reduced.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
-        plain = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
-        for kind, of in plain:
-            heads.append((f"{name} {kind}", unit))
-            values.append(of[name])
+        statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
+        for statistic, by_output in statistics:
+            heads.append((f"{name} {statistic}", unit))
+            values.append(by_output[name])
         heads += [(f"{name} {100 * q:g} %", unit) for q in QUANTILES]
         values += list(bands.quantiles[name])
     return columns.text(heads, values)
@@ -59,13 +59,13 @@ def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dic
 
 
 def _indices_json(sensitivity: Sensitivity) -> dict[str, Any]:
-    kinds = ("first", "first_half", "total", "total_half")
+    numbers = ("first", "first_half", "total", "total_half")
     return {
         "rows": sensitivity.rows,
         "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
-                parameter: {kind: getattr(indices, kind)[:, i].tolist() for kind in kinds}
+                parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
                 for i, parameter in enumerate(sensitivity.names)
             }
             for output, indices in sensitivity.outputs.items()

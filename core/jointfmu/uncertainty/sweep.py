@@ -151,8 +151,8 @@ def _as_completed(
             lost[index] += 1
             if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
                 text = " ".join(str(error).split())[:200]
-                kind = type(error).__name__
-                raise RuntimeError(f"run {index}: the worker failed: {kind}: {text}") from None
+                error_name = type(error).__name__
+                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
             queue.add(submit(index))  # its result went down with another run's process
             continue
         for following in islice(waiting, 1):
