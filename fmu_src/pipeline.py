@@ -25,7 +25,7 @@ class Outcome:
     built: list[Path] = field(default_factory=list)
     systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
-    ramps: dict[str, ramp.Ramp] = field(default_factory=dict)
+    ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
     checks: list[Check] = field(default_factory=list)
     rows: list[validation.Row] = field(default_factory=list)
     fmu_rows: list[validation.Row] = field(default_factory=list)

@@ -28,7 +28,7 @@ _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Columns:
     """Columns of a file in SI units, in the order of its rows, which are on the named lines."""
 
     path: Path
@@ -47,7 +47,7 @@ def heading(spec: Mapping[str, Sizes]) -> str:
     return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
 
 
-def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Table:
+def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
     """Read the columns named in `spec` that a file has.
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
@@ -71,7 +71,7 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Table:
         name: _column(path, name, numbers, [row[place] for row in rows]) * size
         for name, (place, size) in places.items()
     }
-    return Table(path, columns, numbers)
+    return Columns(path, columns, numbers)
 
 
 def content(path: Path) -> list[tuple[int, str]]:

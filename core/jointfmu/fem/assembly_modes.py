@@ -7,7 +7,7 @@ import numpy as np
 
 from ..curve import approach_curve
 from ..joints.clamped import Clamped
-from .contact import Law
+from .contact import PressureLaw
 from .elasticity import Array
 from .geometry import Assembly
 from .joint import BoltedContact, JointSolution
@@ -27,7 +27,7 @@ def computed(solution: JointSolution, shear: float, count: int = 6) -> Modes:
     return _on(solution.joint, solution.contact.stiffness, shear, count)
 
 
-def uniform(joint: BoltedContact, law: Law, force: float, shear: float, count: int = 6) -> Modes:
+def uniform(joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6) -> Modes:
     """Modes if the total force [N] of the bolts were spread evenly over the contact."""
     area = joint.interface.area
     approach = law.inverse(np.asarray(force / area.sum()))

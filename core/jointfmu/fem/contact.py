@@ -32,7 +32,7 @@ QUADRATURE = 4
 """Degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""
 
 
-class Law(Protocol):
+class PressureLaw(Protocol):
     """Pressure over approach: a curve of jointfmu.curve, or anything of the same kind."""
 
     def derivatives(self, x: Array, order: int = 1) -> list[Array]:
@@ -85,7 +85,7 @@ class ContactModel:
 
     bodies: tuple[ElasticBody, ...]
     interface: Interface
-    law: Law
+    law: PressureLaw
     gap: Callable[[Array, Array], Array] | None = None
     held: tuple[Index, ...] | None = None
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ..progress import track
-from .contact import Law
+from .contact import PressureLaw
 from .geometry import Assembly
 from .joint import BoltedContact, JointSolution
 
@@ -37,7 +37,7 @@ def refinements(count: int, middle: float = 1.0) -> list[float]:
 
 
 def study(
-    assembly: Assembly, law: Law, preload: float, moment: float, levels: Sequence[float]
+    assembly: Assembly, law: PressureLaw, preload: float, moment: float, levels: Sequence[float]
 ) -> tuple[list[MeshResult], JointSolution]:
     """Results on meshes of rising refinement [1], and the solution on the last of them.
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fields.contact import ContactField
-from .contact import ContactModel, ContactSolution, Interface, Law
+from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body
 from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
@@ -45,7 +45,7 @@ class BoltedContact:
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
-    def solve(self, law: Law, preload: float, moment: float = 0.0) -> "JointSolution":
+    def solve(self, law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)

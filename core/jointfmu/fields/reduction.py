@@ -18,7 +18,7 @@ from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
 from ..progress import track
 from .result import Array, Nodes
-from .sums import PRELOADS, SEED, Load, Row, Sums, balance, first_loads, further_loads, largest_moment
+from .sums import PRELOADS, SEED, Load, Sums, SumsAtLoad, balance, first_loads, further_loads, largest_moment
 
 TOLERANCE = 1e-6
 """Largest deviation of a sum [1] that a reduced field may have."""
@@ -138,7 +138,7 @@ def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: floa
 
 
 def _weights(
-    rows: Sequence[Row], values: Sequence[Array], shape: PressureShape, some: PressureShape
+    rows: Sequence[SumsAtLoad], values: Sequence[Array], shape: PressureShape, some: PressureShape
 ) -> Array | None:
     """Shares (c) of the nodes, most of them zero, that keep the sums; None if there are none."""
     everywhere = balance(shape)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import fractal
-from .fit import Fit, fit
+from .fit import SelfAffineLaw, fit
 from .form import Repair, filled, without_form, without_spikes
 from .heights import Areal, Array, Heights
 from .results import (
@@ -106,7 +106,7 @@ def _interpolation(at: Array, x: Array) -> Array:
     return np.stack([np.interp(at, x, unit) for unit in np.eye(x.size)], axis=1)
 
 
-def _result(series: Series, fitted: Fit) -> Result:
+def _result(series: Series, fitted: SelfAffineLaw) -> Result:
     """Both kinds of parameters; the one that was not measured follows if the surface is isotropic."""
     rng = np.random.default_rng(0)
     root = np.linalg.cholesky(fitted.covariance)

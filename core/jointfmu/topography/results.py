@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fit import Fit
+from .fit import SelfAffineLaw
 from .form import Repair
 from .heights import Areal
 from .series import Series
@@ -73,7 +73,7 @@ class Result:
     method: str
     direction: str
     series: Series
-    fit: Fit
+    fit: SelfAffineLaw
     profile: ProfileFractal
     areal: ArealFractal
 

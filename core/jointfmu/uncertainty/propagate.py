@@ -28,14 +28,14 @@ ACCURACY = 1e-2
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class SampledOutputs:
     """Outputs (m, n) in single precision by name at accepted samples, NaN elsewhere."""
 
     outputs: Mapping[str, Singles]
     good: Mask
 
 
-def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
+def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
     """All outputs at loads (m) for points (n, d) of the unit cube."""
     values, factor = task.sampled(points)
     n = len(points)
@@ -52,7 +52,7 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
                 outputs[name][:, part] = value.T
     for column in outputs.values():
         good &= np.all(np.isfinite(column), axis=0)
-    return Outcome(outputs, good)
+    return SampledOutputs(outputs, good)
 
 
 def _evaluated(
@@ -155,7 +155,7 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
     return Refused(int(bad.size), drawn, reason)
 
 
-def check(task: Problem, points: Array, outcome: Outcome) -> float:
+def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
     """Largest relative difference to the exported spring over CHECKED samples and a few loads.
 
     Raises RuntimeError beyond ACCURACY, naming the output and the sample.
