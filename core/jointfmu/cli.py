@@ -23,7 +23,7 @@ from .commands import (
     uncertainty,
     validate,
 )
-from .commands.common import Parser, flag
+from .commands.common import Parser, option
 from .refusal import Refusal
 
 COMMANDS = (
@@ -79,7 +79,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(args.run(args))
     except (ValueError, RuntimeError) as error:
-        hint = [f"({flag(error.setting)})"] if isinstance(error, Refusal) else []
+        hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
         print(f"jointfmu {args.command}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

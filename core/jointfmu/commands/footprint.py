@@ -27,6 +27,10 @@ def add(commands: Any) -> None:
     footprint_compute.add(steps)
 
 
+OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
+"""{name of the library's argument: the option's} where they differ."""
+
+
 def _import(steps: Any) -> None:
     step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
     step.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
@@ -51,6 +55,7 @@ def _import(steps: Any) -> None:
     )
     step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
     step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    step.set_defaults(options=OPTIONS)
 
 
 def _bring(args: argparse.Namespace) -> int:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..refusal import Refusal
 from .result import NodalResult, Nodes
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
@@ -48,7 +49,7 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
         (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
     ):
         if not table:
-            raise ValueError(f"{first}: has {text}; give further listings with --with")
+            raise Refusal(f"{first}: has {text}; give further listings", "beside")
     return _result(first, values, places, elements, length, pressure)
 
 

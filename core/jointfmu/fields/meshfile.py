@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from ..refusal import Refusal
 from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
 from .result import Array, NodalResult
 
@@ -67,7 +68,7 @@ def _values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
         ", ".join(f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in shown.items()) or "none"
     )
     if data is None:
-        raise ValueError(f"{path}: state the point data that is the pressure with --data; there are {there}")
+        raise Refusal(f"{path}: state the point data that is the pressure; there are {there}", "data")
     name, _, component = data.partition(":")
     name, component = (data, "") if data in shown else (name, component)
     if name not in shown:

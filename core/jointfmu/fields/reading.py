@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..refusal import Refusal
 from . import ansys, csvfile, frd, meshfile
 from .contact import ContactField
 from .result import LENGTHS, PRESSURES, NodalResult
@@ -67,9 +68,12 @@ class Reading:
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
         format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
-        for given, name, only in ((self.data, "--data", "mesh"), (beside, "--with", "ansys")):
+        for given, what, name, only in (
+            (self.data, "point data are", "data", "mesh"),
+            (beside, "further listings are", "beside", "ansys"),
+        ):
             if given and format != only:
-                raise ValueError(f"{path}: is read as {format}, {name} is for the format {only}")
+                raise Refusal(f"{path}: is read as {format}, {what} for the format {only}", name)
         if format == "csv":
             self._stated_by_file(path)
             return csvfile.read(path)
@@ -83,30 +87,32 @@ class Reading:
     def _units(self, path: Path) -> tuple[float, float]:
         """Sizes of the stated units."""
         for value, name, units in (
-            (self.length, "--length-unit", LENGTHS),
-            (self.pressure, "--pressure-unit", PRESSURES),
+            (self.length, "length", LENGTHS),
+            (self.pressure, "pressure", PRESSURES),
         ):
             if value is None:
-                raise ValueError(f"{path}: states no units; state {name}, one of {', '.join(units)}")
+                raise Refusal(f"{path}: states no units; state {name}'s, one of {', '.join(units)}", name)
         return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]
 
     def _stated_by_file(self, path: Path) -> None:
-        """Refuse options that a CSV file answers itself."""
+        """Refuse what a CSV file answers itself."""
         for given, name in (
-            (self.length, "--length-unit"),
-            (self.pressure, "--pressure-unit"),
-            (self.plane.side, "--side"),
-            (self.plane.rows, "--rows"),
-            (None if self.plane.normal == "z" else self.plane.normal, "--normal"),
+            (self.length, "length"),
+            (self.pressure, "pressure"),
+            (self.plane.side, "side"),
+            (self.plane.rows, "rows"),
+            (None if self.plane.normal == "z" else self.plane.normal, "normal"),
         ):
             if given is not None:
-                raise ValueError(f"{path}: {name} {given}: a CSV file states units and plane in its heading")
+                text = f"{path}: {name} = {given!r}: a CSV file states units and plane in its heading"
+                raise Refusal(text, name)
 
 
 def _refuse_open(surface: Surface) -> None:
     open_nodes = np.flatnonzero(surface.pressure == 0.0)
     if open_nodes.size:
-        raise ValueError(
+        raise Refusal(
             f"{surface.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
-            f"{surface.area.size} nodes; state --open keep (they just touch) or --open drop (they never do)"
+            f"{surface.area.size} nodes; say keep (they just touch) or drop (they never do)",
+            "open",
         )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..refusal import Refusal
 from .areas import CORNERS, nodal_areas
 from .contact import ContactField
 from .result import Array, NodalResult, Nodes
@@ -120,9 +121,10 @@ def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
     off = np.abs(height - level) > FLAT * size
     if np.any(off[touched]):
         i = int(touched[np.argmax(off[touched])])
-        raise ValueError(
+        raise Refusal(
             f"{result.at(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
-            f"{level:.6g} m; expected a plane contact and its normal in --normal"
+            f"{level:.6g} m; expected a plane contact and its normal",
+            "normal",
         )
     allowed = ~off & np.isin(_body(result), _bodies(result, touched, height - level, plane))
     faces = [block[np.all(allowed[block], axis=1)] for block in result.faces]

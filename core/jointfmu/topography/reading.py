@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..refusal import Refusal
 from . import csvfile
 from .heights import Areal, Heights, Profile
 
@@ -26,17 +27,21 @@ def read(path: str | Path, unit: str | None = None) -> Heights:
     path = Path(path)
     if not path.is_file():
         raise ValueError(f"{path}: is no file; expected height data")
-    if unit is not None:
-        csvfile.unit(unit, "--unit")
+    if unit is not None and unit not in csvfile.LENGTHS:
+        raise Refusal(f"unit = {unit!r} is not one of {csvfile.ALLOWED}", "unit")
     if path.stat().st_size == 0:
         raise ValueError(f"{path}: is no surface: the file is empty")
     if line := csvfile.header(path):
         if unit is not None:
-            raise ValueError(f"{path}: states its units itself; leave --unit {unit} out")
+            raise Refusal(f"{path}: states its units itself; leave the unit {unit} out", "unit")
         return csvfile.read(path, line)
     if path.suffix.lower() in TEXT and _bare(path):
         return _bare_columns(path, unit)
     return _instrument(path, unit)
+
+
+def _without_unit(path: Path) -> Refusal:
+    return Refusal(f"{path}: states no length unit; state it, one of {csvfile.ALLOWED}", "unit")
 
 
 def _bare(path: Path) -> bool:
@@ -52,7 +57,7 @@ def _bare(path: Path) -> bool:
 
 def _bare_columns(path: Path, unit: str | None) -> Heights:
     if unit is None:
-        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+        raise _without_unit(path)
     values = csvfile.table(path)
     return csvfile.columns(path, values, [csvfile.LENGTHS[unit]] * values.shape[1])
 
@@ -85,9 +90,9 @@ def _instrument(path: Path, unit: str | None) -> Heights:
 
 def _factor(path: Path, stated: str | None, given: str | None) -> float:
     if stated is None and given is None:
-        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+        raise _without_unit(path)
     if stated is not None and given is not None:
-        raise ValueError(f"{path}: states its unit {stated} itself; leave --unit {given} out")
+        raise Refusal(f"{path}: states its unit {stated} itself; leave the unit {given} out", "unit")
     if given is not None:
         return csvfile.LENGTHS[given]
     from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor

@@ -11,6 +11,7 @@ from ..joints import KINDS
 from ..joints.reduced import Reduced, reduced
 from ..parameters import ParameterFile
 from ..quantity import Interval, flat_fields, problem
+from ..refusal import Refusal
 from .distributions import Uncertain, is_relative
 from .study import samples_of, split
 
@@ -71,7 +72,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
             _check(parameter, declared[parameter.name])
     order = tuple(sorted(uncertain, key=lambda parameter: parameter.name == curves.load.name))
     if not order:
-        raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
     loads = _ramp(curves, stated.values, at, to, points, load)

@@ -55,7 +55,7 @@ def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
 
 
 def settings(path: Path | None, given: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    """Settings of a study file, if any, and of `--set`, which wins."""
+    """Settings of a study file, if any, and those given, which win."""
     return (read(path) if path else {}) | dict(given)
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from .. import columns, ramp
 from ..parameters import write_text
 from ..progress import track
+from ..refusal import Refusal
 from . import journal
 from .cluster import client
 from .journal import Journal
@@ -63,7 +64,7 @@ def plan(
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
     plain, uncertain = split(given, {name: float(variables[name].start or 0.0) for name in real})
     if not uncertain:
-        raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
     if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
         raise ValueError(
             f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
