@@ -142,7 +142,7 @@ def test_missing_column_and_units_are_refused(tmp_path):
         Reading().field(write_csv(tmp_path / "a.csv", ["0,0,1"], "x [mm],y [mm],pressure [MPa]"))
     with pytest.raises(ValueError, match=r"column 'pressure' has no unit"):
         Reading().field(write_csv(tmp_path / "b.csv", ROWS, "x [mm],y [mm],area [mm2],pressure"))
-    with pytest.raises(ValueError, match=r"states no units; state length's, one of m, mm, um"):
+    with pytest.raises(ValueError, match=r"states no unit of length; expected one of m, mm, um"):
         Reading().field(DATA / "blocks.frd")
     with pytest.raises(ValueError, match=r"length = 'mm': a CSV file states units"):
         Reading(length="mm").field(write_csv(tmp_path / "c.csv", ROWS))

@@ -91,7 +91,7 @@ class Reading:
             (self.pressure, "pressure", PRESSURES),
         ):
             if value is None:
-                raise Refusal(f"{path}: states no units; state {name}'s, one of {', '.join(units)}", name)
+                raise Refusal(f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name)
         return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]
 
     def _stated_by_file(self, path: Path) -> None:
