@@ -17,8 +17,9 @@ from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
 from jointfmu.joints import register, unregister
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
 from jointfmu.joints.bolted_joint.published import p_between
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern, pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 

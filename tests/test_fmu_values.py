@@ -19,9 +19,11 @@ from jointfmu import ramp
 from jointfmu.curve import MAX_ERROR
 from jointfmu.interface import at_pressure, stiffness_curve
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
-from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, drive_stiffness
+from jointfmu.joints.harmonic_drive.law import drive_stiffness
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten

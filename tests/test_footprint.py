@@ -13,8 +13,8 @@ from jointfmu.footprint.lobes import two_lobes
 from jointfmu.footprint.nodes import Footprint
 from jointfmu.footprint.shape import ALIKE
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint.spring import pressures, row_forces
-from jointfmu.joints.harmonic_drive.spring import footprint, pair_stiffness, peak_pressure
+from jointfmu.joints.bolted_joint.law import pressures, row_forces
+from jointfmu.joints.harmonic_drive.law import footprint, pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 

@@ -90,7 +90,8 @@ def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float
     Raises ValueError if the joint has no such curve or its working point is missing.
     """
     load: LoadCurve = required(file.joint, "curve")
-    table, heads = load.table(file.values, state, error), load.heads
+    table = load.table(file.values, state, error)
+    heads = [(v.name, v.unit) for v in load.columns]
     about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
     if state is not None:
         about.append(f"working point: {state}")

@@ -4,7 +4,8 @@ from typing import Any
 
 from matplotlib.figure import Figure as Canvas
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
+from jointfmu.joints.bolted_joint.law import bolt_pattern
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 from jointfmu.ramp import RampResult
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from jointfmu.footprint.bolts import pressure_shape
 from jointfmu.footprint.shape import MergedShape
-from jointfmu.joints.bolted_joint import spring
+from jointfmu.joints.bolted_joint import law, spring
 from jointfmu.joints.model import Model
 
 from ...native.c_text import number
@@ -22,10 +22,10 @@ def _functions(g: Graph, model: Model) -> None:
     equal, tilt, mean, shift = symbols("node", 4)
     preload, moment, *rest = symbols("v", 8)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
-    bolts = spring.bolt_pressures(joint, preload, moment)
+    bolts = law.bolt_pressures(joint, preload, moment)
     g.add_with_seed("bolt_pressures", doc, [preload, moment], bolts)
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
-    pressure = spring.shaped_pressure(equal, tilt, mean, shift)
+    pressure = law.shaped_pressure(equal, tilt, mean, shift)
     g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)
     s_rel, v_rel = rest[:3], rest[3:]
     sums = dict(zip(spring.SUMS, symbols("sum", len(spring.SUMS)), strict=True))

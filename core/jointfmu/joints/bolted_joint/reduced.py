@@ -25,7 +25,8 @@ from ...quantity import flatten
 from ..model import Variable
 from ..reduced import Reduced
 from . import KIND
-from .spring import BoltedJoint, BoltedJointSpring, node_pressure, shear_ratio
+from .law import BoltedJoint, node_pressure, shear_ratio
+from .spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
 
@@ -138,8 +139,9 @@ def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[st
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
     rho = shear_ratio(joint)
-    C = total(works[0]) / total(works[1]) * np.sqrt(joint.mass * K)
-    tangential = mindlin.loss_factor(joint.traction_ratio) * np.sqrt(joint.mass * rho * K)
+    C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
+    eta_t = mindlin.loss_factor(joint.traction_ratio)
+    tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
     approach = 3.0 * compliance[:, :1] + compliance @ integral
     found = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
     if np.all(touching):

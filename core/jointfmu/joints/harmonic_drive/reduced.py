@@ -17,15 +17,8 @@ from ...batch.samples import columns
 from ...interface import largest_spot
 from ..reduced import Reduced
 from . import KIND
-from .spring import (
-    HarmonicDrive,
-    HarmonicDriveSpring,
-    contact_length,
-    in_series,
-    lobe_point,
-    local,
-    peak_pressure,
-)
+from .law import HarmonicDrive, contact_length, in_series, lobe_point, local, peak_pressure
+from .spring import HarmonicDriveSpring
 
 Array = NDArray[np.float64]
 

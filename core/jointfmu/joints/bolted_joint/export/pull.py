@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....export.tables import Table, thinned
-from ..spring import BoltedJointSpring, pressures
+from ..law import pressures
+from ..spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
 

@@ -28,7 +28,7 @@ from ....footprint.shape import MergedShape, NodalField
 from ....interface import stiffness_curve
 from ....parameters import ParameterFile, default
 from ....units import Sizes, factor, sizes
-from ..spring import BoltedJoint, pressures, shear_ratio
+from ..law import BoltedJoint, pressures, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
