@@ -9,8 +9,8 @@ import pytest
 from jointfmu.fields import csvfile
 from jointfmu.fields.areas import nodal_areas
 from jointfmu.fields.bodies import SURFACES, VOLUMES, boundary
+from jointfmu.fields.contact_surface import Plane
 from jointfmu.fields.reading import Reading
-from jointfmu.fields.surface import Plane
 
 DATA = Path(__file__).parent / "fields"
 UNITS = {"length": "mm", "pressure": "MPa"}

@@ -10,7 +10,7 @@ from jointfmu_fmu_src.modelica import library
 from jointfmu import cli, plots, ramp
 from jointfmu.fields import csvfile
 from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint import pressure_shape, with_field
+from jointfmu.fields.joint_parameters import pressure_shape, with_field
 from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts

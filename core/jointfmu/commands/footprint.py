@@ -65,14 +65,15 @@ def _bring(args: argparse.Namespace) -> int:
         check_writable(args.out)
     if args.plot:
         plots.check(args.plot)
-    from ..fields import figure, joint
+    from ..fields import figure
+    from ..fields.joint_parameters import with_field
 
     start = joint_file(args.params)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:
         source += f" and {args.moment_file.name}"
-    file, reduction = joint.with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
+    file, reduction = with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     if args.plot:
         figure.draw(field, reduction, args.plot)
@@ -90,9 +91,9 @@ def _bring(args: argparse.Namespace) -> int:
 
 def _reading(args: argparse.Namespace) -> Any:
     """How the file is to be read; every choice checked."""
+    from ..fields.contact_surface import AXES, OPEN, SIDES, Plane
+    from ..fields.nodal_result import LENGTHS, PRESSURES
     from ..fields.reading import FORMATS, Reading
-    from ..fields.result import LENGTHS, PRESSURES
-    from ..fields.surface import AXES, OPEN, SIDES, Plane
 
     for name, value, allowed in (
         ("--format", args.format, FORMATS),

@@ -15,8 +15,8 @@ from .common import command
 from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
+    from ..fem.bolted_contact import JointSolution
     from ..fem.convergence import MeshResult
-    from ..fem.joint import JointSolution
 
 TILT = 1.0 / 3.0
 """Moment of the second field for `--out`, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
@@ -112,7 +112,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """The joint with the field at the preload, and what a moment adds from a second one."""
-    from ..fields.joint import with_field
+    from ..fields.joint_parameters import with_field
 
     joint, law = solution.joint, _law(file)
     moment = args.moment or TILT * joint.assembly.most_moment(args.preload)

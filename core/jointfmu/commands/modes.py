@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         from ..fem import assembly_modes, shapes
         from ..fem.assembly import load
-        from ..fem.joint import BoltedContact
+        from ..fem.bolted_contact import BoltedContact
     except ImportError as error:
         raise without_fem(error) from None
     assembly = load(args.assembly)

@@ -17,7 +17,7 @@ from ..topography.form import FORMS
 from ..topography.fractal import zhao_roughness
 from ..topography.heights import Areal, Heights
 from ..topography.identify import METHODS, identify
-from ..topography.joint import changes, meaning, with_surface
+from ..topography.joint_parameters import changes, meaning, with_surface
 from ..topography.reading import read
 from ..topography.results import Estimate, Identification, Result
 from . import synthesize

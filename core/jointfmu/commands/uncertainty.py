@@ -73,9 +73,9 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import figures
+        from ..uncertainty import figure
 
-        figures.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
+        figure.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     if args.json:
         print(json.dumps(report.as_json(task, bands, indices)))
     else:

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..curve import approach_curve
 from ..joints.clamped import Clamped
+from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .elasticity import Array
 from .geometry import Assembly
-from .joint import BoltedContact, JointSolution
 from .modes import Modes, modes
 
 REFINEMENT = 0.5

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ..progress import track
+from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly
-from .joint import BoltedContact, JointSolution
 
 RATIO = math.sqrt(2.0)
 """Between the element sizes of two meshes [1]."""

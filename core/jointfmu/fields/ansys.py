@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..refusal import Refusal
-from .result import NodalResult, Nodes
+from .nodal_result import NodalResult, Nodes
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 _ELEMENT_HEAD = 6

@@ -11,7 +11,7 @@ import numpy as np
 from .. import columns
 from ..units import Sizes, sizes
 from .contact import ContactField
-from .result import LENGTHS, PRESSURES, NodalResult
+from .nodal_result import LENGTHS, PRESSURES, NodalResult
 
 COLUMNS: Mapping[str, Sizes] = {
     "x": LENGTHS,

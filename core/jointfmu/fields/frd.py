@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import bodies, boundary
-from .result import Array, NodalResult, Nodes
+from .nodal_result import Array, NodalResult, Nodes
 
 TYPES: dict[int, tuple[str, int]] = {
     1: ("hexahedron", 8),

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..refusal import Refusal
 from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
-from .result import Array, NodalResult
+from .nodal_result import Array, NodalResult
 
 
 def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:

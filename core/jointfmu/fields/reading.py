@@ -9,8 +9,8 @@ import numpy as np
 from ..refusal import Refusal
 from . import ansys, csvfile, frd, meshfile
 from .contact import ContactField
-from .result import LENGTHS, PRESSURES, NodalResult
-from .surface import OPEN, Plane, Surface, surface
+from .contact_surface import OPEN, ContactSurface, Plane, contact_surface
+from .nodal_result import LENGTHS, PRESSURES, NodalResult
 
 FORMATS = ("csv", "mesh", "ansys", "frd")
 SUFFIXES = {".csv": "csv", ".frd": "frd", ".lis": "ansys", ".txt": "ansys", ".out": "ansys"}
@@ -63,8 +63,8 @@ class Reading:
             )
         return first.field(kept), second.field(kept)
 
-    def _surface(self, path: Path, beside: Sequence[Path]) -> Surface:
-        return surface(self._result(path, beside), self.plane)
+    def _surface(self, path: Path, beside: Sequence[Path]) -> ContactSurface:
+        return contact_surface(self._result(path, beside), self.plane)
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
         format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
@@ -108,7 +108,7 @@ class Reading:
                 raise Refusal(text, name)
 
 
-def _refuse_open(surface: Surface) -> None:
+def _refuse_open(surface: ContactSurface) -> None:
     open_nodes = np.flatnonzero(surface.pressure == 0.0)
     if open_nodes.size:
         raise Refusal(

@@ -17,7 +17,7 @@ from scipy.optimize import nnls
 from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
 from ..progress import track
-from .result import Array, Nodes
+from .nodal_result import Array, Nodes
 from .sums import PRELOADS, SEED, Load, Sums, SumsAtLoad, balance, first_loads, further_loads, largest_moment
 
 TOLERANCE = 1e-6

@@ -11,7 +11,7 @@ from scipy.stats import qmc
 from ..curve import Curve, approach_curve
 from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
-from .result import Array
+from .nodal_result import Array
 
 PRELOADS = (0.05, 3.0)
 """Range of the preload over the one of the field [1]."""

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from ..refusal import Refusal
 from .areas import CORNERS, nodal_areas
 from .contact import ContactField
-from .result import Array, NodalResult, Nodes
+from .nodal_result import Array, NodalResult, Nodes
 
 AXES = "xyz"
 FLAT = 1e-3
@@ -51,7 +51,7 @@ class Plane:
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class ContactSurface:
     """Nodes of the contact: places in the result, area (n) [m2], place (n, 2) [m], pressure (n) [Pa]."""
 
     result: NodalResult
@@ -69,7 +69,7 @@ class Surface:
         return ContactField(self.area[kept], self.place[kept], self.pressure[kept])
 
 
-def surface(result: NodalResult, plane: Plane) -> Surface:
+def contact_surface(result: NodalResult, plane: Plane) -> ContactSurface:
     """The contact of a result.
 
     Raises ValueError naming the node: no pressure at all, a node off the plane, two at one place, a
@@ -85,12 +85,12 @@ def surface(result: NodalResult, plane: Plane) -> Surface:
     pressure = result.pressure[index]
     if result.left_out:
         pressure = np.nan_to_num(pressure, nan=0.0)
-    contact = Surface(result, index, area[index], inside[index], pressure)
+    contact = ContactSurface(result, index, area[index], inside[index], pressure)
     _check(contact)
     return contact
 
 
-def _check(contact: Surface) -> None:
+def _check(contact: ContactSurface) -> None:
     p = contact.pressure
     for bad, text in (
         (~np.isfinite(p), "pressure = {p:g} is no finite number"),
