@@ -172,7 +172,10 @@ def test_study_file(tmp_path, capsys):
     ("arguments", "words"),
     [
         (["--set", "surface.D=2.4..2.6"], "JOINT or --params FILE is missing"),
-        (["harmonic_drive"], "no parameter has a distribution"),
+        (
+            ["harmonic_drive"],
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file",
+        ),
         (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are surface.D"),
         (["harmonic_drive", "--set", "surface.D=2.4..3.1"], "surface.D = 3.1 is outside (2, 3)"),
         (["harmonic_drive", "--set", "surface.D=normal(3.5, 1)"], "surface.D = 3.5 is outside (2, 3)"),
