@@ -1,8 +1,12 @@
+/* Repeats `pair_curve` of the package, and its energy; the laws in it are generated. */
 #include "gear_mesh.h"
 
 #include <math.h>
 
 #include "tabulated.h"
+
+_Static_assert(N_LAW_STATE == 0, "the flanks' curve alone");
+_Static_assert(PAIR_CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
 static bool tabulate_flanks(Joint *joint, int steps, Text *why)
 {
@@ -19,21 +23,14 @@ static Node pair_node(const Joint *joint, double approach, const double *pressur
     return (Node){.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
 }
 
-/* Bend of the flanks' pressure at a node, from below: there a regime may end. */
-static double bend_below(const Curve *flanks, int node)
-{
-    const double *a = flanks->a[node - 1];
-    const double h = flanks->x[node] - flanks->x[node - 1];
-    return (2.0 * a[2] + 6.0 * a[3] + 12.0 * a[4] + 20.0 * a[5]) / (h * h);
-}
-
 /* A node of the pair's piece that ends with a node of the flanks, at a displacement of their table. */
 static bool add_node(Joint *joint, double x, bool begins, int last)
 {
     const Curve *flanks = &joint->kind.flanks;
-    double pressure[3];
+    double pressure[3], below[3];
     curve_at(flanks, x, 2, pressure);
-    const double bend = x == flanks->x[last] ? bend_below(flanks, last) : pressure[2];
+    curve_derivatives(flanks, last - 1, 1.0, 2, below); /* a regime may end there */
+    const double bend = x == flanks->x[last] ? below[2] : pressure[2];
     const Node node = pair_node(joint, x - flanks->x[0], pressure, bend);
     if (!begins)
         return curve_add(&joint->curve, node);
@@ -137,18 +134,20 @@ bool kind_tabulate(Joint *joint, Text *why)
     return true;
 }
 
-/* Load, stiffness and energy of a pair at a deflection; y is load, stiffness and its derivative there, up to
- * an order. */
+/* A pair at a deflection: load, stiffness and energy x; load and its derivatives up to an order y. */
 static void look_up(const Joint *joint, double deflection, int order, double *x, double *y)
 {
     const Curve *curve = &joint->curve;
-    double t;
-    const int i = curve_segment(curve, deflection, &t);
-    const double beyond = fmax(deflection - curve->end.x, 0.0);
-    curve_at(curve, deflection, order, y);
+    const double inside = fmin(deflection, curve->end.x), beyond = fmax(deflection - inside, 0.0);
+    const int i = curve_segment(curve, inside);
+    const double t = (inside - curve->x[i]) * curve->per[i];
+    curve_derivatives(curve, i, t, order, y);
+    x[2] = joint->kind.energy[i] + rise_of_energy(curve, i, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
+    y[0] += beyond * y[1];
+    for (int k = 2; k <= order && beyond > 0.0; k++)
+        y[k] = 0.0;
     x[0] = y[0];
     x[1] = y[1];
-    x[2] = joint->kind.energy[i] + rise_of_energy(curve, i, t) + beyond * (y[0] - 0.5 * beyond * y[1]);
 }
 
 enum { N_PAIR = 3, N_GIVEN = 1 + N_INPUTS + N_PAIR }; /* closing, inputs, what look_up finds */

@@ -6,13 +6,14 @@ import numpy as np
 from jointfmu.joints.gear_mesh import spring
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, law_functions, symbols
+from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import APPROACH, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
     mesh = g.joint
-    law_functions(g, mesh, ("normal",))
+    law_functions(g, mesh, ("normal",), lambda spots, u: [])
+    add_closing(g)
     flanks = symbols("flanks", 4)
     doc = "approach of the flanks, pressure, its two derivatives -> deflection, load, K, dK/ds of a pair"
     g.add("in_series", doc, flanks, spring.in_series(mesh, *flanks))

@@ -11,7 +11,7 @@ enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, slope o
 
 /* A node of the table: the curve and the state beside. */
 typedef struct {
-    Node curve, state[N_LAW_STATE];
+    Node curve, state[APPROACH_STATES];
 } Point;
 
 /* How the contact closes: from separation to the node at zero approach, so that the approach does not start

@@ -6,10 +6,12 @@
 #include "curve.h"
 #include "spots.h"
 
+enum { APPROACH_STATES = N_LAW_STATE > 0 ? N_LAW_STATE : 1 }; /* an array has an element */
+
 typedef struct {
     double closed;      /* pressure [Pa] at the end of the closing, at zero approach */
     double first, last; /* log-areas of the largest spot there and at the end of the table */
-    double state[CURVE_NODES][N_LAW_STATE][6]; /* of 1, t, ... t^5; in the closing that at its end */
+    double state[CURVE_NODES][APPROACH_STATES][6]; /* of 1, t, ... t^5; in the closing that at its end */
 } Approach;
 
 /* Build with so many steps per unit of log-area; false: refused with a reason, or the table is full. */
