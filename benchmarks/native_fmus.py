@@ -27,28 +27,22 @@ from jointfmu.host import Fmi2
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 
+HERE = Path(__file__).resolve().parent
+TESTS = HERE.parent / "tests"
+HOSTS = TESTS / "native"
+sys.path.append(str(TESTS))
+from joint_cases import CASES  # noqa: E402
+
 ROUNDS, REPEATS, PYTHON_CYCLES = 5, 101, 100
 ROWS = 4093  # as in native_fmus.c
-HERE = Path(__file__).resolve().parent
-HOSTS = HERE.parent / "tests" / "native"
 NATIVE, PLATFORM = ("fmi2", "fmi3"), "x86_64-linux"
 WIDE = "PassThrough4x9"
 """As many inputs and outputs as the harmonic drive has."""
 PASS_THROUGH = {"PassThrough": (2, 2), WIDE: (4, 9)}
 """{FMU that passes its inputs on: (inputs, outputs)}."""
-RANGES = {
-    "HarmonicDriveSpring": {
-        "phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5),
-    },
-    "HarmonicDriveCompliance": {"tau": (-30, 30)},
-    "BoltedJoint": {
-        "preload": (2e3, 3e4), "moment": (-1500, 1500),
-        "s_rel_x": (-2e-6, 2e-6), "s_rel_y": (-2e-6, 2e-6), "s_rel_z": (-1e-6, 3e-6),
-        "v_rel_x": (-1e-3, 1e-3), "v_rel_y": (-1e-3, 1e-3), "v_rel_z": (-1e-3, 1e-3),
-    },
-    "GearContact": {"f": (0, 6e4)},
-    **{name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()},
-}  # fmt: skip
+RANGES = {name: dict(case.span) for name, case in CASES.items()} | {
+    name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
+}
 """Inputs over the range of the tables."""
 HELD = ("preload", "moment")
 """Inputs that stay as they are along the trajectory: a joint is tightened once."""

@@ -12,6 +12,7 @@ from typing import Any
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
+from joint_cases import CASES, NAMES, PUBLIC
 from jointfmu_fmu_src.building import build
 from lxml import etree
 
@@ -19,59 +20,13 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
-DRIVE = {
-    "surface.D": "1", "surface.G": "m", "surface.gamma": "1", "surface.r_m": "m", "surface.s_min": "m2",
-    "flexspline.E": "Pa", "flexspline.nu": "1", "flexspline.sigma_y": "Pa",
-    "bearing.E": "Pa", "bearing.nu": "1", "bearing.sigma_y": "Pa",
-    "mu": "1", "radial_deformation": "m", "eccentricity": "m", "ratio": "1", "K_FTS0": "N.m/rad",
-    "d": "N.m.s/rad",
-}  # fmt: skip
-STIFFNESS = {"K_WTS": "N.m/rad", "K_TS": "N.m/rad", "K_FTS": "N.m/rad"}
-SIDES = {"side1.E": "Pa", "side1.nu": "1", "side2.E": "Pa", "side2.nu": "1"}
-PUBLIC: dict[str, dict[str, dict[str, str]]] = {
-    "HarmonicDriveSpring": {
-        "input": {"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
-        "output": {"tau1": "N.m", "tau2": "N.m", "phi_rel": "rad", "tau": "N.m", **STIFFNESS},
-        "parameter": DRIVE,
-    },
-    "HarmonicDriveCompliance": {
-        "input": {"tau": "N.m"},
-        "output": {"phi_rel": "rad", **STIFFNESS},
-        "parameter": DRIVE,
-    },
-    "BoltedJoint": {
-        "input": {
-            "preload": "N", "moment": "N.m", "s_rel_x": "m", "s_rel_y": "m", "s_rel_z": "m",
-            "v_rel_x": "m/s", "v_rel_y": "m/s", "v_rel_z": "m/s",
-        },
-        "output": {
-            "f_x": "N", "f_y": "N", "f_z": "N", "K_xx": "N/m", "K_yy": "N/m", "K_zz": "N/m",
-            "C_xx": "N.s/m", "C_yy": "N.s/m", "C_zz": "N.s/m", "eta_t": "1", "eta_n": "1",
-            "K_rx": "N.m/rad", "K_ry": "N.m/rad", "K_rz": "N.m/rad", "p_mean": "Pa", "p_max": "Pa",
-        },
-        "parameter": {
-            "surface.D": "1", "surface.G": "m", "surface.gamma": "1", **SIDES, "H": "Pa", "mu": "1",
-            "traction_ratio": "1", "A_0": "m2", "mass": "kg", "n_bolts": "1", "row_distance": "m",
-        },
-    },
-    "GearContact": {
-        "input": {"f": "N"},
-        "output": {"s_rel": "m", "K_N": "N/m", "A_r": "m2", "elastic_fraction": "1"},
-        "parameter": {
-            "surface1.D": "1", "surface1.G": "m", "surface2.D": "1", "surface2.G": "m",
-            "surface.gamma": "1", "e": "1", "lambda": "1", **SIDES, "sigma_y": "Pa", "A_0": "m2",
-        },
-    },
-}  # fmt: skip
-"""The contract: {FMU: {causality: {variable: unit}}}; an FMU may have more."""
-
 DEGREE = math.pi / 180.0
 SHOWN = {"deg": DEGREE, "arcmin": DEGREE / 60.0, "rev/min": 2.0 * math.pi / 60.0, "um2": 1e-12, "mm2": 1e-6}
 """Units whose SI value the prefixes below do not give."""
 PREFIX = {"M": 1e6, "G": 1e9, "k": 1e3, "m": 1e-3, "u": 1e-6}
 BASE: dict[str, dict[str, int]] = {
     "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "rad": {"rad": 1}, "1": {},
-    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2},
+    "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
 }  # fmt: skip
 
 
@@ -100,7 +55,7 @@ def dimension(unit: str) -> dict[str, int]:
     return {base: power for base, power in found.items() if power}
 
 
-@pytest.fixture(params=list(PUBLIC))
+@pytest.fixture(params=NAMES)
 def name(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
@@ -117,7 +72,7 @@ def variables(root: Any, causality: str | None = None) -> dict[str, Any]:
 
 
 def test_all_fmus_of_the_contract_are_built_and_no_other(fmus: Path) -> None:
-    assert {p.stem for p in fmus.glob("*.fmu")} == set(PUBLIC) == set(MODELS)
+    assert {p.stem for p in fmus.glob("*.fmu")} == set(CASES) == set(MODELS)
 
 
 def test_fmpy_finds_no_problem(fmus: Path, name: str) -> None:
@@ -167,17 +122,7 @@ def test_base_units_and_display_factors_say_what_the_names_say(root: Any) -> Non
 
 @pytest.mark.parametrize(
     ("fmu_name", "variable", "shown"),
-    [
-        ("HarmonicDriveSpring", "phi2", "deg"),
-        ("HarmonicDriveCompliance", "phi_rel", "arcmin"),
-        ("BoltedJoint", "p_max", "MPa"),
-        ("BoltedJoint", "preload", "kN"),
-        ("BoltedJoint", "K_zz", "N/um"),
-        ("GearContact", "f", "kN"),
-        ("GearContact", "K_N", "N/um"),
-        ("GearContact", "s_rel", "um"),
-        ("BoltedJoint", "s_rel_z", "um"),
-    ],
+    [(name, *shown) for name, case in CASES.items() for shown in case.shown.items()],
 )
 def test_people_see_the_units_they_know(fmus: Path, fmu_name: str, variable: str, shown: str) -> None:
     found = {v.name: v for v in fmpy.read_model_description(str(fmus / f"{fmu_name}.fmu")).modelVariables}
@@ -249,25 +194,14 @@ def test_start_values_are_the_default_parameters(root: Any, name: str) -> None:
         assert float(node.find("Real").get("start")) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("fmu_name", "steps"),
-    [
-        ("HarmonicDriveSpring", None),
-        ("HarmonicDriveCompliance", 500),
-        ("BoltedJoint", 300),
-        ("GearContact", 300),
-    ],
-)
-def test_the_default_experiment_is_the_load_ramp_one_step_per_second(
-    fmus: Path, fmu_name: str, steps: int | None
-) -> None:
-    experiment = fmpy.read_model_description(str(fmus / f"{fmu_name}.fmu")).defaultExperiment
-    ramp = MODELS[fmu_name].ramp
+def test_the_default_experiment_is_the_load_ramp_one_step_per_second(fmus: Path, name: str) -> None:
+    experiment = fmpy.read_model_description(str(fmus / f"{name}.fmu")).defaultExperiment
+    ramp, steps = MODELS[name].ramp, CASES[name].steps
     assert float(experiment.startTime) == 0.0
     assert float(experiment.stepSize) == 1.0
     assert float(experiment.stopTime) == pytest.approx(ramp.end / ramp.step, rel=1e-12)
     assert steps is None or float(experiment.stopTime) == steps
-    assert ramp.input in PUBLIC[fmu_name]["input"]
+    assert ramp.input in CASES[name].inputs
 
 
 def test_what_the_fmu_can_do(root: Any, name: str) -> None:
@@ -290,14 +224,13 @@ def test_calibration_parameters_say_so_and_no_other(root: Any, name: str) -> Non
     fields = MODELS[name].parameter_fields()
     described = {k for k, v in variables(root, "parameter").items() if "calibration" in v.get("description")}
     assert described == {k for k, f in fields.items() if f.metadata.get("calibration")}
-    if name.startswith("HarmonicDrive"):
-        assert {"K_FTS0", "zero_torque_pressure", "rated_pressure"} <= described
+    assert CASES[name].calibration <= described
 
 
 def test_equal_content_gives_an_equal_guid_and_file(
     fmus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    names = list(PUBLIC)
+    names = list(CASES)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     first = build(names, ["python"], None, tmp_path / "a")
     second = build(names, ["python"], None, tmp_path / "b")

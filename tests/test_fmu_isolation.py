@@ -23,17 +23,11 @@ from jointfmu.parameters import default
 
 Host = Callable[..., Fmu]
 NAMES = list(MODELS)
-DRIVEN = {
-    "HarmonicDriveSpring": ("phi2", 1e-3),
-    "HarmonicDriveCompliance": ("tau", 5.0),
-    "BoltedJoint": ("preload", 2e4),
-    "GearContact": ("f", 3e3),
-}
 
 
 def trace(instance: Fmu, name: str, points: int = 10) -> list[dict[str, float]]:
     """Outputs along a load ramp, with steps."""
-    driven, end = DRIVEN[name]
+    driven, end = MODELS[name].ramp.input, MODELS[name].ramp.end
     found = []
     for value in np.linspace(0.1, 1.0, points) * end:
         found.append(instance.at({driven: float(value)}))
@@ -50,7 +44,7 @@ def test_two_instances_do_not_see_each_other(fmu: Host, name: str) -> None:
     a, b = fmu(name, instance_name="a"), fmu(name, instance_name="b")
     a.start({"surface.gamma": 1.4})
     b.start({"surface.gamma": 1.6})
-    driven, end = DRIVEN[name]
+    driven, end = MODELS[name].ramp.input, MODELS[name].ramp.end
     for i, value in enumerate(np.linspace(0.1, 1.0, 10) * end):
         a.set({driven: float(value)})
         b.set({driven: float(value)})
@@ -139,7 +133,7 @@ def test_an_instance_may_move_between_threads(fmu: Host) -> None:
 @pytest.fixture(scope="module")
 def other_parameters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("other_parameters")
-    for joint in ("harmonic_drive", "bolted_joint", "gear_contact"):
+    for joint in KINDS:
         build([], ["python"], default(joint).with_values({"surface.gamma": 1.6}, "user", "test"), out)
     return out / "python"
 
@@ -290,7 +284,7 @@ def only_numpy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_host_with_only_numpy_gets_the_numbers(fmu: Host, fmus: Path, only_numpy: Path, name: str) -> None:
-    driven, value = DRIVEN[name]
+    driven, value = MODELS[name].ramp.input, MODELS[name].ramp.end
     _, _, seen = c_like_host(fmus / f"{name}.fmu", only_numpy, driven, value)
     assert seen["log"] == []
     assert seen["status"] == [0] * 7
@@ -310,7 +304,8 @@ def test_a_host_ends_cleanly(fmus: Path, only_numpy: Path) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_host_without_numpy_is_told_so(fmus: Path, name: str) -> None:
-    status, errors, seen = c_like_host(fmus / f"{name}.fmu", None, *DRIVEN[name])
+    r = MODELS[name].ramp
+    status, errors, seen = c_like_host(fmus / f"{name}.fmu", None, r.input, r.end)
     assert (status, errors) == (3, "")
     text = " ".join(message for _, message in seen["log"])
     assert f"{name} needs the Python package numpy" in text

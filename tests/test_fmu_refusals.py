@@ -8,54 +8,29 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from case import Beyond, Refused
 from conftest import Fmu, refused_line, run_host
+from joint_cases import BEYOND, CASES, GOOD, NAMES
 
 from jointfmu import cli
 from jointfmu.joints import MODELS
 
 Host = Callable[..., Fmu]
-NAMES = list(MODELS)
-GOOD = {
-    "HarmonicDriveSpring": {"phi2": 6e-4},
-    "HarmonicDriveCompliance": {"tau": 3.0},
-    "BoltedJoint": {"preload": 9e3},
-    "GearContact": {"f": 900.0},
-}
 
 
 # Parameters
 
-REFUSED = [
-    ("HarmonicDriveSpring", "surface.D", 2.0, "2", "(2, 3)"),
-    ("HarmonicDriveSpring", "surface.D", 3.5, "3.5", "(2, 3)"),
-    ("HarmonicDriveSpring", "surface.gamma", 1.0, "1", "(1, inf)"),
-    ("HarmonicDriveSpring", "eccentricity", -1e-5, "-1e-05 m", "[0, 0.001)"),
-    ("HarmonicDriveSpring", "radial_deformation", 3e-3, "0.003 m", "(0, 0.002)"),
-    ("HarmonicDriveSpring", "d", math.inf, "inf N.m.s/rad", "[0, inf)"),
-    ("HarmonicDriveSpring", "ratio", 0.0, "0", "(0, inf)"),
-    ("HarmonicDriveCompliance", "K_FTS0", math.nan, "nan N.m/rad", "(0, inf)"),
-    ("HarmonicDriveCompliance", "flexspline.sigma_y", -835e6, "-835000000 Pa", "(0, inf)"),
-    ("HarmonicDriveCompliance", "bearing.nu", 0.6, "0.6", "(-1, 0.5]"),
-    ("BoltedJoint", "surface.D", 2.53, "2.53", "(1, 2)"),
-    ("BoltedJoint", "traction_ratio", 1.0, "1", "[0, 1)"),
-    ("BoltedJoint", "n_bolts", 0.0, "0", "[1, inf)"),
-    ("BoltedJoint", "mass", -math.inf, "-inf kg", "(0, inf)"),
-    ("GearContact", "surface2.G", 0.0, "0 m", "(0, inf)"),
-    ("GearContact", "e", math.nan, "nan", "[0, 1)"),
-    ("GearContact", "lambda", 1.0000001, "1.0000001", "(0, 1]"),
-]
 
-
-@pytest.mark.parametrize(("name", "parameter", "value", "shown", "allowed"), REFUSED)
-def test_a_bad_parameter_is_named_with_value_unit_and_range(
-    fmu: Host, name: str, parameter: str, value: float, shown: str, allowed: str
-) -> None:
+@pytest.mark.parametrize(
+    ("name", "refused"), [(name, refused) for name, case in CASES.items() for refused in case.refused]
+)
+def test_a_bad_parameter_is_named_with_value_unit_and_range(fmu: Host, name: str, refused: Refused) -> None:
     instance = fmu(name)
     instance.fmu.setupExperiment(startTime=0.0)
     instance.fmu.enterInitializationMode()
-    instance.set({parameter: value})
+    instance.set({refused.parameter: refused.value})
     message = instance.refused(instance.fmu.exitInitializationMode)
-    assert message.startswith(f"{parameter} = {shown} is outside {allowed}: ")
+    assert message.startswith(f"{refused.parameter} = {refused.shown} is outside {refused.allowed}: ")
 
 
 SWEEP = """
@@ -104,16 +79,7 @@ def test_two_bad_parameters_are_both_named(fmu: Host) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "values", "parts"),
-    [
-        (
-            "HarmonicDriveSpring",
-            {"rated_pressure": 1e6},
-            ("rated_pressure = 1e+06 Pa", "zero_torque_pressure"),
-        ),
-        ("HarmonicDriveCompliance", {"eccentricity": 9e-4}, ("eccentricity = 0.0009 m is outside [0, ",)),
-        ("BoltedJoint", {"row_bolts": 5.0}, ("row_bolts = 5", "[1, 4]")),
-    ],
+    ("name", "values", "parts"), [(name, *unfit) for name, case in CASES.items() for unfit in case.unfit]
 )
 def test_parameters_that_do_not_fit_together_are_refused(
     fmu: Host, name: str, values: dict[str, float], parts: tuple[str, ...]
@@ -125,7 +91,7 @@ def test_parameters_that_do_not_fit_together_are_refused(
 
 @pytest.mark.parametrize(
     ("name", "parameter", "value"),
-    [("HarmonicDriveCompliance", "K_FTS0", 1e-300), ("GearContact", "surface1.G", 1e300)],
+    [(name, *absurd) for name, case in CASES.items() for absurd in case.absurd],
 )
 def test_an_absurd_value_in_range_is_refused_by_name_or_gives_numbers(
     fmu: Host, name: str, parameter: str, value: float
@@ -297,18 +263,12 @@ def test_a_wrong_call_repeated_by_the_host_does_not_crash_the_process(fmus: Path
 
 # Beyond the table: warned once, continued with the last tangent
 
-BEYOND = [
-    ("HarmonicDriveSpring", "phi2", 0.01, "tau", "K_WTS", "phi_rel = 0.01 rad"),
-    ("HarmonicDriveCompliance", "tau", 100.0, "phi_rel", "K_WTS", "tau = 100 N.m"),
-    ("GearContact", "f", 1e6, "s_rel", "K_N", "f = 1e+06 N"),
-    ("BoltedJoint", "s_rel_z", -1e-3, "f_z", "K_zz", "p_max = "),
-]
 
-
-@pytest.mark.parametrize(("name", "driven", "far", "answer", "stiffness", "text"), BEYOND)
+@pytest.mark.parametrize(("name", "beyond"), BEYOND)
 def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
-    fmu: Host, name: str, driven: str, far: float, answer: str, stiffness: str, text: str
+    fmu: Host, name: str, beyond: Beyond
 ) -> None:
+    driven, far, answer, stiffness, text, inverse, lever = beyond
     instance = fmu(name).start(GOOD[name])
     assert not instance.messages
     x, found = [far, 1.5 * far, 2.0 * far], []
@@ -324,8 +284,8 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     y = [f[answer] for f in found]
     # a straight line: three points, to round-off of values much larger than their difference
     assert y[2] - y[1] == pytest.approx(y[1] - y[0], rel=1e-9)
-    slope = abs((y[1] - y[0]) / (x[1] - x[0]))
-    if driven in ("tau", "f"):
+    slope = abs((y[1] - y[0]) / (x[1] - x[0])) / lever
+    if inverse:
         slope = 1.0 / slope
     assert [f[stiffness] for f in found] == pytest.approx([slope] * 3, rel=1e-9)
     other = fmu(name).start()

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import fmpy
 import pytest
+from joint_cases import JOINTS
 from jointfmu_fmu_src.native.generate import COMMON, RUNTIME, sources, token
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
@@ -32,11 +33,6 @@ VERSIONS = ("2", "3")
 FUZZ_CALLS = 1_000_000 // (len(MODELS) * len(COMPILERS) * len(VERSIONS))
 
 RUNTIME_ALONE = (*COMMON, "joint", "variables", "fmi2", "fmi3")
-SCALED = {  # a parameter that each thread scales a little
-    "harmonic_drive": "surface.G",
-    "bolted_joint": "surface.G",
-    "gear_contact": "surface1.G",
-}
 C_LIBRARY = {
     "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
     "exp", "expm1", "log", "log1p", "log10", "pow", "sqrt", "cbrt", "hypot", "sin", "cos", "sincos", "tan",
@@ -206,7 +202,7 @@ def test_behaviour(sanitizing: str, builder: Builder, version: str) -> None:
 def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> None:
     c, reference = c_of(name), 1 + c_of(name).inputs + c_of(name).outputs
     if model := MODELS.get(name):
-        reference += list(model.parameter_fields()).index(SCALED[model.joint])
+        reference += list(model.parameter_fields()).index(JOINTS[model.joint].scaled)
     command = [
         str(builder.program(sanitizing, "threads", name)),
         "",

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from natives import DIFFERENCE, JUMPS, NAMES, VERSIONS, Host, close, differences, jacobian
-from test_fmu_values import RANGES, STATE, parameters, random_inputs
+from joint_cases import NAMES, STATE, random_inputs
+from natives import VERSIONS, Host, allowed, differences, jacobian
 
 from jointfmu.joints import MODELS
 
@@ -26,73 +26,11 @@ def test_directional_derivatives_are_those_of_the_package(host: Host, name: str,
             expected, size = differences(name, state, moved)
             for output, value in values.items():
                 scale = max(abs(value), abs(found[output, moved]) * size)
-                allowed = (JUMPS if output == "K_zz" else DIFFERENCE) * scale / size
-                assert abs(found[output, moved] - expected[output]) <= allowed, (output, moved)
+                most = allowed(name, output) * scale / size
+                assert abs(found[output, moved] - expected[output]) <= most, (output, moved)
         model = MODELS[name]
         apart = {key for key in found if key[1] not in model.depends(key[0])}
         assert {key: found[key] for key in apart} == dict.fromkeys(apart, 0.0)
-
-
-def test_derivatives_keep_the_closed_relations_of_the_drive(host: Host, version: str) -> None:
-    ratio, d = 80.0, 0.7
-    spring = host("HarmonicDriveSpring", version).start({"ratio": ratio, "d": d})
-    compliance = host("HarmonicDriveCompliance", version).start()
-    beyond = {"phi1": 0.0, "w1": 0.0, "phi2": 0.05, "w2": 1.0}
-    for state in (*random_inputs("HarmonicDriveSpring", 20, seed=33), beyond):
-        values, J = spring.at(state), jacobian(spring)
-        K = values["K_WTS"]
-        assert J["tau", "phi2"] == close(K, 1e-12)
-        assert J["tau", "phi1"] == close(-K / ratio, 1e-12)
-        assert (J["tau", "w2"], J["tau", "w1"]) == close((d, -d / ratio), 1e-12)
-        for moved in state:
-            assert J["tau1", moved] == close(J["tau", moved] / ratio, 1e-12)
-            assert J["tau2", moved] == -J["tau", moved]
-            series = J["K_TS", moved] / values["K_TS"] ** 2 - J["K_WTS", moved] / K**2
-            assert abs(series) <= 1e-12 * abs(J["K_WTS", moved]) / K**2
-        assert (J["phi_rel", "phi1"], J["phi_rel", "phi2"]) == close((-1.0 / ratio, 1.0), 1e-12)
-    assert J["K_WTS", "phi2"] == 0.0  # beyond the table: a straight line
-    for tau in (*np.linspace(-29.0, 29.0, 15), 100.0):
-        wound, J = compliance.at({"tau": float(tau)}), jacobian(compliance)
-        assert J["phi_rel", "tau"] == close(1.0 / wound["K_WTS"], 1e-12)
-    assert J["K_WTS", "tau"] == 0.0
-
-
-def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(host: Host, version: str) -> None:
-    instance, joint = host("BoltedJoint", version).start(), parameters("BoltedJoint")
-    for state in random_inputs("BoltedJoint", 20, seed=34):
-        values = instance.at(state | {"v_rel_x": 0.0, "v_rel_y": 0.0, "v_rel_z": 0.0})
-        J = jacobian(instance)
-        for axis in "xyz":
-            K, C = values[f"K_{2 * axis}"], values[f"C_{2 * axis}"]
-            assert J[f"f_{axis}", f"s_rel_{axis}"] == close(-K, 1e-10)
-            assert J[f"f_{axis}", f"v_rel_{axis}"] == close(-C, 1e-12)
-        for a, b in ("xy", "xz", "yz"):  # a potential
-            mixed = J[f"f_{a}", f"s_rel_{b}"]
-            assert abs(mixed - J[f"f_{b}", f"s_rel_{a}"]) <= 1e-12 * values["K_zz"]
-        about = J["K_rx", "s_rel_z"] + J["K_ry", "s_rel_z"]
-        share = values["K_rz"] / (values["K_rx"] + values["K_ry"])
-        assert J["K_rz", "s_rel_z"] == close(share * about, 1e-12)
-    tight = dict.fromkeys(RANGES["BoltedJoint"], 0.0) | {"preload": 9e3}
-    instance.at(tight)
-    assert jacobian(instance)["p_mean", "preload"] == close(joint.n_bolts / joint.A_0, 1e-9)
-    apart = instance.at(tight | {"s_rel_z": 1e-3})
-    J = jacobian(instance)
-    assert apart["p_max"] == 0.0
-    assert J["f_z", "preload"] == close(-joint.n_bolts, 1e-9)  # all of it is lost
-    assert {value for key, value in J.items() if key[1] not in ("preload", "moment")} == {0.0}
-    instance.at(dict.fromkeys(tight, 0.0))  # nor is there anything without preload
-    assert set(jacobian(instance).values()) == {0.0}
-
-
-def test_derivatives_keep_the_closed_relations_of_the_gear_contact(host: Host, version: str) -> None:
-    instance = host("GearContact", version).start()
-    for f in (1e-3, 1.0, 300.0, 2e4, 6e4, 1e6):
-        values, J = instance.at({"f": f}), jacobian(instance)
-        assert J["s_rel", "f"] == close(1.0 / values["K_N"], 1e-12)
-        assert J["A_r", "f"] > 0.0
-    for f in (0.0, -5.0):
-        instance.at({"f": f})
-        assert set(jacobian(instance).values()) == {0.0}
 
 
 def test_derivatives_are_linear_in_the_seed_and_follow_the_state(host: Host, name: str, version: str) -> None:

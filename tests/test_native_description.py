@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
+from joint_cases import CASES, NAMES
 from jointfmu_fmu_src.native import licence as licence_module
 from jointfmu_fmu_src.native.description import LOG_CATEGORIES, build_description, fmi2_xml, fmi3_xml
 from jointfmu_fmu_src.native.licence import licence
@@ -23,7 +24,7 @@ from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.native.terminals import terminals_and_icons
 from lxml import etree
 from PIL import Image
-from test_fmu_description import PUBLIC, dimension, si_value
+from test_fmu_description import dimension, si_value
 
 from jointfmu import __version__
 from jointfmu.joints import MODELS
@@ -39,7 +40,7 @@ XSD = {
 }
 
 
-@pytest.fixture(params=list(PUBLIC))
+@pytest.fixture(params=NAMES)
 def name(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
@@ -358,7 +359,7 @@ def test_an_input_that_is_not_listed_has_no_influence(name: str) -> None:
 
 
 def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> None:
-    model, checked = MODELS[name], 0
+    checked = 0
     kinds = structure(name, 2, "Output")
     assert kinds == structure(name, 3, "Output")
     for output, knowns in kinds.items():
@@ -368,7 +369,7 @@ def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> N
             assert kind in ("constant", "tunable")
             sets: list[dict[str, float]] = [{}]
             if kind == "constant":  # the same for other parameters too
-                sets += [{"ratio": 50.0, "d": 0.25}]
+                sets += [dict(CASES[name].others)]
             factors = []
             for parameters in sets:
                 for inputs in samples(name, 3):
@@ -381,7 +382,7 @@ def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> N
             # differences of numbers up to 10 over 1e-4: eight digits remain
             assert factors == pytest.approx([factors[0]] * len(factors), rel=1e-8, abs=1e-9)
             checked += 1
-    assert (checked > 0) == (model.name == "HarmonicDriveSpring")
+    assert (checked > 0) == CASES[name].linear
 
 
 def test_fmi_2_names_the_sources_to_compile(name: str) -> None:
@@ -487,29 +488,19 @@ def test_terminals_follow_the_schema_and_name_what_exists(name: str) -> None:
     assert not schema.validate(root)
 
 
-@pytest.mark.parametrize(
-    ("fmu_name", "expected"),
-    [
-        ("HarmonicDriveSpring", {"flange1": "phi1 w1 tau1", "flange2": "phi2 w2 tau2"}),
-        ("HarmonicDriveCompliance", {"flange": "phi_rel tau"}),
-        ("BoltedJoint", {f"flange_{a}": f"s_rel_{a} v_rel_{a} f_{a}" for a in "xyz"}),
-        ("GearContact", {"flange": "s_rel f"}),
-    ],
-)
-def test_the_flanges_of_each_joint(fmu_name: str, expected: dict[str, str]) -> None:
-    root = etree.fromstring(pictures(fmu_name)["terminalsAndIcons.xml"])
+def test_the_flanges_of_each_joint(name: str) -> None:
+    root, case = etree.fromstring(pictures(name)["terminalsAndIcons.xml"]), CASES[name]
     found = {
         t.get("name"): " ".join(m.get("variableName") for m in t.findall("TerminalMemberVariable"))
         for t in root.find("Terminals")
     }
-    assert found == expected
-    domain = "Rotational" if fmu_name.startswith("Harmonic") else "Translational"
-    assert all(f".{domain}." in t.get("terminalKind") for t in root.find("Terminals"))
+    assert found == case.flanges
+    assert all(f".{case.domain}." in t.get("terminalKind") for t in root.find("Terminals"))
 
 
 def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
     """Inflow is applied to the element and winds it up; outflow is what it applies and opposes the motion."""
-    rest = {v.name: 0.0 for v in MODELS[name].inputs} | ({"preload": 1e4} if name == "BoltedJoint" else {})
+    rest = {v.name: 0.0 for v in MODELS[name].inputs} | CASES[name].rest
     for terminal in etree.fromstring(pictures(name)["terminalsAndIcons.xml"]).find("Terminals"):
         members = {m.get("memberName"): m for m in terminal.findall("TerminalMemberVariable")}
         motion = next(members[m].get("variableName") for m in ("phi", "s") if m in members)
@@ -521,13 +512,15 @@ def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
             assert step > 0.0
         else:
             assert flow.get("variableKind") == "outflow"
-            step = outputs(name, rest | {motion: 1e-7})[variable] - outputs(name, rest)[variable]
+            step = (
+                outputs(name, rest | {motion: rest[motion] + 1e-7})[variable] - outputs(name, rest)[variable]
+            )
             assert step < 0.0
 
 
 def test_icons_are_small_and_tell_the_joints_apart() -> None:
     seen = set()
-    for fmu_name in PUBLIC:
+    for fmu_name in NAMES:
         png, svg = (pictures(fmu_name)[f"icon.{kind}"] for kind in ("png", "svg"))
         image = Image.open(io.BytesIO(png))
         assert image.size == (200, 200)
@@ -540,7 +533,7 @@ def test_icons_are_small_and_tell_the_joints_apart() -> None:
         assert root.tag == "{http://www.w3.org/2000/svg}svg"
         assert root.get("viewBox") == "0 0 144 144"
         seen |= {png, svg}
-    assert len(seen) == 2 * len(PUBLIC)
+    assert len(seen) == 2 * len(NAMES)
 
 
 def test_an_icon_that_is_missing_is_named() -> None:

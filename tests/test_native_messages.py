@@ -1,13 +1,14 @@
 """What native FMUs warn of, refuse and log: the same words as the python flavour's."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
+from case import Beyond
 from fmpy.fmi1 import FMICallException
-from natives import NAMES, SAME, VERSIONS, Host, attempt, close, jacobian, package, settle
-from test_fmu_refusals import BEYOND, GOOD, REFUSED
-from test_fmu_values import RANGES, parameters
+from joint_cases import BEYOND, CASES, GOOD, NAMES, RANGES, parameters
+from natives import SAME, VERSIONS, Host, attempt, close, jacobian, package, settle
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
@@ -23,18 +24,11 @@ def name(request: pytest.FixtureRequest) -> str:
 # Warnings
 
 
-@pytest.mark.parametrize(("name", "driven", "far", "answer", "stiffness", "text"), BEYOND)
+@pytest.mark.parametrize(("name", "beyond"), BEYOND)
 def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
-    host: Host,
-    version: str,
-    exchange: bool,
-    name: str,
-    driven: str,
-    far: float,
-    answer: str,
-    stiffness: str,
-    text: str,
+    host: Host, version: str, exchange: bool, name: str, beyond: Beyond
 ) -> None:
+    driven, far, answer, stiffness, text, inverse, lever = beyond
     instance = host(name, version, exchange=exchange).start(GOOD[name])
     assert not instance.warnings
     x, found = [far, 1.5 * far, 2.0 * far], []
@@ -46,8 +40,8 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     assert not [m for m in instance.messages if m.status > 1]
     y = [f[answer] for f in found]
     assert y[2] - y[1] == close(y[1] - y[0])  # a straight line
-    tangent = abs((y[1] - y[0]) / (x[1] - x[0]))
-    slope = 1.0 / tangent if driven in ("tau", "f") else tangent
+    tangent = abs((y[1] - y[0]) / (x[1] - x[0])) / lever
+    slope = 1.0 / tangent if inverse else tangent
     assert [f[stiffness] for f in found] == close([slope] * 3)
     instance.reset()
     instance.start(GOOD[name] | {driven: far})
@@ -63,8 +57,7 @@ def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
     for _ in range(150):
         # far outside, and on both sides of every limit
         state = {k: float(rng.normal()) * 3.0 * max(map(abs, ends)) for k, ends in RANGES[name].items()}
-        if "preload" in state:
-            state["preload"] = abs(state["preload"])
+        state |= {v.name: abs(state[v.name]) for v in model.inputs if v.low == 0.0}
         outputs = model.evaluate(spring, state)
         for key, text in model.warnings(spring, {**state, **outputs}).items():
             warned.setdefault(key, text)
@@ -103,30 +96,16 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
     assert refusals > 50
 
 
-FORBIDDEN: list[tuple[str, dict[str, float]]] = [
-    *((name, {parameter: value}) for name, parameter, value, _, _ in REFUSED),
-    ("GearContact", {"e": 1.0, "sigma_y": -1.0}),  # both are named
-    ("HarmonicDriveSpring", {"rated_pressure": 1e6}),
-    ("HarmonicDriveSpring", {"A_0": 2.2e-3}),
-    ("HarmonicDriveSpring", {"radial_deformation": 1e-4}),
-    ("HarmonicDriveCompliance", {"eccentricity": 9e-4}),
-    ("HarmonicDriveCompliance", {"mismatch_pressure": 1e8}),
-    ("HarmonicDriveCompliance", {"surface.G": 1e-100}),  # K_FTS0 and what the contact pair adds
-    ("HarmonicDriveSpring", {"surface.G": 2e-307}),
-    ("HarmonicDriveSpring", {"torque_smoothing": 5e-302}),
-    ("BoltedJoint", {"row_bolts": 5.0}),
-    ("BoltedJoint", {"n_bolts": 8.5}),
-    ("BoltedJoint", {"surface.G": 1.21e-5}),
-    ("BoltedJoint", {"surface.G": 1.21e-108}),
-    ("BoltedJoint", {"side1.E": 1.5e-9}),
-    ("BoltedJoint", {"preload": -1.0}),
+FORBIDDEN: list[tuple[str, dict[str, Any]]] = [
+    *((name, {r.parameter: r.value}) for name, case in CASES.items() for r in case.refused),
+    *((name, values) for name, case in CASES.items() for values in case.forbidden),
 ]
 """What is refused, for every reason that there is."""
 
 
 @pytest.mark.parametrize(("name", "values"), FORBIDDEN)
 def test_a_refusal_reads_the_same_in_every_flavour(
-    host: Host, fmu: Host, name: str, values: dict[str, float]
+    host: Host, fmu: Host, name: str, values: dict[str, Any]
 ) -> None:
     python, start = fmu(name), flatten(default(MODELS[name].joint).values)
     expected = python.refused(python.start, values)

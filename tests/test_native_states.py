@@ -7,8 +7,8 @@ from threading import Barrier
 
 import pytest
 from conftest import run_host
-from natives import NAMES, TUNED, VERSIONS, Host, close, numbers, package, settle, slope
-from test_fmu_values import STATE, random_inputs
+from joint_cases import NAMES, STATE, TUNED, random_inputs
+from natives import VERSIONS, Host, close, numbers, package, settle, slope
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default

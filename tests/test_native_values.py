@@ -15,11 +15,11 @@ from conftest import Fmu
 from fmpy import platform_tuple, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from joint_cases import CASES, NAMES, RANGES, STATE, TUNED, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import build as native_build
 from jointfmu_fmu_src.native import compiler
-from natives import NAMES, TUNED, VERSIONS, Host, attempt, close, package, settle, slope
-from test_fmu_values import DRIVE_BASE, RANGES, STATE, WITHOUT_EFFECT, law, random_inputs
+from natives import VERSIONS, Host, attempt, close, package, settle, slope
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
@@ -120,23 +120,19 @@ def test_random_parameters_give_the_numbers_or_the_refusal_of_the_package(host: 
 
 
 def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str, version: str) -> None:
-    start = flatten(default(MODELS[name].joint).values)
-    base: dict[str, Any] = DRIVE_BASE if name.startswith("HarmonicDrive") else {}
-    special = {"bearing.sigma_y": 0.8 * start.get("flexspline.sigma_y", 1.0)}  # the softer body counts
-    special |= {"n_bolts": 9.0, "row_bolts": 2.0}  # whole numbers
-    if name == "GearContact":
-        base = {"rigid_flat": False}  # with a rigid flat the second body does not matter
+    start, case = flatten(default(MODELS[name].joint).values), CASES[name]
+    base = dict(case.base)
     instance, without = host(name, version).start(base | STATE[name]), set()
     before = instance.get()
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]
-        change = (not value) if isinstance(value, bool) else special.get(parameter, 1.001 * value)
+        change = (not value) if isinstance(value, bool) else case.moved.get(parameter, 1.001 * value)
         found = instance.at({parameter: change})
         assert found == close(package(name, base | {parameter: change})(STATE[name])), parameter
         if found == close(before):
             without.add(parameter)
         assert instance.at({parameter: value}) == before
-    assert without == WITHOUT_EFFECT[name]
+    assert without == case.without_effect
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -340,16 +336,9 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 # Parameter files
 
 
-BAKED: list[tuple[str, dict[str, Any]]] = [
-    ("HarmonicDriveSpring", {"traction": "real_area", "shear_traction": 3e7, "max_torque": 10.0, "d": 0.9}),
-    ("HarmonicDriveCompliance", {"max_torque": 20.0, "surface.D": 2.55}),
-    ("BoltedJoint", {"critical_area": "printed", "spot_stiffness": "hertz", "pattern.decay_length": 0.05}),
-    ("BoltedJoint", {"critical_area": "yield", "n_bolts": 10.0}),
-    ("GearContact", {"plastic_area": "kogut_etsion", "rigid_flat": False, "e": 0.3}),
-]
-
-
-@pytest.mark.parametrize(("name", "changes"), BAKED)
+@pytest.mark.parametrize(
+    ("name", "changes"), [(name, changes) for name, case in CASES.items() for changes in case.baked]
+)
 def test_a_parameter_file_is_baked_in(
     host: Host, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
 ) -> None:

@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 from conftest import refused_line
+from joint_cases import JOINTS
 
 from jointfmu import cli
 from jointfmu.joints import KINDS
@@ -18,69 +19,13 @@ from jointfmu.uncertainty.problem import pose
 
 REDUCED = 1e-4
 """Relative error that the reduced evaluation states (docs/uncertainty.md)."""
-STUDIES = {
-    "drive, wide": (
-        "harmonic_drive",
-        {
-            "surface.D": "2.3..2.7",
-            "surface.G": "loguniform(2e-8, 1e-6)",
-            "eccentricity": "0..3e-5",
-            "radial_deformation": "+-3%",
-            "zero_torque_pressure": "+-10%",
-            "K_FTS0": "lognormal(20%)",
-            "tau": "+-20%",
-        },
-        200,
-    ),
-    "drive, geometry": (
-        "harmonic_drive",
-        {
-            "cup_length": "+-20%",
-            "A_0": "+-20%",
-            "radius": "+-5%",
-            "flexspline.E": "+-10%",
-            "mismatch_pressure": "2.6e8..4e8",
-            "torque_smoothing": "loguniform(0.02, 0.2)",
-        },
-        100,
-    ),
-    "drive, regimes in the lobe": (
-        "harmonic_drive",
-        {"surface.s_min": "loguniform(1e-14, 1e-10)", "flexspline.sigma_y": "loguniform(3e8, 3e9)"},
-        100,
-    ),
-    "bolted": (
-        "bolted_joint",
-        {
-            "surface.D": "1.36..1.48",
-            "surface.G": "lognormal(30%)",
-            "H": "+-10%",
-            "A_0": "+-10%",
-            "mass": "+-20%",
-            "traction_ratio": "0.01..0.5",
-            "preload": "normal(12%)",
-        },
-        12,
-    ),
-    "gear": (
-        "gear_contact",
-        {
-            "surface1.D": "1.35..1.6",
-            "surface2.D": "1.35..1.6",
-            "surface1.G": "loguniform(2e-11, 1e-9)",
-            "e": "0.05..0.7",
-            "lambda": "0.7..1",
-            "sigma_y": "+-20%",
-            "f": "+-10%",
-        },
-        100,
-    ),
-}
 
 
-@pytest.mark.parametrize("name", STUDIES)
-def test_reduced_evaluation_against_the_springs(name):
-    joint, given, count = STUDIES[name]
+@pytest.mark.parametrize(
+    ("joint", "study"), [(kind, study) for kind, joint in JOINTS.items() for study in joint.studies]
+)
+def test_reduced_evaluation_against_the_springs(joint, study):
+    given, count = JOINTS[joint].studies[study]
     task = pose(default(joint), given, None, 9)
     points = propagate.design(task, 256, 5)[0][:count]
     outcome = propagate.run(task, points, task.loads, "")
@@ -91,15 +36,15 @@ def test_reduced_evaluation_against_the_springs(name):
         for output, value in exact.items():
             found = outcome.outputs[output][:, i]
             assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
-            if output != "K_WTS":  # without load there is no stiffness, damping or displacement
+            # without load there is no stiffness, damping or displacement
+            if output not in JOINTS[joint].unloaded:
                 assert found[0] == 0.0
 
 
 @pytest.mark.parametrize("joint", KINDS)
 def test_one_sample_does_not_see_its_neighbours(joint):
     """Blocks share places of interpolation: the order of the error, not more."""
-    dimension = next(name for name in flatten(default(joint).values) if name.endswith(".D"))
-    task = pose(default(joint), {dimension: "+-2%"}, None, 7)
+    task = pose(default(joint), {JOINTS[joint].varied: "+-2%"}, None, 7)
     points = propagate.design(task, 64, 0)[0]
     together = propagate.run(task, points, task.loads, "")
     alone = propagate.run(task, points[40:41], task.loads, "")
@@ -227,7 +172,10 @@ def test_study_file(tmp_path, capsys):
     ("arguments", "words"),
     [
         (["--set", "surface.D=2.4..2.6"], "JOINT or --params FILE is missing"),
-        (["harmonic_drive"], "no parameter has a distribution"),
+        (
+            ["harmonic_drive"],
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file",
+        ),
         (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are surface.D"),
         (["harmonic_drive", "--set", "surface.D=2.4..3.1"], "surface.D = 3.1 is outside (2, 3)"),
         (["harmonic_drive", "--set", "surface.D=normal(3.5, 1)"], "surface.D = 3.5 is outside (2, 3)"),

@@ -144,12 +144,12 @@ def _pieces(spots: Spots, first: Array, last: Array) -> list[tuple[Array, Array]
 
 def held(rows: Rows, common: Array, offset: Array, end: Array) -> dict[str, Array]:
     """`rows` at log-pressures; beyond `end` (n, 1), the log of the hardness, the last tangent continues."""
-    found = rows(common, offset)
+    values = rows(common, offset)
     if np.any(common[-1] + offset > end):
         last = rows(np.zeros(1), end)
         beyond = common + offset > end
         with np.errstate(over="ignore"):
             excess = np.where(beyond, np.exp(common + offset) - np.exp(end), 0.0)
-        found["s"] = np.where(beyond, np.log(np.exp(last["s"]) + excess * np.exp(-last["k"])), found["s"])
-        found["k"] = np.where(beyond, last["k"], found["k"])
-    return found
+        values["s"] = np.where(beyond, np.log(np.exp(last["s"]) + excess * np.exp(-last["k"])), values["s"])
+        values["k"] = np.where(beyond, last["k"], values["k"])
+    return values

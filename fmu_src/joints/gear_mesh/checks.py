@@ -9,7 +9,7 @@ from scipy.integrate import cumulative_simpson, quad
 from jointfmu.interface import stiffness_curve
 from jointfmu.joints.gear_mesh.spring import GearMesh
 from jointfmu.parameters import default
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 
 from ...checks import deviation
 
@@ -17,7 +17,7 @@ _CLOSED = 10.0
 """Force of a pair [N] from which its contact is closed, with the default parameters."""
 
 
-def _series(folder: Path, result: Ramp) -> tuple[str, float]:
+def _series(folder: Path, result: RampResult) -> tuple[str, float]:
     mesh = default("gear_mesh").values
     assert isinstance(mesh, GearMesh)
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure as Canvas
 from jointfmu.joints.gear_mesh.pairs import pairs
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 from jointfmu.parameters import default
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 
 from ...drawing import BLUE, GREEN, RED, labels, svg
 from ...report.figure import Figure
@@ -55,7 +55,7 @@ def cycle(spring: GearMeshSpring) -> str:
     return svg(draw, (9.6, 3.8))
 
 
-def torque_angle(result: Ramp) -> str:
+def torque_angle(result: RampResult) -> str:
     """Torque on wheel 1 over its angle, both flanks, and near the first touch of the driving ones."""
 
     def draw(canvas: Canvas) -> None:

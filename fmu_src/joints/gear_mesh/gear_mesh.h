@@ -1,6 +1,6 @@
 /* Gear mesh: load over deflection of a tooth pair, whose rough flanks and bending teeth are in series. */
-#ifndef JOINTFMU_GEAR_MESH_H
-#define JOINTFMU_GEAR_MESH_H
+#ifndef JOINTFMU_MESH_H
+#define JOINTFMU_MESH_H
 
 #include "approach.h"
 

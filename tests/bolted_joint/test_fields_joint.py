@@ -10,7 +10,7 @@ from jointfmu_fmu_src.modelica import library
 from jointfmu import cli, plots, ramp
 from jointfmu.fields import csvfile
 from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint import pressure_shape, with_field
+from jointfmu.fields.joint_parameters import pressure_shape, with_field
 from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts
@@ -271,7 +271,9 @@ def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
         (["--moment", "100"], "--moment and --moment-file belong together"),
         (["--open", "maybe"], "--open = 'maybe' is not one of refuse, keep, drop"),
         (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
-        (["--data", "p"], "is read as csv, --data is for the format mesh"),
+        (["--data", "p"], "is read as csv, point data are for the format mesh (--data)"),
+        (["--length-unit", "mm"], "a CSV file states units and plane in its heading (--length-unit)"),
+        (["--with", "b.lis"], "further listings are for the format ansys (--with)"),
     ):
         assert cli.main([*line, "--open", "keep", *more]) == 2
         assert text in capsys.readouterr().err

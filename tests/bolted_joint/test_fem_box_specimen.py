@@ -1,10 +1,9 @@
 """Natural frequencies of Zhao's box specimen: what was fitted, what is predicted, what is missed."""
 
 import json
-import sys
 from dataclasses import replace
-from pathlib import Path
 
+import box_specimen_lengths as box
 import numpy as np
 import pytest
 
@@ -12,11 +11,6 @@ from jointfmu.cli import main
 from jointfmu.fem.geometry import Plate
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "benchmarks"))
-import box_specimen_lengths as box
-
-sys.path.pop(0)
 
 COARSE = 0.25
 """Refinement at which a frequency is still within some percent: enough for how it varies."""
