@@ -1,7 +1,8 @@
 /* native_fmus LIBRARY 2|3 TOKEN N_INPUTS N_OUTPUTS REPEATS < inputs
  *
- * Times of the calls of an FMU, as a host in C makes them. `inputs` are three sets of ROWS rows of
- * doubles: along a smooth trajectory, along one on which the preload moves too, and at random. Prints lines "NAME VALUE": seconds, and bytes of memory. */
+ * Times of the calls of an FMU, as a host in C makes them. `inputs` are four sets of ROWS rows of doubles:
+ * along a smooth trajectory, along one on which the preload moves too, the same under a moment, and at random.
+ * Prints lines "NAME VALUE": seconds, and bytes of memory. */
 #include "host.h"
 
 #include <malloc.h>
@@ -99,11 +100,12 @@ typedef struct {
     int inputs; /* which set of inputs */
 } Measure;
 
-enum { SMOOTH, TIGHTENING, SCATTERED, SETS };
+enum { SMOOTH, TIGHTENING, BENT, SCATTERED, SETS };
 
 static const Measure measures[] = {
     {"cycle_smooth", set_step_get, NULL, SMOOTH},
     {"cycle_tightening", set_step_get, NULL, TIGHTENING},
+    {"cycle_bent", set_step_get, NULL, BENT},
     {"cycle_random", set_step_get, NULL, SCATTERED},
     {"step_smooth", set_step, set, SMOOTH},
     {"step_random", set_step, set, SCATTERED},
