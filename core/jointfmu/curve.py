@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .interface import SIDE, Law, checked_spots, largest_spot
+from .interface import MOST_STEPS, SIDE, Law, checked_spots, largest_spot
 from .powerlaw import Spots
 from .quantity import Number
 
@@ -128,7 +128,7 @@ class Curve:
         low = self.displacement[i].copy()
         high = self.displacement[i + 1].copy()
         x = low + (high - low) * (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
-        for _ in range(60):
+        for _ in range(MOST_STEPS):
             value, slope = self.derivatives(x, 1)
             residual = inside - value
             low, high = np.where(residual > 0.0, x, low), np.where(residual < 0.0, x, high)
