@@ -1,3 +1,4 @@
+/* Repeats `BoltedJointSpring.motion` of the package: the sums over the nodes; the laws in it are generated. */
 #include "bolted_joint.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Repeats `GearContactSpring.approach` of the package; the laws in it are generated. */
 #include "gear_contact.h"
 
 #include <math.h>
