@@ -186,8 +186,8 @@ def test_broken_field_is_refused(imported, change, message):
 
 def test_a_file_with_both_sections_is_refused(imported, tmp_path):
     path = tmp_path / "joint.toml"
-    lines = dump(FILE).partition("[pattern]\n")[2].splitlines()
-    path.write_text(dump(imported[0]) + "\n".join(["[pattern]", *lines]) + "\n")
+    pattern = dump(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
+    path.write_text(f"{dump(imported[0])}\n[pattern]\n{pattern}\n")
     with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
         load(path, "bolted_joint")
     assert str(error.value).endswith(": allowed is one of [pattern], [field]")

@@ -28,7 +28,7 @@ def figures(outcome: Any) -> list[Figure]:
         ),
         Figure(
             "Gear mesh: torque over angle",
-            "Torque on wheel 1, wheel 2 held: backlash, then both flanks. Right: the first touch.",
+            "What turns wheel 1, wheel 2 held: backlash and the flanks of both sides. Right: first touch.",
             torque_angle(outcome.ramps[_FMU]),
             f"{_FMU}.csv",
         ),

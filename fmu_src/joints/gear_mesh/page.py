@@ -2,4 +2,4 @@
 
 from ...native.page import Panel
 
-PANELS = {"GearMesh": (Panel("phi1", ("f",)), Panel("phi1", ("K",)), Panel("phi1", ("pairs",)))}
+PANELS = {"GearMesh": (Panel("phi1", ("f",)), Panel("s_rel", ("K",)))}

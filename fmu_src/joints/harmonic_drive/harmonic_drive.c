@@ -1,5 +1,5 @@
-/* Repeats joints/harmonic_drive/spring.py and table.py of the package, `stiffness_tables`, `pair_table` and `torque_curve`: the sums and
- * tables that are made for every parameter set; the laws in them are generated. */
+/* Repeats `stiffness_tables`, `pair_table` and `torque_curve` of the package: the sums and tables that are
+ * made for every parameter set; the laws in them are generated. */
 #include "harmonic_drive.h"
 
 #include <math.h>
