@@ -131,7 +131,12 @@ def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
     p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
     assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
     own = {"K_tooth": float(teeth * law.A_0 * k)}
-    spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+    try:
+        spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+    except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
+        assert "nodes" in str(error)  # noqa: PT017
+        assert teeth < 0.1
+        return
     assert spring.curve.error <= MAX_ERROR
     x = spring.curve.displacement
     places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
