@@ -13,14 +13,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.slow
-
 ROOT = Path(__file__).resolve().parent.parent
 SPEC = importlib.util.spec_from_file_location("calculix", ROOT / "benchmarks/calculix.py")
 calculix = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(calculix)
 
-pytestmark = pytest.mark.skipif(calculix.calculix() is None, reason="needs ccx (calculix-ccx)")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(calculix.calculix() is None, reason="needs ccx (calculix-ccx)"),
+]
 # seven digits are printed, and nine of each spring are written
 PRINTED = 1e-6
 

@@ -64,7 +64,7 @@ def computed(plates) -> tuple[dict, Path]:
     pipe = folder.parent / "stdout.json"
     with pipe.open("w") as stream, pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.stdout", stream)
-        assert main([*COARSE, str(plates), *given, "--json"]) == 0
+        assert main([*COARSE, str(plates), "--refinement", "0.3", *given, "--json"]) == 0
     return json.loads(pipe.read_text()), folder
 
 

@@ -258,6 +258,7 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
 
 def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
     path = tmp_path / "field.csv"
     path.write_text(csvfile.text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
