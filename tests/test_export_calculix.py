@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parent.parent
 SPEC = importlib.util.spec_from_file_location("calculix", ROOT / "benchmarks/calculix.py")
 calculix = importlib.util.module_from_spec(SPEC)

@@ -13,6 +13,8 @@ from jointfmu.fem.convergence import COLUMNS, MeshResult, changes, orders, refin
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, load
 
+pytestmark = pytest.mark.slow
+
 PLATES = """
 schema = 1
 assembly = "bolted"

@@ -27,6 +27,8 @@ from jointfmu import cli, ramp, systems
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, dump
 
+pytestmark = pytest.mark.slow
+
 Capture = pytest.CaptureFixture[str]
 NAMES = list(MODELS)
 

@@ -20,6 +20,8 @@ from jointfmu_fmu_src.native import compiler
 
 from jointfmu.joints import MODELS
 
+pytestmark = pytest.mark.slow
+
 lief.logging.disable()
 VERSIONS = ("fmi2", "fmi3")
 BINARIES = {

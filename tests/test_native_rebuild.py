@@ -13,6 +13,8 @@ import pytest
 from jointfmu import ramp
 from jointfmu.joints import MODELS
 
+pytestmark = pytest.mark.slow
+
 COMPILER_TOLERANCE = 1e-9
 """Largest relative difference that another compiler may make, which may contract a*b + c [1]."""
 

@@ -52,6 +52,7 @@ def test_python_blocks_run(folder, monkeypatch):
 commands = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("jointfmu ")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", commands)
 def test_commands_run(line, folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)

@@ -12,6 +12,8 @@ from jointfmu.fem.geometry import Plate
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
+pytestmark = pytest.mark.slow
+
 COARSE = 0.25
 """Refinement at which a frequency is still within some percent: enough for how it varies."""
 

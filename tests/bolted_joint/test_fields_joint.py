@@ -23,6 +23,8 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 
+pytestmark = pytest.mark.slow
+
 FILE = default("bolted_joint")
 JOINT = FILE.values
 PRELOAD = 9e3
