@@ -19,7 +19,7 @@ from jointfmu.fem.bolts import BoltGrid
 from jointfmu.fem.elasticity import Array
 from jointfmu.fem.geometry import Assembly, BoxSection
 from jointfmu.joints.bolted_joint.frequencies import FREQUENCIES
-from jointfmu.joints.bolted_joint.spring import BoltedJoint, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
 
 LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")
 STEP = 0.01

@@ -22,7 +22,7 @@ from jointfmu.fem.contact import Interface, trace
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.modes import Modes, modes
 from jointfmu.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.spring import BoltedJoint, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
 from jointfmu.parameters import default
 from jointfmu.progress import track
 

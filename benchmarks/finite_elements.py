@@ -24,9 +24,9 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 from jointfmu.curve import Curve, approach_curve
 from jointfmu.fem import convergence
 from jointfmu.fem.assembly import load
+from jointfmu.fem.bolted_contact import BoltedContact, JointSolution
 from jointfmu.fem.contact import trace
 from jointfmu.fem.geometry import Assembly, BoxSection
-from jointfmu.fem.joint import BoltedContact, JointSolution
 from jointfmu.fem.sparse import Cholesky
 from jointfmu.parameters import default
 

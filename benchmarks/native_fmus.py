@@ -52,6 +52,7 @@ COLUMNS = {
     "cycle_smooth": ("cycle smooth", *NS),
     "ratio": ("x PassThrough", 1.0, ""),
     "cycle_tightening": ("cycle preload", *NS),
+    "cycle_bent": ("with moment", *NS),
     "cycle_random": ("cycle random", *NS),
     "step_smooth": ("step smooth", *NS),
     "step_random": ("step random", *NS),
@@ -65,20 +66,17 @@ COLUMNS = {
 Times = dict[str, float]
 
 
-def trajectories(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Inputs (ROWS, n): along a smooth trajectory, with the preload moving as well, and at random.
-
-    An oscillation takes some 64 steps.
-    """
+def trajectories(name: str) -> dict[str, np.ndarray]:
+    """Inputs (ROWS, n): along a smooth trajectory, with the preload moving as well, the same under a moment
+    that stays, and at random. An oscillation takes some 64 steps."""
     low, high = np.array(list(RANGES[name].values()), dtype=float).T
     phase = 2.0 * np.pi / 64.0 * np.arange(ROWS)[:, None]
     moving = np.sin(phase * (1.0 + 0.1 * np.arange(low.size)))
-    tightening, resting = (
-        np.where([v in held for v in RANGES[name]], 0.5, moving) for held in (HELD[1:], HELD)
-    )
-    smooth, loaded = (0.5 * (low + high) + 0.5 * (high - low) * waves for waves in (resting, tightening))
+    bent, resting = (np.where([v in held for v in RANGES[name]], 0.5, moving) for held in (HELD[1:], HELD))
+    smooth, loaded = (0.5 * (low + high) + 0.5 * (high - low) * waves for waves in (resting, bent))
+    tightening = np.where([v in HELD[1:] for v in RANGES[name]], 0.0, loaded)
     scattered = np.random.default_rng(1).uniform(low, high, (ROWS, low.size))
-    return smooth, loaded, scattered
+    return {"smooth": smooth, "tightening": tightening, "bent": loaded, "random": scattered}
 
 
 def pass_through(name: str) -> dict[str, str]:
@@ -134,7 +132,7 @@ def build_host(folder: Path) -> Path:
 
 def native_times(host: Path, name: str, flavour: str, library: Path, token: str, outputs: int) -> Times:
     """What the host in C measures."""
-    inputs = b"".join(rows.tobytes() for rows in trajectories(name))
+    inputs = b"".join(rows.tobytes() for rows in trajectories(name).values())
     counts = (str(len(RANGES[name])), str(outputs), str(REPEATS))
     done = subprocess.run(
         [host, library, flavour[-1], token, *counts], input=inputs, capture_output=True, check=True
@@ -162,7 +160,7 @@ def python_times(fmu: Path, unpacked: Path) -> Times:
     times = {"start": perf_counter() - begin}
     calls = slave.fmu
     now = 0.0
-    for column, rows in zip(("smooth", "tightening", "random"), trajectories(fmu.stem), strict=True):
+    for column, rows in trajectories(fmu.stem).items():
         each = []
         for row in rows[:: ROWS // PYTHON_CYCLES][:PYTHON_CYCLES]:
             start = perf_counter()

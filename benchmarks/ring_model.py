@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 from jointfmu import plots
 from jointfmu.footprint.lobes import two_lobes
 from jointfmu.interface import checked_spots
-from jointfmu.joints.harmonic_drive.spring import contact_length, footprint, peak_pressure
+from jointfmu.joints.harmonic_drive.law import contact_length, footprint, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.progress import track
 from jointfmu.reference import points

@@ -8,8 +8,8 @@ from typing import Any
 from mkdocs.structure.files import File
 
 ROOT = Path(__file__).resolve().parent.parent
-README = "readme.md"
-"""Page of the site with the text of README.md."""
+CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
+"""{text of the repository: page of the site that shows it}."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
@@ -21,14 +21,14 @@ def place(source: str, target: str) -> str | None:
 
 def address(path: str) -> str:
     """Address in the site of a file of the repository."""
-    if path == "README.md":
-        return README
+    if path in CARRIED:
+        return CARRIED[path]
     return f"files/{path}.txt" if path.endswith(".md") else f"files/{path}"
 
 
-def readme() -> str:
-    """README.md as a page in `docs`."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8").replace("](docs/", "](")
+def carried(name: str) -> str:
+    """A text of the repository as a page in `docs`."""
+    text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
     outside = r"\]\((?!https?:|#)([\w./-]+)\)"
     return re.sub(
         outside,
@@ -38,13 +38,14 @@ def readme() -> str:
 
 
 def on_files(files: Any, config: Any) -> Any:
-    """Add the README, and every linked file of the repository as `files/PATH`."""
-    files.append(File.generated(config, README, content=readme()))
+    """Add the texts of the repository that are pages, and every other linked file as `files/PATH`."""
+    for name, page in CARRIED.items():
+        files.append(File.generated(config, page, content=carried(name)))
     linked = set()
     for page in files.documentation_pages():
         for _, target, _ in _LINK.findall(page.content_string):
             path = place(page.src_uri, target)
-            if path and path != "README.md" and (ROOT / path).is_file():
+            if path and path not in CARRIED and (ROOT / path).is_file():
                 linked.add(path)
     for path in sorted(linked):
         files.append(File.generated(config, address(path), content=(ROOT / path).read_bytes()))

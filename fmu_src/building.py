@@ -25,9 +25,9 @@ def build(
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, or a folder
     that cannot be written, before anything is built where that can be known.
     """
-    for kind, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
+    for noun, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
         if unknown := [name for name in given if name not in allowed]:
-            raise ValueError(f"unknown {kind} {unknown[0]!r}, allowed are {', '.join(allowed)}")
+            raise ValueError(f"unknown {noun} {unknown[0]!r}, allowed are {', '.join(allowed)}")
     if not names:
         joint = parameters.joint if parameters else None
         names = [name for name, model in MODELS.items() if joint in (None, model.joint)]

@@ -39,13 +39,13 @@ class Check:
         return bool(self.deviation <= self.allowed)
 
 
-def default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.Ramp:
+def default_ramp(name: str, folder: Path, factor: float = 1.0) -> ramp.RampResult:
     """The FMU's own load ramp, steps enlarged by a factor."""
     r = MODELS[name].ramp
     return ramp.run(folder / f"{name}.fmu", r.input, r.end, r.step * factor)
 
 
-def check(name: str, folder: Path, result: ramp.Ramp) -> list[Check]:
+def check(name: str, folder: Path, result: ramp.RampResult) -> list[Check]:
     """All checks of an FMU's ramp: its own, RAMPS[name] in its joint's file, after those of every FMU."""
     coarse = default_ramp(name, folder, 10.0).columns
     worst = max(deviation(coarse[column], fine[::10]) for column, fine in result.columns.items())
@@ -59,7 +59,7 @@ def check(name: str, folder: Path, result: ramp.Ramp) -> list[Check]:
     return checks
 
 
-def same(name: str, folder: Path, expected: ramp.Ramp) -> Check:
+def same(name: str, folder: Path, expected: ramp.RampResult) -> Check:
     """The ramp of another flavour against the one expected."""
     repeated = default_ramp(name, folder).columns
     worst = max(deviation(repeated[column], value) for column, value in expected.columns.items())

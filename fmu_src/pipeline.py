@@ -25,7 +25,7 @@ class Outcome:
     built: list[Path] = field(default_factory=list)
     systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
-    ramps: dict[str, ramp.Ramp] = field(default_factory=dict)
+    ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
     checks: list[Check] = field(default_factory=list)
     rows: list[validation.Row] = field(default_factory=list)
     fmu_rows: list[validation.Row] = field(default_factory=list)
@@ -68,7 +68,7 @@ def run(out: Path) -> Outcome:
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, folder, result)
-        outcome.checks += [same(name, out / other, result) for other in FLAVOURS if out / other != folder]
+        outcome.checks += [same(name, out / beside, result) for beside in FLAVOURS if out / beside != folder]
     for path in (p for p in outcome.systems if p.suffix == ".fmu"):
         outcome.problems += [f"{path.parent.name}/{path.stem}: {text}" for text in validate_fmu(str(path))]
     for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):

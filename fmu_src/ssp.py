@@ -9,7 +9,6 @@ from xml.etree.ElementTree import Element, SubElement, fromstring
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
-from jointfmu.quantity import flatten
 from jointfmu.systems import System, system, systems
 from jointfmu.units import UNITS
 
@@ -37,17 +36,17 @@ def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = Tr
     The archives hold FMUs of FMI 2.0. Raises what `native.build.build` raises, and ValueError if no
     system has the joint.
     """
-    kinds = {name: each.joint for name, each in systems().items()}
-    names = [name for name, kind in kinds.items() if parameters is None or kind == parameters.joint]
+    joint_of = {name: system.joint for name, system in systems().items()}
+    names = [name for name, kind in joint_of.items() if parameters is None or kind == parameters.joint]
     if parameters and not names:
-        allowed = ", ".join(sorted(set(kinds.values())))
+        allowed = ", ".join(sorted(set(joint_of.values())))
         raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
     jobs = [(name, version) for version in "23" for name in PARTNERS]
     built = []
     for name, version in track(jobs, "build partners", len(jobs)):
         built.append(build(name, partner_parameters(name), out / f"fmi{version}", version))
     for name in track(names, "pack systems", len(names)):
-        joint = parameters or default(kinds[name])
+        joint = parameters or default(joint_of[name])
         if joints:
             used = [fmu for fmu in components(structure(name)).values() if fmu in MODELS]
             built += [build(fmu, joint, out / "fmi2", "2") for fmu in used]
@@ -92,7 +91,7 @@ def values(example: System, component: str, fmu: str, joint: ParameterFile) -> d
     if fmu in MODELS:
         model = MODELS[fmu]
         fields = model.parameter_fields()
-        given = {n: v for n, v in flatten(joint.values).items() if n in fields}
+        given = {n: v for n, v in joint.flat.items() if n in fields}
         own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
         inputs = {v.name: v.unit for v in model.inputs}
         return own | {n: (v, inputs[n]) for n, v in example.joint_state.items()}

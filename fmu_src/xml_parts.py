@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flatten
+from jointfmu.quantity import Interval
 from jointfmu.units import UNITS, display_unit
 
 
@@ -49,16 +49,16 @@ class Unknown(NamedTuple):
 
 def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
     """All variables in the order of their value references, which count from 1."""
-    values = flatten(parameters.values)
-    found: list[Listed] = []
+    values = parameters.flat
+    variables: list[Listed] = []
     for causality, group in (("input", model.inputs), ("output", model.outputs)):
         for i, v in enumerate(group):
             attributes = _shown(v.unit, v.nominal) | _bounds(v.interval)
             state = causality == "output" and i < model.states
-            rate_of = len(found) if causality == "output" and 0 < i <= model.states else None
+            rate_of = len(variables) if causality == "output" and 0 < i <= model.states else None
             attributes["nominal"] = repr(v.nominal)
             start = parameters.start(v.name) if causality == "input" else 0.0 if state else None
-            found.append(Listed(v.name, causality, v.doc, start, attributes, rate_of))
+            variables.append(Listed(v.name, causality, v.doc, start, attributes, rate_of))
     for name, item in model.parameter_fields().items():
         meta, value = item.metadata, values[name]
         doc = meta["doc"]
@@ -69,8 +69,8 @@ def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
             attributes = _shown(meta["unit"], value) | _bounds(meta["interval"])
             if value:
                 attributes["nominal"] = repr(abs(value))
-        found.append(Listed(name, "parameter", doc, value, attributes))
-    return found
+        variables.append(Listed(name, "parameter", doc, value, attributes))
+    return variables
 
 
 def text(value: float | bool) -> str:
@@ -105,7 +105,7 @@ def unknowns(model: Model, variability: str) -> list[Unknown]:
     names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
     index = {name: reference for reference, name in enumerate(names, start=1)}
     parameters = {index[name]: "dependent" for name in model.parameter_fields()}
-    found = []
+    rows = []
     for i, output in enumerate(outputs):
         knowns, initial = {}, {}
         for name in sorted(model.depends(output), key=index.__getitem__):
@@ -114,8 +114,8 @@ def unknowns(model: Model, variability: str) -> list[Unknown]:
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"
         state, rate = i < model.states, 0 < i <= model.states
-        found.append(Unknown(index[output], state, rate, knowns, initial | parameters))
-    return found
+        rows.append(Unknown(index[output], state, rate, knowns, initial | parameters))
+    return rows
 
 
 def dependencies(knowns: Mapping[int, str]) -> dict[str, str]:
@@ -126,11 +126,11 @@ def dependencies(knowns: Mapping[int, str]) -> dict[str, str]:
 def fmi2_structure(model: Model, variability: str) -> Element:
     """The element ModelStructure of FMI 2.0; a variable's index is its value reference."""
     structure = Element("ModelStructure")
-    found = unknowns(model, variability)
+    entries = unknowns(model, variability)
     groups = (
-        ("Outputs", [(u, u.knowns) for u in found]),
-        ("Derivatives", [(u, u.knowns) for u in found if u.rate]),
-        ("InitialUnknowns", [(u, u.initial) for u in found if not u.state]),
+        ("Outputs", [(u, u.knowns) for u in entries]),
+        ("Derivatives", [(u, u.knowns) for u in entries if u.rate]),
+        ("InitialUnknowns", [(u, u.initial) for u in entries if not u.state]),
     )
     for tag, rows in groups:
         if rows:

@@ -8,8 +8,9 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from html.parser import HTMLParser
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
@@ -22,7 +23,8 @@ from jointfmu import cli
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
-TEXTS = [ROOT / "README.md", *PAGES]
+GUIDE = [ROOT / "README.md", *PAGES]
+TEXTS = [ROOT / "CONTRIBUTING.md", *GUIDE]
 OTHERS = ("cd", "git", "mkdocs", "pip", "pytest", "python")
 """Programs other than jointfmu that a block of commands may start."""
 
@@ -91,6 +93,93 @@ def test_pictures_are_small_and_used() -> None:
             assert Image.open(picture).width <= 1600
 
 
+def test_the_house_is_drawn_as_it_is_built() -> None:
+    """Words and colours of the committed picture (matplotlib leaves each word in a comment)."""
+    pytest.importorskip("matplotlib")
+    spec = spec_from_file_location("figures", DOCS / "figures.py")
+    assert spec is not None
+    assert spec.loader is not None
+    figures = module_from_spec(spec)
+    spec.loader.exec_module(figures)
+    drawn, committed = (
+        re.findall(r'<!-- (.*?) -->\s*<g(?: style="fill: (#\w+)")?', picture)
+        for picture in (figures.house(), (DOCS / "images" / "house.svg").read_text(encoding="utf-8"))
+    )
+    assert {("interface", "#1f5fa8"), ("building", ""), ("fmu_src", "")} <= set(drawn)
+    assert committed == drawn, "write it again: python docs/figures.py house"
+
+
+# Names of files in the text
+
+FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests")
+ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
+"""Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
+
+
+@functools.cache
+def tracked() -> str:
+    """All files of the repository, a line each, with a slash in front."""
+    paths = [*ROOT.glob("*.*"), *(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*"))]
+    return "".join(f"/{shown(path)}\n" for path in paths)
+
+
+def named_files(path: Path) -> list[str]:
+    """Files that a text names in `code`: all of code, and data by a path (a bare name is the user's)."""
+    text = re.sub(r"^( *)```.*?^\1```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    words = [word for code in re.findall(r"`([^`\n]*)`", text) for word in re.split(r"[\s,;()]+", code)]
+    code = [word for word in words if re.fullmatch(r"[\w./*-]+\.(py|c|h|mo)", word)]
+    data = [word for word in words if re.fullmatch(r"[\w./*-]+/[\w*-]+\.(toml|ssd|html|csv|inp)", word)]
+    return [name for name in (*code, *data) if not name.startswith(ELSEWHERE)]
+
+
+@pytest.mark.parametrize("path", [ROOT / "benchmarks" / "README.md", *TEXTS], ids=shown)
+def test_files_that_are_named_exist(path: Path) -> None:
+    """A name is a path in the repository or its end; KIND, NAME and * stand for a part of it."""
+    for name in named_files(path):
+        pattern = re.sub(r"KIND|NAME|\\\*", "[^/\n]+", re.escape(name))
+        assert re.search(rf"/{pattern}$", tracked(), flags=re.MULTILINE), name
+
+
+def test_a_file_that_is_gone_is_noticed(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("`joints/bolted_joint.py`, `fmu_src/native/runtime/drive.c`, `my_joint.toml` `dist/a.py`")
+    assert named_files(page) == ["joints/bolted_joint.py", "fmu_src/native/runtime/drive.c"]
+    for name in named_files(page):
+        assert f"/{name}\n" not in tracked()
+
+
+# What architecture.md lists, it lists completely
+
+ARCHITECTURE = (DOCS / "architecture.md").read_text(encoding="utf-8")
+SOURCES = [path for folder in ("core", "fmu_src") for path in (ROOT / folder).rglob("*.*")]
+
+
+def test_every_part_of_a_joint_is_explained() -> None:
+    python = "".join(path.read_text(encoding="utf-8") for path in SOURCES if path.suffix == ".py")
+    tools = set(re.findall(r'\bpart\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python))
+    assert {"reduced", "export", "native", "ringing", "checks", "modelica"} <= tools
+    for tool in tools:
+        row = re.search(
+            rf"^\| `{tool}(\.py`|/__init__\.py` and templates) \| `[A-Z_a-z]+`", ARCHITECTURE, re.M
+        )
+        assert row, tool
+
+
+def test_every_repetition_in_c_is_listed() -> None:
+    repeating = [p for p in SOURCES if p.suffix == ".c" and "Repeats" in p.read_text("utf-8").split("\n")[0]]
+    assert repeating
+    for path in repeating:
+        assert f"| `{shown(path)}` |" in ARCHITECTURE, path.name
+
+
+def test_every_contract_of_the_imports_is_explained() -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+    explained = ARCHITECTURE.partition("## Which way imports run")[2].partition("\n## ")[0]
+    assert len(re.findall(r"^\d\. \*\*", explained, flags=re.MULTILINE)) == len(contracts)
+
+
 TOOLS = [page for page in PAGES if page.parent.name == "tools" and page.name != "index.md"]
 
 
@@ -149,7 +238,7 @@ class Links(HTMLParser):
 
 def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
     pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.name != "404.html"}
-    assert len(pages) == len(PAGES) + 1  # the README is a page too
+    assert len(pages) == len(PAGES) + 2  # README and CONTRIBUTING are pages too
     for page, content in pages.items():
         for link in content.links:
             parts = urlsplit(link)
@@ -195,7 +284,7 @@ def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
 # Code
 
 
-@pytest.mark.parametrize("path", TEXTS, ids=shown)
+@pytest.mark.parametrize("path", GUIDE, ids=shown)
 def test_commands_parse(path: Path) -> None:
     for line in commands(path):
         words = shlex.split(line, comments=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from jointfmu.export import columns, files, keywords, tables
+from jointfmu.export import columns, keywords, tables, writing
 from jointfmu.export.units import SI, UNITS
 from jointfmu.interface import at_pressure
 from jointfmu.joints.bolted_joint.export import State
@@ -132,10 +132,10 @@ def test_contact_text(bolted):
 
 def test_calculix_refuses_more_rows_than_it_holds():
     file = default("bolted_joint")
-    rows = files.contact("abaqus", file, SI, 1e-4).facts["rows"]
+    rows = writing.contact("abaqus", file, SI, 1e-4).facts["rows"]
     assert rows > 200
     with pytest.raises(ValueError, match=f"has {rows + 1} rows, CalculiX holds 200; allow a larger error"):
-        files.contact("calculix", file, SI, 1e-4)
+        writing.contact("calculix", file, SI, 1e-4)
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_calculix_refuses_more_rows_than_it_holds():
     ],
 )
 def test_csv_is_read_by_numpy(joint, state, heads):
-    written = files.curve("csv", default(joint), state, SI, 1e-3)
+    written = writing.curve("csv", default(joint), state, SI, 1e-3)
     lines = [line for line in written.text.splitlines() if not line.startswith("#")]
     assert lines[0] == heads
     rows = np.loadtxt(lines[1:], delimiter=",")
@@ -158,8 +158,8 @@ def test_csv_is_read_by_numpy(joint, state, heads):
 
 
 def test_units_of_a_curve():
-    metres = files.curve("csv", default("gear_contact"), None, SI, 1e-2).text
-    millimetres = files.curve("csv", default("gear_contact"), None, MM, 1e-2).text
+    metres = writing.curve("csv", default("gear_contact"), None, SI, 1e-2).text
+    millimetres = writing.curve("csv", default("gear_contact"), None, MM, 1e-2).text
     one, other = (
         np.loadtxt(t.splitlines(), delimiter=",", comments=["#", "s"]) for t in (metres, millimetres)
     )
@@ -169,7 +169,7 @@ def test_units_of_a_curve():
 
 def test_drive_has_no_contact_table():
     with pytest.raises(ValueError, match="pair_scale"):
-        files.contact("csv", default("harmonic_drive"), SI, 1e-3)
+        writing.contact("csv", default("harmonic_drive"), SI, 1e-3)
 
 
 # ---- Modelica: the text, and a CombiTable1D of its rows run by rumoca ----
@@ -232,18 +232,18 @@ def modelica_table(text):
     ("joint", "state"), [("harmonic_drive", None), ("gear_contact", None), ("bolted_joint", STATE)]
 )
 def test_modelica_text(joint, state):
-    written = files.curve("modelica", default(joint), state, SI, 1e-3)
+    written = writing.curve("modelica", default(joint), state, SI, 1e-3)
     name, rows = modelica_table(written.text)
     assert name == written.facts["table"] == ("torque" if joint == "harmonic_drive" else "force")
     assert np.all(np.diff(rows[:, 0]) > 0.0)
-    csv = files.curve("csv", default(joint), state, SI, 1e-3).text
+    csv = writing.curve("csv", default(joint), state, SI, 1e-3).text
     same = np.loadtxt([line for line in csv.splitlines() if line[0] in "-0123456789"], delimiter=",")
     np.testing.assert_array_equal(rows, same)
 
 
 def test_rumoca_runs_a_combi_table_of_the_rows(drive):
     rumoca = pytest.importorskip("rumoca")
-    text = files.curve("modelica", default("harmonic_drive"), None, SI, 1e-3).text
+    text = writing.curve("modelica", default("harmonic_drive"), None, SI, 1e-3).text
     rows = modelica_table(text)[1]
     matrix = "[" + "; ".join(", ".join(map(repr, row)) for row in rows.tolist()) + "]"
     span = 1.2 * float(rows[-1, 0])
@@ -269,7 +269,7 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
 def test_header_is_plain_text():
     file = default("gear_contact")
     odd = type(file)(file.joint, "Zähne\n*STEP", file.values, file.origins, file.sources)
-    text = files.contact("abaqus", odd, SI, 1e-2).text
+    text = writing.contact("abaqus", odd, SI, 1e-2).text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
     assert columns.modelica_text(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"

@@ -11,11 +11,11 @@ from skfem import MeshHex, MeshQuad
 from jointfmu.curve import approach_curve
 from jointfmu.fem import newton
 from jointfmu.fem.balance import RigidBalance
+from jointfmu.fem.bolted_contact import BoltedContact, elastic_body, midway
 from jointfmu.fem.bolts import BoltList
 from jointfmu.fem.contact import ContactModel, ContactSolution, Interface
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.geometry import Assembly, Plate
-from jointfmu.fem.joint import BoltedContact, elastic_body, midway
 from jointfmu.fem.sparse import Cholesky
 from jointfmu.parameters import default
 

@@ -11,10 +11,10 @@ import pytest
 from scipy.spatial import cKDTree
 from test_fem_contact import BOLTS, PLATE, Linear
 
+from jointfmu.fem.bolted_contact import BoltedContact
 from jointfmu.fem.contact import ContactModel
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.geometry import Assembly
-from jointfmu.fem.joint import BoltedContact
 
 pytestmark = pytest.mark.slow
 

@@ -9,8 +9,8 @@ import pytest
 from jointfmu.fields import csvfile
 from jointfmu.fields.areas import nodal_areas
 from jointfmu.fields.bodies import SURFACES, VOLUMES, boundary
+from jointfmu.fields.contact_surface import Plane
 from jointfmu.fields.reading import Reading
-from jointfmu.fields.surface import Plane
 
 DATA = Path(__file__).parent / "fields"
 UNITS = {"length": "mm", "pressure": "MPa"}
@@ -126,7 +126,7 @@ def _written(path, field):
     ("10,20,10,-1", r"line 5: pressure = -1e\+06 Pa is outside \[0, inf\)"),
     ("10,20,0,1", r"line 5: area = 0 m2 is outside \(0, inf\)"),
     ("10,0,10,1", r"line 5: is at the same place as line 4"),
-    ("10,20,10,0", r"line 5: is open \(no pressure\), with 1 of 4 nodes; state --open keep"),
+    ("10,20,10,0", r"line 5: is open \(no pressure\), with 1 of 4 nodes; say keep \(they just touch\)"),
     ("10,20,10", r"line 5 has 3 columns, expected 4"),
 ])  # fmt: skip
 def test_csv_is_refused_with_the_line(tmp_path, row, message):
@@ -142,9 +142,9 @@ def test_missing_column_and_units_are_refused(tmp_path):
         Reading().field(write_csv(tmp_path / "a.csv", ["0,0,1"], "x [mm],y [mm],pressure [MPa]"))
     with pytest.raises(ValueError, match=r"column 'pressure' has no unit"):
         Reading().field(write_csv(tmp_path / "b.csv", ROWS, "x [mm],y [mm],area [mm2],pressure"))
-    with pytest.raises(ValueError, match=r"states no units; state --length-unit, one of m, mm, um"):
+    with pytest.raises(ValueError, match=r"states no unit of length; expected one of m, mm, um"):
         Reading().field(DATA / "blocks.frd")
-    with pytest.raises(ValueError, match=r"--length-unit mm: a CSV file states units"):
+    with pytest.raises(ValueError, match=r"length = 'mm': a CSV file states units"):
         Reading(length="mm").field(write_csv(tmp_path / "c.csv", ROWS))
 
 
@@ -230,9 +230,7 @@ def test_volume_mesh_of_two_bodies(tmp_path):
     both = np.concatenate([0 * p, p, 1.1 * p, 0 * p])
     path = tmp_path / "a.vtu"
     meshio.Mesh(points, {"hexahedron": bricks}, {"CPRESS": both, "U": np.zeros((4 * n, 3))}).write(path)
-    with pytest.raises(
-        ValueError, match=r"state the point data .*--data; there are CPRESS, U \(3 components\)"
-    ):
+    with pytest.raises(ValueError, match=r"state the point data .*; there are CPRESS, U \(3 components\)"):
         Reading(**UNITS).field(path)
     with pytest.raises(ValueError, match=r"has no point data 'PRES'; there are CPRESS"):
         Reading(**UNITS, data="PRES").field(path)
@@ -329,7 +327,7 @@ def test_ansys_listings_in_parts(tmp_path):
     cut = text.index(" LIST ALL SELECTED NODES")
     first.write_text(text[:cut])
     second.write_text(text[cut:])
-    with pytest.raises(ValueError, match=r"has no nodes, a table with NODE, X, Y and Z \(NLIST\); .* --with"):
+    with pytest.raises(ValueError, match=r"has no nodes, a table with .* \(NLIST\); give further listings"):
         Reading(**UNITS).field(first)
     field, _ = Reading(**UNITS, beside=(second,)).field(first)
     half = nodal_areas(points, [cells[:1, :3]]).sum()

@@ -11,9 +11,10 @@ from scipy.integrate import quad
 from jointfmu.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pressures
 from jointfmu.footprint.lobes import two_lobes
 from jointfmu.footprint.nodes import Footprint
+from jointfmu.footprint.shape import ALIKE
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint.spring import pressures, row_forces
-from jointfmu.joints.harmonic_drive.spring import footprint, pair_stiffness, peak_pressure
+from jointfmu.joints.bolted_joint.law import pressures, row_forces
+from jointfmu.joints.harmonic_drive.law import footprint, pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
@@ -451,3 +452,24 @@ def test_calibrated_values_are_marked():
     kinds = default("bolted_joint").origins
     fitted = {name for name in flatten(JOINT) if kinds[name] == "calibration"}
     assert fitted == {"pattern.decay_length", "pattern.decay_exponent"}
+
+
+@pytest.mark.parametrize("moment", [True, False])
+def test_merged_nodes_keep_the_sums(moment):
+    """Area, pressure and second moments of area in total, and node by node those that only mirrors share."""
+    shape = pressure_shape(JOINT.pattern)
+    merged = shape.merged(moment=moment)
+    mirrors = 2 if moment else 4  # the frame's axes; a moment tells its two rows apart
+    assert merged.share.size <= shape.share.size / mirrors + 4  # but for nodes on an axis
+    x2, y2 = shape.position.T**2
+    for found, expected in (
+        (1.0, 1.0 + 0.0 * x2),
+        (merged.equal, shape.equal),
+        (merged.equal**2, shape.equal**2),
+        (merged.x2, x2),
+        (merged.y2 * merged.equal, y2 * shape.equal),
+        (merged.tilt**2, moment * shape.tilt**2),
+    ):
+        # equal is rounded to ALIKE decimals where nodes are compared
+        assert np.sum(merged.share * found) == pytest.approx(shape.share @ expected, rel=10.0**-ALIKE)
+    assert np.max(merged.equal) == pytest.approx(np.max(shape.equal), rel=10.0**-ALIKE)

@@ -66,6 +66,17 @@ def test_a_state_as_bytes_goes_into_an_instance_that_was_never_initialized(
     assert receiver.get() == {k: before[k] for k in receiver.outputs}
 
 
+def test_what_was_asked_before_does_not_matter(host: Host, name: str, version: str) -> None:
+    """Not one bit: what an instance keeps of other inputs only saves time."""
+    fresh, used = host(name, version).start(), host(name, version).start()
+    asked = random_inputs(name, 60, seed=61)
+    swept = [asked[0] | {"s_rel_z": -2e-6 + 4e-9 * k} for k in range(1000)] if name == "BoltedJoint" else []
+    for inputs in (*asked, *swept, *reversed(asked)):
+        used.at(inputs)
+    for inputs in (*asked[::7], *swept[::101]):
+        assert fresh.at(inputs) == used.at(inputs)
+
+
 def test_input_derivatives_belong_to_the_state(host: Host) -> None:
     sender, receiver = (host("GearContact", "fmi2").start({"f": f}) for f in (900.0, 500.0))
     slope(sender, f=100.0)

@@ -74,7 +74,7 @@ def test_instrument_files_keep_axes_and_units(folder, suffix):
     assert found.z.shape == (90, 70)
     assert (found.dx, found.dy) == (pytest.approx(2e-6), pytest.approx(0.5e-6))
     np.testing.assert_allclose(found.z - found.z[0, 0], (z.T - z[0, 0]) * 1e-6, rtol=1e-6, atol=1e-12)
-    with pytest.raises(ValueError, match=r"states its unit .* itself; leave --unit um out"):
+    with pytest.raises(ValueError, match=r"states its unit .* itself; leave the unit um out"):
         read(f"t.{suffix}", "um")
 
 
@@ -129,7 +129,11 @@ def test_form_is_removed(area, form, order):
         ("empty.csv", "", "empty.csv: is no surface: the file is empty"),
         ("words.csv", "hello\n", "words.csv: is no surface"),
         ("junk.vk4", "\x00\x01junk", "junk.vk4: is no surface"),
-        ("bare.csv", "0,1\n1,2\n" * 99, "bare.csv: states no length unit; give it with --unit um"),
+        (
+            "bare.csv",
+            "0,1\n1,2\n" * 99,
+            "bare.csv: states no length unit; state it, one of m, mm",
+        ),
         (
             "unit.csv",
             "# profile: x, z\n0,1\n",
@@ -174,7 +178,7 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--unit", "in"], "--unit: unit 'in' is not one of"),
+        (["--unit", "in"], "unit = 'in' is not one of m, mm, um, nm (--unit)"),
         (["--unit", "um"], "states its units itself"),
         (["--range", "2", "1"], "expected 0 < LOW < HIGH"),
         (["--range", "1", "2"], "holds 0 values"),

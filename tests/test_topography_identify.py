@@ -15,7 +15,7 @@ from jointfmu.topography.fit import fit
 from jointfmu.topography.form import without_form
 from jointfmu.topography.heights import Areal, Profile
 from jointfmu.topography.identify import identify
-from jointfmu.topography.joint import changes, with_surface
+from jointfmu.topography.joint_parameters import changes, with_surface
 from jointfmu.topography.results import Roughness
 from jointfmu.topography.spectrum import psd
 from jointfmu.topography.structure import structure

@@ -13,7 +13,7 @@ from jointfmu import cli
 from jointfmu.joints import KINDS
 from jointfmu.joints.reduced import reduced
 from jointfmu.parameters import default
-from jointfmu.quantity import build, flatten
+from jointfmu.quantity import build, flat_fields, flatten
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.problem import pose
 
@@ -174,7 +174,10 @@ def test_study_file(tmp_path, capsys):
     ("arguments", "words"),
     [
         (["--set", "surface.D=2.4..2.6"], "JOINT or --params FILE is missing"),
-        (["harmonic_drive"], "no parameter has a distribution"),
+        (
+            ["harmonic_drive"],
+            "no parameter has a distribution; expected NAME=LOW..HIGH or a study file",
+        ),
         (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are surface.D"),
         (["harmonic_drive", "--set", "surface.D=2.4..3.1"], "surface.D = 3.1 is outside (2, 3)"),
         (["harmonic_drive", "--set", "surface.D=normal(3.5, 1)"], "surface.D = 3.5 is outside (2, 3)"),
@@ -216,8 +219,9 @@ def test_every_parameter_can_be_uncertain():
     """+-1 % of any number that is not counted or zero, in one study per joint."""
     for joint in KINDS:
         values = flatten(default(joint).values)
-        skipped = ("n_bolts", "row_bolts")
-        names = [n for n, v in values.items() if isinstance(v, float) and v and n not in skipped]
+        declared = dict(flat_fields(KINDS[joint].parameters))
+        counted = {name for name, item in declared.items() if item.metadata.get("whole")}
+        names = [n for n, v in values.items() if isinstance(v, float) and v and n not in counted]
         names = [n for n in names if not n.startswith("pattern.")]  # one by one, see above
         given = {name: "+-1%" for name in names if name != "traction_ratio"}
         task = pose(default(joint), given, None, 3)

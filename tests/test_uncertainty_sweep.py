@@ -182,7 +182,7 @@ def test_a_run_is_written_once(tmp_path):
         (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
         (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
         (["--input", "tau", "--set", "tau=1..2"], "tau is driven by the ramp"),
-        (["--input", "tau", "--set", "surface.D=2.4"], "no parameter has a distribution"),
+        (["--input", "tau", "--set", "surface.D=2.4"], "or a study file (--set)"),
         (["--input", "tau", "--set", "surface.D=2.6..2.4"], "low = 2.6 is not below high = 2.4"),
         (["--input", "tau", "--set", "surface.D=+-1%", "--workers", "0"], "workers = 0 is outside [1, inf)"),
     ],

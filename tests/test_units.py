@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.systems import SYSTEMS, system
 from scipy import constants
 
 from jointfmu.export import columns
@@ -11,9 +10,11 @@ from jointfmu.export.mesh import COLUMNS as PAIRS
 from jointfmu.export.units import UNITS as SETS
 from jointfmu.fem.geometry import BoxSection, Layer, Plate
 from jointfmu.fields.csvfile import COLUMNS as FIELD
-from jointfmu.fitting import preload, torque_angle
 from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.bolted_joint.fit import preload
+from jointfmu.joints.harmonic_drive.fit import torque_angle
 from jointfmu.quantity import flat_fields
+from jointfmu.systems import systems
 from jointfmu.topography.csvfile import LENGTHS
 from jointfmu.units import UNITS, base, display_unit, factor, rewritten, size, sizes
 
@@ -147,8 +148,8 @@ def declared():
         for field, item in model.parameter_fields().items():
             if "unit" in item.metadata:
                 yield f"{name}.{field}", item.metadata["unit"]
-    for name in SYSTEMS:
-        yield from ((f"{name}.{key}", unit) for key, unit in system(name).units.items())
+    for name, example in systems().items():
+        yield from ((f"{name}.{key}", unit) for key, unit in example.units.items())
     for spec in (preload.COLUMNS, torque_angle.COLUMNS, PAIRS, FIELD, {"height": LENGTHS}):
         yield from ((name, next(iter(units))) for name, units in spec.items())
     yield from (*columns.LABEL_HEADS, *columns.SPRING_HEADS)

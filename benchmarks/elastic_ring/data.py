@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.harmonic_drive.spring import HarmonicDrive, contact_length
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive, contact_length
 from jointfmu.quantity import check, quantity
 
 Array = NDArray[np.float64]

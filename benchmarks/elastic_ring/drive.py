@@ -22,7 +22,7 @@ from jointfmu.curve import Curve, approach_curve
 from jointfmu.footprint.lobes import HEIGHT_WEIGHTS, HEIGHTS
 from jointfmu.footprint.nodes import Footprint
 from jointfmu.interface import at_pressure
-from jointfmu.joints.harmonic_drive.spring import HarmonicDrive, contact_length, lobe_point
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive, contact_length, lobe_point
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
 from .data import Rings, Traction, ball_stiffness

@@ -26,7 +26,7 @@ def calibrate(start: ParameterFile) -> ParameterFile:
     kind = KINDS[start.joint]
     fits = published(kind).calibration
     if not fits:
-        some = [name for name, other in KINDS.items() if published(other).calibration]
+        some = [name for name in KINDS if published(KINDS[name]).calibration]
         raise ValueError(f"joint = {start.joint!r} has no calibration points; allowed are {', '.join(some)}")
     known = {p.id: p for paper in kind.papers for p in points(paper) if p.role == "calibration"}
     for fit in fits:

@@ -23,7 +23,7 @@ from .commands import (
     uncertainty,
     validate,
 )
-from .commands.common import Parser, flag
+from .commands.common import Parser, option
 from .refusal import Refusal
 
 COMMANDS = (
@@ -68,8 +68,8 @@ def parser() -> CommandLine:
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
-    for one in COMMANDS:
-        one.add(commands)
+    for command in COMMANDS:
+        command.add(commands)
     return top
 
 
@@ -79,7 +79,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(args.run(args))
     except (ValueError, RuntimeError) as error:
-        hint = [f"({flag(error.setting)})"] if isinstance(error, Refusal) else []
+        hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
         print(f"jointfmu {args.command}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
     except KeyboardInterrupt:

@@ -28,7 +28,7 @@ _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Columns:
     """Columns of a file in SI units, in the order of its rows, which are on the named lines."""
 
     path: Path
@@ -47,7 +47,7 @@ def heading(spec: Mapping[str, Sizes]) -> str:
     return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
 
 
-def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Table:
+def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
     """Read the columns named in `spec` that a file has.
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
@@ -71,7 +71,7 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Table:
         name: _column(path, name, numbers, [row[place] for row in rows]) * size
         for name, (place, size) in places.items()
     }
-    return Table(path, columns, numbers)
+    return Columns(path, columns, numbers)
 
 
 def content(path: Path) -> list[tuple[int, str]]:
@@ -116,14 +116,14 @@ def number(cell: str) -> float | None:
 
 def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float]]:
     """{name: (place, size of its unit)} of the columns asked for."""
-    found: dict[str, tuple[int, float]] = {}
+    places: dict[str, tuple[int, float]] = {}
     for place, cell in enumerate(head):
         match = _HEADING.match(cell)
         name = match["name"].lower() if match else ""
         if not match or name not in spec:
             continue
         allowed = ", ".join(spec[name])
-        if name in found:
+        if name in places:
             raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
         if match["unit"] is None:
             raise ValueError(
@@ -131,11 +131,11 @@ def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[
             )
         if match["unit"] not in spec[name]:
             raise ValueError(f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed}")
-        found[name] = place, spec[name][match["unit"]]
-    if not found:
+        places[name] = place, spec[name][match["unit"]]
+    if not places:
         shown = ", ".join(cell.strip() for cell in head)[:80]
         raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
-    return found
+    return places
 
 
 def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]) -> Array:

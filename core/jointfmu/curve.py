@@ -12,8 +12,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .interface import Law, checked_spots, largest_spot
+from .interface import MOST_STEPS, SIDE, Law, checked_spots, largest_spot
 from .powerlaw import Spots
+from .quantity import Number
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,8 @@ MAX_ERROR = 1e-8
 """Largest relative interpolation error of load and stiffness [1] that a table may have."""
 MOST_NODES = 2600
 """Most nodes of a table: what fits the memory of an FMU's instance."""
+FINEST = 16
+"""Most times that the steps of a table are doubled, as their factor: 1, 2, 4, ... [1]."""
 STEPS = 12
 """Steps of the approach curve per unit of log-area [1], doubled until it is accurate enough."""
 CLOSING_STEPS = 48
@@ -125,7 +128,7 @@ class Curve:
         low = self.displacement[i].copy()
         high = self.displacement[i + 1].copy()
         x = low + (high - low) * (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
-        for _ in range(60):
+        for _ in range(MOST_STEPS):
             value, slope = self.derivatives(x, 1)
             residual = inside - value
             low, high = np.where(residual > 0.0, x, low), np.where(residual < 0.0, x, high)
@@ -161,12 +164,14 @@ def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0
 
 
 def refined(tabulate: Callable[[int], Curve], steps: int) -> Curve:
-    """The table with the fewest steps, doubled up to four times, whose error is within MAX_ERROR.
+    """The table with the fewest steps, doubled up to FINEST times as many, whose error is within MAX_ERROR.
 
     Raises RuntimeError if there is none.
     """
-    for factor in (1, 2, 4, 8, 16):
+    factor = 1
+    while factor <= FINEST:
         curve = tabulate(steps * factor)
+        factor *= 2
         if curve.load.size > MOST_NODES:
             raise RuntimeError(
                 f"the table needs more than {MOST_NODES} nodes: "
@@ -191,24 +196,24 @@ CLOSING_RATIO = 20.0
 """Where the closing of the contact ends [1]: largest spot over the largest plastic spot."""
 
 
-def closing(p: float, k: float, bend: float, offset: float, nodes: int) -> tuple[Array, Array, Array, Array]:
+def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Number, Number, Number]:
     """How the contact closes: from separation (p = 0, k = 0) to the point (p, k, dk/d delta).
 
     While nearly all spots are plastic the laws give a stiffness that vanishes at a finite pressure,
     so that the approach, the integral of dp/k, would start at minus infinity. Below the point where
     the largest spot is CLOSING_RATIO times the largest plastic one the pressure is therefore
     continued to zero by `p z^3 (a + b z + c z^2)` over a length 4 p/k, twice continuously
-    differentiable at both ends.
+    differentiable at both ends. Returned are displacement from that point, load, stiffness and its
+    derivative at z from 0 to 1.
     """
     length = 4.0 * p / k
     curvature = bend * length**2 / p  # 16 times d ln k/d ln p
     c = 0.5 * curvature - 6.0
     a, b = c, 1.0 - 2.0 * c
-    z = np.linspace(0.0, 1.0, nodes)
     load = p * z**3 * (a + b * z + c * z**2)
     stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
     slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
-    return offset + (z - 1.0) * length, load, stiffness, slope
+    return (z - 1.0) * length, load, stiffness, slope
 
 
 def approach_curve(law: Law) -> Curve:
@@ -246,9 +251,9 @@ def _approach(spots: Spots, area: float, first: float, last: float, steps: int) 
         rise = half * (spots.slope("load", inner) / spots.total("normal", inner)) @ GAUSS[1]
         x = offset + np.concatenate([[0.0], np.cumsum(rise)])
         offset = x[-1]
-        side = np.clip(u, left + 1e-9, right - 1e-9)  # one-sided derivative where a regime ends
+        side = np.clip(u, left + SIDE, right - SIDE)  # one-sided derivative where a regime ends
         k = spots.total("normal", u) / area
         bend = k * spots.slope("normal", side) / spots.slope("load", side)
         pieces.append((x, spots.total("load", u) / area, k, bend))
     _, p, k, bend = (float(column[0]) for column in pieces[0])
-    return assemble([closing(p, k, bend, 0.0, CLOSING_STEPS + 1), *pieces])
+    return assemble([closing(p, k, bend, np.linspace(0.0, 1.0, CLOSING_STEPS + 1)), *pieces])

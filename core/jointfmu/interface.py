@@ -18,11 +18,19 @@ LEAST, MOST = -600.0, 300.0
 """Log-areas [1] between which the laws are evaluated: 260 decades of area below the reference, 130 above."""
 NOTHING = 1e-200
 """Pressure [Pa] below which there is no load."""
+FLATTEST, STEEPEST = 0.5, 2.5
+"""Bounds of the slope of ln F over u [1]; the first in units of m."""
+CLOSE = 1e-8
+"""Relative residual [1] from which one more Newton step reaches round-off: where compiled code stops."""
+MOST_STEPS = 200
+"""Steps of an inversion [1], far beyond what any takes."""
+SIDE = 1e-9
+"""Where a regime ends its derivative is taken this far inside, in log-area [1]."""
 _NOT_REPRESENTABLE = (
     "D, G and the material give a critical spot area of {} m2: "
     "not representable; is D close to the end of its interval, or G extreme?"
 )
-_STEEPEST, _BLOCK, _MAX_STEPS = 2.5, 16384, 200
+_BLOCK = 16384
 
 
 class Law(Protocol):
@@ -46,11 +54,11 @@ class Law(Protocol):
 def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
     """One safeguarded Newton step in logarithms: (step, lower, upper, residual), all relative to u.
 
-    ln F is monotone in u with a slope between m/2 and 2.5, so every evaluation brackets the root.
+    ln F is monotone in u with a slope between FLATTEST m and STEEPEST, so every evaluation brackets the root.
     """
     value, slope = spots.log_total("load", u)
     residual = log_load - value
-    a, b = residual / (0.5 * spots.m), residual / _STEEPEST
+    a, b = residual / (FLATTEST * spots.m), residual / STEEPEST
     lower, upper = np.minimum(a, b), np.maximum(a, b)
     step = np.minimum(np.maximum(residual / slope, lower), upper)
     return step, lower, upper, residual
@@ -120,7 +128,7 @@ def _solve(spots: Spots, load: Array) -> Array:
     target = np.log(np.where(empty, 1.0, load))
     u = np.zeros_like(target)
     low, high = np.full_like(target, -np.inf), np.full_like(target, np.inf)
-    for _ in range(_MAX_STEPS):
+    for _ in range(MOST_STEPS):
         step, lower, upper, residual = newton_step(spots, u, target)
         if np.max(np.abs(residual), initial=0.0) <= TOLERANCE:
             break

@@ -40,6 +40,7 @@ class ParameterFile:
     values  : the parameter set, an instance of KINDS[joint].parameters
     origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`
     inputs  : {input: start value in its SI unit}, where it is given
+    flat    : {structured name: value} of `values`, opened once
     """
 
     joint: str
@@ -48,6 +49,10 @@ class ParameterFile:
     origins: Mapping[str, str]
     sources: Mapping[str, str]
     inputs: Mapping[str, float] = field(default_factory=dict)
+    flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "flat", flatten(self.values))
 
     def start(self, name: str) -> float:
         """Start value of an input, in its SI unit: zero unless it is given."""
@@ -72,20 +77,20 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     """
     path = Path(path)
     document = read_document(path, "a parameter file")
-    kind = document.get("joint")
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise ValueError(f"{path}: joint = {kind!r}, allowed are {', '.join(KINDS)}")
-    if joint is not None and kind != joint:
-        raise ValueError(f"{path}: joint = {kind!r}, expected a parameter file of a {joint!r}")
+    stated = document.get("joint")
+    if not isinstance(stated, str) or stated not in KINDS:
+        raise ValueError(f"{path}: joint = {stated!r}, allowed are {', '.join(KINDS)}")
+    if joint is not None and stated != joint:
+        raise ValueError(f"{path}: joint = {stated!r}, expected a parameter file of a {joint!r}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
-    cls = KINDS[kind].parameters
-    values, origins, sources = entries(path, dict(flat_fields(cls)) | _input_fields(kind), body)
+    cls = KINDS[stated].parameters
+    values, origins, sources = entries(path, dict(flat_fields(cls)) | _input_fields(stated), body)
     given = {name: values.pop(name) for name in list(values) if name.startswith(_INPUTS)}
     try:
-        inputs, parameters = _start_values(kind, given), build(cls, values)
+        inputs, parameters = _start_values(stated, given), build(cls, values)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return ParameterFile(kind, str(document.get("name", path.stem)), parameters, origins, sources, inputs)
+    return ParameterFile(stated, str(document.get("name", path.stem)), parameters, origins, sources, inputs)
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
@@ -137,13 +142,13 @@ def entries(
 
 
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    found: list[tuple[str, Any]] = []
+    leaves: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            found += _leaves(value, f"{prefix}{key}.")
+            leaves += _leaves(value, f"{prefix}{key}.")
         else:
-            found.append((prefix + key, value))
-    return found
+            leaves.append((prefix + key, value))
+    return leaves
 
 
 def _input_fields(joint: str) -> dict[str, Field[Any]]:
@@ -161,8 +166,8 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
     problems = [f"unknown name {name!r}" for name in given if name not in declared]
     if problems:
         problems.append(f"allowed are {', '.join(declared)}")
-    found = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
-    problems += [text for text in found if text]
+    texts = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
+    problems += [text for text in texts if text]
     if problems:
         raise ValueError("; ".join(problems))
     return {name.removeprefix(_INPUTS): float(value) for name, value in given.items()}
@@ -171,7 +176,7 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
 def dump(parameters: ParameterFile) -> str:
     """The parameter set, with the start values of inputs, as the text of a parameter file."""
     declared = dict(flat_fields(type(parameters.values)))
-    values = sorted(flatten(parameters.values).items(), key=lambda item: "." in item[0])
+    values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
         values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Ramp:
+class RampResult:
     """Result of a ramp: `columns` (n) by name, the driven input first; messages the FMU logged."""
 
     columns: dict[str, Array]
@@ -57,7 +57,7 @@ def run(
     to: float,
     step: float,
     settings: Mapping[str, Any] | None = None,
-) -> Ramp:
+) -> RampResult:
     """Drive one input from zero along a ramp, one step of one second each; all else stays.
 
     Parameters
@@ -122,7 +122,7 @@ def _check_python_flavour(resources: Path, source: Path) -> None:
 
 def _drive(
     folder: str, md: Any, input_name: str, points: Array, settings: dict[str, Any], source: str
-) -> Ramp:
+) -> RampResult:
     variables = {v.name: v for v in md.modelVariables}
     inputs = [v.name for v in md.modelVariables if v.causality == "input"]
     outputs = [v for v in md.modelVariables if v.causality == "output"]
@@ -134,9 +134,9 @@ def _drive(
     for name, value in settings.items():
         if name not in settable:
             raise ValueError(f"{source}: unknown name {name!r}, allowed are {', '.join(settable)}")
-        kind = bool if variables[name].type == "Boolean" else float
-        if not isinstance(value, kind):
-            expected = "true or false" if kind is bool else "a number"
+        wanted = bool if variables[name].type == "Boolean" else float
+        if not isinstance(value, wanted):
+            expected = "true or false" if wanted is bool else "a number"
             raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []
@@ -158,7 +158,7 @@ def _drive(
     table = np.asarray(rows).reshape(len(points), len(outputs))
     columns = {input_name: points} | {v.name: table[:, i] for i, v in enumerate(outputs)}
     units = {name: variables[name].unit or "1" for name in columns}
-    return Ramp(columns, units, tuple(messages))
+    return RampResult(columns, units, tuple(messages))
 
 
 @contextmanager
@@ -169,8 +169,8 @@ def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
     """
     from . import host
 
-    one = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
-    fmu = one(
+    flavour = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
+    fmu = flavour(
         guid=md.guid,
         unzipDirectory=folder,
         modelIdentifier=md.coSimulation.modelIdentifier,

@@ -2,7 +2,7 @@
 
 
 class Refusal(ValueError):
-    """Bad input; `setting` is the name of the argument that would help (`rated_torque`, `error`)."""
+    """Bad input; `setting` is the name of the argument that would help (`rated_torque`, `error`, `unit`)."""
 
     def __init__(self, message: str, setting: str) -> None:
         super().__init__(message)

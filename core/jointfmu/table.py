@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .interface import Law, checked_spots, largest_spot
+from .interface import SIDE, Law, checked_spots, largest_spot
 
 Array = NDArray[np.float64]
 
@@ -13,7 +13,6 @@ CELL = 1.0 / 12.0
 """Cells of the stiffness tables in ln p [1]: quintics over two cells are accurate to 1e-12 there."""
 MOST_CELLS = 1000
 """Cells of all stiffness tables of a law together; wider ones on an extreme range."""
-_SIDE = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +66,9 @@ def stiffness_tables(law: Law, highest: float) -> tuple[Array, list[Blocks]]:
         cells = 2 * max(int(np.ceil((high - low) / (2.0 * cell))), 1)
         x = np.linspace(low, high, cells + 1)
         u = np.maximum(largest_spot(law, np.exp(x)), ends[i])
-        side = np.maximum(u, ends[i] + _SIDE)  # one-sided derivative where a regime begins or ends
+        side = np.maximum(u, ends[i] + SIDE)  # one-sided derivative where a regime begins or ends
         if i + 1 < ends.size:
-            u, side = np.minimum(u, ends[i + 1]), np.minimum(side, ends[i + 1] - _SIDE)
+            u, side = np.minimum(u, ends[i + 1]), np.minimum(side, ends[i + 1] - SIDE)
         growth = spots.slope("load", side) / spots.total("load", side)
         names = ("normal", "tangential")
         values = np.stack([spots.total(name, u) for name in names])

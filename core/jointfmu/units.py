@@ -62,20 +62,20 @@ def base(unit: str) -> dict[str, int]:
 
 def factor(unit: str, to: str) -> float:
     """What turns a number in one unit into another unit; ValueError if they measure different things."""
-    one, other = _parsed(unit), _parsed(to)
-    if one[1] != other[1]:
+    source, target = _parsed(unit), _parsed(to)
+    if source[1] != target[1]:
         raise ValueError(f"unit {to!r} does not measure what {unit!r} does")
-    return float(one[0] / other[0])
+    return float(source[0] / target[0])
 
 
 def sizes(unit: str, *others: str) -> Sizes:
     """The units that a border takes, the SI unit first; ValueError if they measure different things."""
-    return {one: factor(one, unit) for one in (unit, *others)}
+    return {name: factor(name, unit) for name in (unit, *others)}
 
 
 def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
     """A unit with other symbols in the place of some: `N/m3` with m as mm is `N/mm3`."""
-    return _FACTOR.sub(lambda found: symbols.get(found[1], found[1]) + found[2], unit)
+    return _FACTOR.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
 
 
 @cache
@@ -84,11 +84,11 @@ def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
     whole, exponents = Fraction(1), dict[str, int]()
     above, slash, below = unit.partition("/")
     for sign, part in ((1, above), (-1, below if slash else "1")):
-        for one in part.split("."):
-            if not (found := _FACTOR.fullmatch(one)):
+        for text in part.split("."):
+            if not (match := _FACTOR.fullmatch(text)):
                 raise ValueError(f"unit {unit!r} is none; expected symbols as in N.m.s/rad")
-            power = sign * int(found[2] or 1)
-            own, its = _symbol(found[1], unit)
+            power = sign * int(match[2] or 1)
+            own, its = _symbol(match[1], unit)
             whole *= own**power
             for name, exponent in its.items():
                 exponents[name] = exponents.get(name, 0) + power * exponent

@@ -73,8 +73,8 @@ def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[Row]:
     published, values = points(measured.points), default(joint).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
     shear = float(clamping(joint).shear_ratio(values))
-    found = assembly_modes.frequencies(assembly.load(measured.path), values, shear, states)
-    at = dict(zip(states, found.tolist(), strict=True))
+    computed = assembly_modes.frequencies(assembly.load(measured.path), values, shear, states)
+    at = dict(zip(states, computed.tolist(), strict=True))
     return [compare(p, at[p.where["preload"], p.where["moment"]][p.where["mode"] - 1]) for p in published]
 
 

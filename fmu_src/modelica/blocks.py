@@ -23,7 +23,7 @@ _TAKES_FORCE = (
     "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "
     "right at the flange: an inertia there would need the inverse of the FMU. "
     'Between inertias take a component of <a href=\\"modelica://JointStiffness.Components\\">Components</a>'
-    "{other}."
+    "{between_inertias}."
 )
 _TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
 
@@ -51,7 +51,11 @@ def wrapper(model: Model) -> dict[str, Any]:
     """Content of the model that puts an FMU between flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
-    note = _TAKES_MOTION if _takes_motion(model) else _TAKES_FORCE.format(other=_other(model))
+    note = (
+        _TAKES_MOTION
+        if _takes_motion(model)
+        else _TAKES_FORCE.format(between_inertias=_between_inertias(model))
+    )
     parameters = [
         {
             "name": v.name,
@@ -72,12 +76,12 @@ def wrapper(model: Model) -> dict[str, Any]:
 
 
 def _takes_motion(model: Model) -> bool:
-    return all(kind != "inflow" for t in terminals(model) for _, kind in t.members.values())
+    return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
 
 
-def _other(model: Model) -> str:
+def _between_inertias(model: Model) -> str:
     """The FMU of the same joint that belongs between inertias, if there is one."""
-    names = [other.name for other in KINDS[model.joint].models if _takes_motion(other)]
+    names = [sibling.name for sibling in KINDS[model.joint].models if _takes_motion(sibling)]
     return f" or the FMU {names[0]}" if names else ""
 
 
@@ -101,7 +105,8 @@ def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dic
         next((terminal.members[m][0] for m in names if m in terminal.members), None)
         for names in (("phi", "s"), ("w", "v"), ("tau", "f"))
     )
-    takes_motion = next(kind for _, kind in terminal.members.values() if kind.endswith("flow")) == "outflow"
+    flow = next(v for _, v in terminal.members.values() if v.endswith("flow"))
+    takes_motion = flow == "outflow"
     left = terminal.side == "a"
     flip, y = (1 if left else -1), round(terminal.y)
     adaptor, gain = f"adaptor_{terminal.name}", f"reaction_{terminal.name}"

@@ -81,8 +81,8 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
     packages = {
         "Examples": _examples(joints),
         "Components": _components(joints) | _plain(shared, "Components", _PARTNERS),
-        "Wrappers": {name: model.render(wrapper(each)) for name, each in MODELS.items()},
-        "Interfaces": {name: block.render(interface(each)) for name, each in MODELS.items()},
+        "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
+        "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
         "Data": _data(joints),
         "Functions": _plain(shared, "Functions", _FUNCTIONS),
     }
@@ -148,9 +148,9 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
 def _examples(joints: Sequence[_Joint]) -> dict[str, str]:
     """The systems that a template of their joint shows."""
     classes = {}
-    kinds = {joint.kind.name: joint for joint in joints}
+    by_kind = {joint.kind.name: joint for joint in joints}
     for system_name, system in systems().items():
-        joint = kinds.get(system.joint)
+        joint = by_kind.get(system.joint)
         name = system_name.title().replace("_", "")
         if joint and f"Examples/{name}.mo" in joint.templates.list_templates():
             state = tuple(system.joint_state.get(label, 0.0) for label in joint.kind.working_point)

@@ -65,7 +65,7 @@ def thinned(
 def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> float:
     """Largest relative error of one quintic from node i to node j."""
     ends = [i, j]
-    one = Curve(
+    quintic = Curve(
         curve.displacement[ends],
         curve.load[ends],
         curve.stiffness[ends],
@@ -75,7 +75,9 @@ def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> 
     x = curve.displacement[i : j + 1]
     points = np.concatenate([x[1:-1], (x[:-1, None] + np.diff(x)[:, None] * _INNER).ravel()])
     worst = 0.0
-    for exact, rough, least in zip(curve.derivatives(points), one.derivatives(points), floor, strict=True):
+    for exact, rough, least in zip(
+        curve.derivatives(points), quintic.derivatives(points), floor, strict=True
+    ):
         size = np.maximum(np.abs(exact), least)
         some = size > 0.0
         worst = max(worst, float(np.max(np.abs(rough - exact)[some] / size[some], initial=0.0)))

@@ -10,10 +10,11 @@ from typing import Any
 
 import casadi as ca
 
+from jointfmu.curve import closing
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
-from jointfmu.quantity import Limit, build, flatten
+from jointfmu.quantity import Limit, build
 
 Symbols = Sequence[Any]
 
@@ -87,7 +88,7 @@ def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph",
     ca.GlobalOptions.setNumpyMode(1)
     try:
         theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
-        joint = build(model.parameters, {**flatten(parameters.values), **theta})
+        joint = build(model.parameters, {**parameters.flat, **theta})
         found = Graph(theta, joint, limits(joint))
         functions(found, model)
         if found.has_law:
@@ -194,4 +195,22 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -
         g.add(f"law_table_{k}", doc, [u], rows)
         if state is not None:
             y = ca.vertcat(*map(ca.SX, state(regime, u)))
-            g.add(f"law_state_{k}", "log-area -> state, its slopes", [u], [*y.nz, *ca.jacobian(y, u).nz])
+            slope = ca.jacobian(y, u)
+            doc = "log-area -> state, its slopes, theirs, slope of du/d approach"
+            rows = [y, slope, ca.jacobian(slope, u), _rate_slope(regime, u)]
+            g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
+
+
+def _rate_slope(spots: Spots, u: Any) -> Any:
+    """Slope of du/d approach = K/F' in u, without a derivative of the sums."""
+    largest = sum(term.spot(u) for term in spots.terms["load"])
+    rise = spots.slope("load", u)
+    bend = spots.m * (rise + spots.weight * ca.jacobian(largest, u))
+    return (spots.slope("normal", u) - spots.total("normal", u) * bend / rise) / rise
+
+
+def add_closing(g: Graph) -> None:
+    """The closing of the contact, of joints with the curve of pressure over approach."""
+    p, k, bend, z = symbols("x", 4)
+    doc = "p, k, dk/dx at the end of the closing, z -> displacement from there, load, stiffness, its slope"
+    g.add("closing", doc, [p, k, bend, z], closing(p, k, bend, z))

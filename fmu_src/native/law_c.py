@@ -65,7 +65,7 @@ def _law(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
         "N_LAW_ENDS": count["law_ends"],
         "N_LAW_SWITCHES": regimes - 1,
         "N_LAW_TABLE": count["law_table_0"],
-        "N_LAW_STATE": state // 2,
+        "N_LAW_STATE": state // 3,
     }
     given = shared_definitions(part.shared) | part.definitions(g, model)
     series = ["law_load", "law_table", *(["law_state"] if state else [])]

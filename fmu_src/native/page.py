@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import flat_fields, flatten, problem
+from jointfmu.quantity import flat_fields, problem
 from jointfmu.units import UNITS, display_unit
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
@@ -93,7 +93,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
 
 def _rows(parameters: ParameterFile) -> list[_Row]:
     fields, rows = dict(flat_fields(type(parameters.values))), []
-    for name, value in flatten(parameters.values).items():
+    for name, value in parameters.flat.items():
         meta = fields[name].metadata
         if "allowed" in meta:
             allowed = ", ".join(str(a).lower() for a in meta["allowed"])

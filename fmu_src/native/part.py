@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import ModuleType
 from typing import Any
 
 import casadi as ca
 
-from jointfmu import curve
+from jointfmu import curve, interface
 from jointfmu.joints.model import Model
 
 from .c_text import number
@@ -49,6 +50,28 @@ def quadrature(prefix: str, nodes: Any) -> Definitions:
     return places | weights
 
 
+Named = Sequence[tuple[ModuleType, str]]
+"""Numbers of the package that C has under the same name: modules and names."""
+NUMBERS: Named = (
+    (curve, "MAX_ERROR"),
+    (interface, "LEAST"),
+    (interface, "MOST"),
+    (interface, "FLATTEST"),
+    (interface, "STEEPEST"),
+    (interface, "CLOSE"),
+    (interface, "NOTHING"),
+    (interface, "SIDE"),
+)
+COUNTS: Named = ((curve, "FINEST"), (interface, "MOST_STEPS"))
+"""Of every joint with tables: real numbers, and whole ones."""
+
+
+def named(numbers: Named, counts: Named = ()) -> Definitions:
+    """Numbers of the package, as they are now."""
+    counted, real = ({name: getattr(module, name) for module, name in pairs} for pairs in (counts, numbers))
+    return Definitions(counted, real)
+
+
 def nothing(graph: Graph, model: Model) -> Definitions:
     """No constants."""
     return Definitions()
@@ -82,8 +105,11 @@ EQUATIONS = NativePart(_equations, ("equations",))
 
 def shared_definitions(shared: Sequence[str]) -> Definitions:
     """Constants of the shared C."""
-    if "approach" not in shared:
+    if "tabulated" not in shared:
         return Definitions()
+    tables = named(NUMBERS, COUNTS) | Definitions({"CURVE_NODES": curve.MOST_NODES})
+    if "approach" not in shared:
+        return tables
     steps = {"APPROACH_STEPS": curve.STEPS, "CLOSING_STEPS": curve.CLOSING_STEPS}
     ratio = {"CLOSING_RATIO": curve.CLOSING_RATIO}
-    return Definitions(steps, ratio) | quadrature("APPROACH_GAUSS", curve.GAUSS)
+    return tables | Definitions(steps, ratio) | quadrature("APPROACH_GAUSS", curve.GAUSS)

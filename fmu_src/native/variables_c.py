@@ -2,14 +2,14 @@
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flatten
+from jointfmu.quantity import Interval
 
 from .c_text import array, number, string
 
 
 def variables_c(model: Model, parameters: ParameterFile) -> str:
     """The file."""
-    values = flatten(parameters.values)
+    values = parameters.flat
     rows = [_row("time", "s", "time", 0.0, Interval())]
     rows += [_row(v.name, v.unit, v.doc, parameters.start(v.name), v.interval) for v in model.inputs]
     rows += [_row(v.name, v.unit, v.doc, 0.0, Interval()) for v in model.outputs]

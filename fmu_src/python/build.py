@@ -61,14 +61,14 @@ def runtime_sources(kind: Kind) -> dict[str, str]:
     own = [joint.package for joint in KINDS.values() if joint.own]
     roots = {"jointfmu", "jointfmu_fmu_src", kind.package.partition(".")[0]}
     files = imported(["jointfmu_fmu_src.python.slave", *own, kind.package], roots)
-    found = {}
+    sources = {}
     for name, path in files.items():
         inside = _inside(name).replace(".", "/")
         file = (
             "/".join(filter(None, (inside, "__init__.py"))) if path.name == "__init__.py" else f"{inside}.py"
         )
-        found[file] = _private(path.read_text(encoding="utf-8"), roots)
-    return dict(sorted(found.items()))
+        sources[file] = _private(path.read_text(encoding="utf-8"), roots)
+    return dict(sorted(sources.items()))
 
 
 def _inside(module: str) -> str:
@@ -104,8 +104,8 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
             root = work / "src" if inside == "parameters.toml" else work / "src" / package
             _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
         built = _pythonfmu(FmuBuilder, script, package, work / "out")
-        with zipfile.ZipFile(built) as made:
-            members = {n: made.read(n) for n in made.namelist() if "__pycache__" not in n}
+        with zipfile.ZipFile(built) as archive:
+            members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
         pack(members, work / target.name)
     return target
 

@@ -20,7 +20,7 @@ from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import load
-from jointfmu.quantity import build, flatten
+from jointfmu.quantity import build
 from jointfmu.stamp import build_time
 
 T = TypeVar("T")
@@ -70,7 +70,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
         file = load(Path(self.resources) / "parameters.toml", self.model.joint)
-        self.start = flatten(file.values)
+        self.start = dict(file.flat)
         self.listed = listed(self.model, file)
         self.fields = self.model.parameter_fields()
         self.values: dict[str, Any] = {
@@ -124,10 +124,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                 self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
         try:
             with np.errstate(all="ignore"):
-                found = self.model.evaluate(self.spring(), inputs)
+                results = self.model.evaluate(self.spring(), inputs)
         except (ValueError, RuntimeError, OverflowError) as error:
             self.refuse(str(error))
-        outputs = {name: float(value) for name, value in found.items()}
+        outputs = {name: float(value) for name, value in results.items()}
         if bad := [name for name, value in outputs.items() if not math.isfinite(value)]:
             given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items() if value)
             self.refuse(f"{given}: too large, {bad[0]} is not finite")
@@ -187,10 +187,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
         """A state from its bytes; unreadable ones are refused when they are set."""
         try:
-            found = json.loads(state.decode("utf-8"))
+            values = json.loads(state.decode("utf-8"))
         except ValueError:
             return {}
-        return found if isinstance(found, dict) else {}
+        return values if isinstance(values, dict) else {}
 
     def to_xml(self, model_options: Any = None) -> Element:
         """The model description with what pythonfmu leaves out: units, bounds, initial unknowns."""

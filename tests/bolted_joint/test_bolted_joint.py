@@ -12,7 +12,8 @@ from jointfmu.asperity import mindlin
 from jointfmu.curve import MAX_ERROR
 from jointfmu.footprint.bolts import PressureShape
 from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJoint, BoltedJointSpring, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import BoltedJoint, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

@@ -12,7 +12,8 @@ from scipy.integrate import cumulative_simpson
 
 from jointfmu import ramp
 from jointfmu.interface import stiffness_curve
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures, shear_ratio
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 
 Host = Callable[..., Fmu]
 

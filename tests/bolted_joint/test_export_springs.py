@@ -13,7 +13,8 @@ from jointfmu.export.mesh import Mesh, read_pairs
 from jointfmu.export.placing import AXES, Placing
 from jointfmu.export.units import SI, UNITS
 from jointfmu.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, pressures
+from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 
 MM = UNITS["mm-N-MPa-t"]

@@ -10,15 +10,16 @@ from jointfmu_fmu_src.modelica import library
 from jointfmu import cli, plots, ramp
 from jointfmu.fields import csvfile
 from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint import pressure_shape, with_field
+from jointfmu.fields.joint_parameters import pressure_shape, with_field
 from jointfmu.fields.reduction import TOLERANCE, reduce
 from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
 from jointfmu.joints import register, unregister
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
 from jointfmu.joints.bolted_joint.published import p_between
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern, pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 
@@ -187,8 +188,8 @@ def test_broken_field_is_refused(imported, change, message):
 
 def test_a_file_with_both_sections_is_refused(imported, tmp_path):
     path = tmp_path / "joint.toml"
-    lines = dump(FILE).partition("[pattern]\n")[2].partition("\n[")[0].splitlines()
-    path.write_text(dump(imported[0]) + "\n".join(["[pattern]", *lines]) + "\n")
+    pattern = dump(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
+    path.write_text(f"{dump(imported[0])}\n[pattern]\n{pattern}\n")
     with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
         load(path, "bolted_joint")
     assert str(error.value).endswith(": allowed is one of [pattern], [field]")
@@ -273,7 +274,9 @@ def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
         (["--moment", "100"], "--moment and --moment-file belong together"),
         (["--open", "maybe"], "--open = 'maybe' is not one of refuse, keep, drop"),
         (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
-        (["--data", "p"], "is read as csv, --data is for the format mesh"),
+        (["--data", "p"], "is read as csv, point data are for the format mesh (--data)"),
+        (["--length-unit", "mm"], "a CSV file states units and plane in its heading (--length-unit)"),
+        (["--with", "b.lis"], "further listings are for the format ansys (--with)"),
     ):
         assert cli.main([*line, "--open", "keep", *more]) == 2
         assert text in capsys.readouterr().err

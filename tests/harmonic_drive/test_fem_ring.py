@@ -23,7 +23,7 @@ from scipy.sparse.linalg import splu
 from jointfmu import validation
 from jointfmu.curve import approach_curve
 from jointfmu.interface import at_pressure
-from jointfmu.joints.harmonic_drive.spring import contact_length
+from jointfmu.joints.harmonic_drive.law import contact_length
 from jointfmu.parameters import default
 
 DRIVE = default("harmonic_drive").values

@@ -8,14 +8,8 @@ import pytest
 from scipy.integrate import quad
 
 from jointfmu.curve import MAX_ERROR
-from jointfmu.joints.harmonic_drive.spring import (
-    HarmonicDrive,
-    HarmonicDriveSpring,
-    drive_stiffness,
-    pair_stiffness,
-    peak_pressure,
-    torque_curve,
-)
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

@@ -11,7 +11,7 @@ from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu import ramp
-from jointfmu.joints.harmonic_drive.spring import drive_stiffness
+from jointfmu.joints.harmonic_drive.law import drive_stiffness
 
 Host = Callable[..., Fmu]
 

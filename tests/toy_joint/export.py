@@ -4,6 +4,9 @@ import numpy as np
 
 from jointfmu.export.exports import Exports, LoadCurve
 from jointfmu.export.tables import Table
+from jointfmu.joints.model import Variable
+
+from . import KIND
 
 
 def _line(spring, state, error):
@@ -11,5 +14,6 @@ def _line(spring, state, error):
     return Table(np.stack([s, spring.c * s, np.full(3, spring.c)], axis=1), (0.0, 0.0), (0.0, 0.0))
 
 
-HEADS = (("s_rel", "m"), ("pull", "N"), ("K", "N/m"))
-EXPORTS = Exports(curve=LoadCurve(meaning="pull over elongation", heads=HEADS, name="force", table=_line))
+PULL = Variable("pull", "N", "force that holds it")
+COLUMNS = (KIND.variables["s_rel"], PULL, KIND.variables["K"])
+EXPORTS = Exports(curve=LoadCurve(meaning="pull over elongation", columns=COLUMNS, name="force", table=_line))

@@ -37,3 +37,9 @@ def loss_factor(x: Number) -> Number:
     """eta_t = W_d/(W - W_d) [1], Zhao 2018, Eqs. 27-29 with 5 pi/12 for the printed 5 pi/24."""
     ratio = loss_ratio(x)
     return ratio / (1.0 - ratio)
+
+
+def viscous_equivalent(loss_factor: Number, mass: Number, stiffness: Number) -> Number:
+    """C = eta sqrt(m K) [N.s/m]: the dashpot that dissipates as a loss factor [1] does, for a mass [kg] that
+    rings on a stiffness [N/m] (Zhao 2018, Eqs. 20, 29)."""
+    return loss_factor * np.sqrt(mass * stiffness)

@@ -153,7 +153,7 @@ def state(law: Zhao2018, u: Number) -> dict[str, Number]:
     plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
     with np.errstate(divide="ignore", invalid="ignore"):
         eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
-        C_N = np.where(K_N > 0.0, eta_n * np.sqrt(law.mass * K_N), 0.0)
+        C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, law.mass, K_N), 0.0)
     W_d, W = shear_energies(law, F, A_r, s.total("loop_area", u))
     eta_t = mindlin.loss_factor(law.traction_ratio)
     return {
@@ -169,7 +169,7 @@ def state(law: Zhao2018, u: Number) -> dict[str, Number]:
         "W": W,
         "W_e": W - W_d,
         "eta_t": eta_t + 0.0 * F,
-        "C_T": eta_t * np.sqrt(law.mass * K_T),
+        "C_T": mindlin.viscous_equivalent(eta_t, law.mass, K_T),
     }
 
 

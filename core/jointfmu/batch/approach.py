@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..curve import CLOSING_RATIO, closing
-from ..interface import Law, checked_spots
+from ..interface import SIDE, Law, checked_spots
 from ..powerlaw import Spots
 from . import chebyshev
 
@@ -25,7 +25,6 @@ FINE = 29
 """Nodes of the table per regime [1]."""
 CLOSING = np.unique(np.round(512.0 * np.geomspace(1.0 / 512.0, 1.0, 64)).astype(int))[:-1]
 """Nodes of the closing of the contact, out of 512 evenly spaced ones [1]."""
-_SIDE = 1e-9
 _CHEBYSHEV = chebyshev.nodes(COLLOCATION)
 _INTEGRAL = chebyshev.integration(COLLOCATION, _CHEBYSHEV)
 _UNIFORM = np.linspace(0.0, 1.0, FINE)
@@ -87,7 +86,7 @@ def tabulate(law: Law, lowest: Array, highest: Array, names: tuple[str, ...] = (
     start, stiff = np.exp(p[:, :1]), np.exp(k[:, :1])
     bend = stiff**2 / start * relative["normal"][:, :1]
     kept = CLOSING if np.any(lowest < start) else CLOSING[:0]
-    x, *closed = (part[:, kept] for part in closing(start, stiff, bend, 0.0, 513 if kept.size else 2))
+    x, *closed = closing(start, stiff, bend, kept / 512.0)
     length = 4.0 * start / stiff
     s = np.log(np.concatenate([length + x, length + nodes["approach"]], axis=1))
     pressure = np.concatenate([np.log(closed[0]), p], axis=1)
@@ -118,7 +117,7 @@ def _regimes(
     for left, right in _pieces(spots, first, last):
         width = right - left
         u = left + width * _CHEBYSHEV
-        side = np.clip(u, left + _SIDE, right - _SIDE)
+        side = np.clip(u, left + SIDE, right - SIDE)
         decay = m * spots.weight * np.exp(-m * u)
         rate = {name: decay * sum(term.spot(side) for term in spots.terms[name]) for name in names}
         sums = {name: sums[name][:, -1:] + width * (rate[name] @ _INTEGRAL) for name in names}
@@ -145,12 +144,12 @@ def _pieces(spots: Spots, first: Array, last: Array) -> list[tuple[Array, Array]
 
 def held(rows: Rows, common: Array, offset: Array, end: Array) -> dict[str, Array]:
     """`rows` at log-pressures; beyond `end` (n, 1), the log of the hardness, the last tangent continues."""
-    found = rows(common, offset)
+    values = rows(common, offset)
     if np.any(common[-1] + offset > end):
         last = rows(np.zeros(1), end)
         beyond = common + offset > end
         with np.errstate(over="ignore"):
             excess = np.where(beyond, np.exp(common + offset) - np.exp(end), 0.0)
-        found["s"] = np.where(beyond, np.log(np.exp(last["s"]) + excess * np.exp(-last["k"])), found["s"])
-        found["k"] = np.where(beyond, last["k"], found["k"])
-    return found
+        values["s"] = np.where(beyond, np.log(np.exp(last["s"]) + excess * np.exp(-last["k"])), values["s"])
+        values["k"] = np.where(beyond, last["k"], values["k"])
+    return values

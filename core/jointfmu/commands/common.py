@@ -38,6 +38,11 @@ def flag(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
+def option(args: argparse.Namespace, setting: str) -> str:
+    """The option for what a refusal calls `setting`: of that name, or as the command states in `options`."""
+    return flag(getattr(args, "options", {}).get(setting, setting))
+
+
 def written(sub: argparse.ArgumentParser, text: str = "write the parameter file (TOML)") -> None:
     """Declare `--out FILE`, the parameter file to write, and its second name `--write`."""
     sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
@@ -63,6 +68,7 @@ def settings(sub: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="set parameters (SI units)",
     )
+    sub.set_defaults(options={"settings": "set"})
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -14,7 +14,7 @@ from ..parameters import ParameterFile, check_writable, default, load, write_tex
 from .common import command, flag
 
 if TYPE_CHECKING:
-    from ..export.files import Written
+    from ..export.writing import Written
 
 _NUMBERED = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
 _ABOVE = {
@@ -101,16 +101,16 @@ def _export(args: argparse.Namespace) -> int:
 
 
 def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
-    from ..export import files
+    from ..export import writing
     from ..export.mesh import read_pairs
 
     units = UNITS[args.units]
     error = ERROR if args.error is None else args.error
     if args.what == "contact":
-        return files.contact(args.form, file, units, error)
+        return writing.contact(args.form, file, units, error)
     state = _state(args, file.joint)
     if args.what == "curve":
-        return files.curve(args.form, file, state, units, error)
+        return writing.curve(args.form, file, state, units, error)
     mesh = read_pairs(args.nodes) if args.nodes else None
     first, text = next(iter(exports.of(file.joint).working_point.items()), ("", ""))
     if mesh is not None and mesh.pressure is not None and state is not None:
@@ -120,16 +120,16 @@ def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
     if (mesh is None or mesh.pressure is None) and state is None and first:
         raise ValueError(f"springs need {flag(first)}, {text}, or --nodes with a pressure")
     placing = Placing(units, args.normal or "z", args.first or 1, args.first_set or 1, own=mesh is None)
-    return files.springs(args.form, file, state, mesh, placing)
+    return writing.springs(args.form, file, state, mesh, placing)
 
 
 def _state(args: argparse.Namespace, joint: str) -> Any:
     """The joint's working point, None where none is stated."""
-    made = exports.of(joint)
-    values = {name: getattr(args, name) for name in made.working_point}
-    if made.state is None or all(value is None for value in values.values()):
+    offered = exports.of(joint)
+    values = {name: getattr(args, name) for name in offered.working_point}
+    if offered.state is None or all(value is None for value in values.values()):
         return None
-    return made.state(**{name: value or 0.0 for name, value in values.items()})
+    return offered.state(**{name: value or 0.0 for name, value in values.items()})
 
 
 def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from ..joints.clamped import clamped
 from ..parameters import ParameterFile, default, load
-from ..quantity import flatten
 
 if TYPE_CHECKING:
     from ..fem.geometry import Assembly
@@ -63,6 +62,6 @@ def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> Par
         changes |= {"n_bolts": float(len(assembly.bolts.positions))}
         if rows is not None:
             changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
-    old = flatten(file.values)
+    old = file.flat
     new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
     return file.with_values(new, "derived", f"from the assembly {assembly.name}")

@@ -23,7 +23,7 @@ def add(commands: Any) -> None:
     """Declare the command and what the joints are fitted to."""
     text = "fit a joint's parameters to a measured curve or a catalogue row"
     top = commands.add_parser("fit", help=text, description=text)
-    procedures = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
+    procedures = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
     for kind in KINDS.values():
         part = kind.part("fit")
         for procedure in part.FITS if part else ():

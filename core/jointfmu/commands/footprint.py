@@ -19,38 +19,43 @@ if TYPE_CHECKING:
 
 
 def add(commands: Any) -> None:
-    """Declare the command and its kinds."""
+    """Declare the command and its sub-commands."""
     text = "the contact pressure of a bolted joint: from a file, or by finite elements"
     top = commands.add_parser("footprint", help=text, description=text)
-    kinds = top.add_subparsers(dest="kind", required=True, metavar="KIND", parser_class=Parser)
-    _import(kinds)
-    footprint_compute.add(kinds)
+    steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
+    _import(steps)
+    footprint_compute.add(steps)
 
 
-def _import(kinds: Any) -> None:
-    one = command(kinds, "import", _bring, "bring a nodal contact result into a joint's parameter file")
-    one.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
-    one.add_argument(
+OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
+"""{name of the library's argument: the option's} where they differ."""
+
+
+def _import(steps: Any) -> None:
+    step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
+    step.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
+    step.add_argument(
         "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
     )
-    one.add_argument(
+    step.add_argument(
         "--params", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
     )
-    one.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
-    one.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
-    one.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
-    one.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
-    one.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
-    one.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
-    one.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
-    one.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
-    one.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
-    one.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
-    one.add_argument(
+    step.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
+    step.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
+    step.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
+    step.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
+    step.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
+    step.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
+    step.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
+    step.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
+    step.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
+    step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
+    step.add_argument(
         "--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help="further listings"
     )
-    one.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
-    one.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
+    step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    step.set_defaults(options=OPTIONS)
 
 
 def _bring(args: argparse.Namespace) -> int:
@@ -60,34 +65,35 @@ def _bring(args: argparse.Namespace) -> int:
         check_writable(args.out)
     if args.plot:
         plots.check(args.plot)
-    from ..fields import figure, joint
+    from ..fields import figure
+    from ..fields.joint_parameters import with_field
 
     start = joint_file(args.params)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:
         source += f" and {args.moment_file.name}"
-    file, reduction = joint.with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
+    file, reduction = with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     if args.plot:
         figure.draw(field, reduction, args.plot)
     if args.out:
         write_text(args.out, dump(file))
-    found = _findings(args, file, field, reduction)
+    facts = _findings(args, file, field, reduction)
     if args.json:
-        print(json.dumps(found))
+        print(json.dumps(facts))
     else:
-        print("\n".join(_lines(found, start.values.A_0)))
-        for warning in found["warnings"]:
+        print("\n".join(_lines(facts, start.values.A_0)))
+        for warning in facts["warnings"]:
             print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 
 def _reading(args: argparse.Namespace) -> Any:
     """How the file is to be read; every choice checked."""
+    from ..fields.contact_surface import AXES, OPEN, SIDES, Plane
+    from ..fields.nodal_result import LENGTHS, PRESSURES
     from ..fields.reading import FORMATS, Reading
-    from ..fields.result import LENGTHS, PRESSURES
-    from ..fields.surface import AXES, OPEN, SIDES, Plane
 
     for name, value, allowed in (
         ("--format", args.format, FORMATS),
@@ -134,28 +140,28 @@ def _findings(
     }
 
 
-def _lines(found: dict[str, Any], before: float) -> list[str]:
+def _lines(facts: dict[str, Any], before: float) -> list[str]:
     from ..fields.sums import PRELOADS
 
     low, high = PRELOADS
-    part = 100.0 * (found["force"] / found["force_of_the_bolts"] - 1.0)
+    part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
     lines = [
-        f"{found['nodes']} nodes ({found['open_nodes']} open), pressure up to "
-        f"{found['p_max'] / 1e6:.4g} MPa, mean {found['p_mean'] / 1e6:.4g} MPa",
-        f"force {found['force']:.6g} N, {part:+.2g} % of the bolts' {found['force_of_the_bolts']:.6g} N; "
+        f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "
+        f"{facts['p_max'] / 1e6:.4g} MPa, mean {facts['p_mean'] / 1e6:.4g} MPa",
+        f"force {facts['force']:.6g} N, {part:+.2g} % of the bolts' {facts['force_of_the_bolts']:.6g} N; "
         "the field is scaled to theirs",
-        f"A_0 is the nodes' area, {found['A_0']:.6g} m2 (it was {before:.6g} m2)",
+        f"A_0 is the nodes' area, {facts['A_0']:.6g} m2 (it was {before:.6g} m2)",
     ]
-    if found["loads"]:
+    if facts["loads"]:
         lines.append(
-            f"{found['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
-            f"{found['deviation']:.1e} at {found['loads']} other loads (preload {low:g} to {high:g} times "
-            f"this one, pressed to fully open, moment up to {found['largest_moment']:.4g} N.m at this one)"
+            f"{facts['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{facts['deviation']:.1e} at {facts['loads']} other loads (preload {low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {facts['largest_moment']:.4g} N.m at this one)"
         )
     else:
         lines.append("all nodes are kept")
-    if found["deviation_beyond"]:
+    if facts["deviation_beyond"]:
         lines.append(
-            f"larger moments open nodes: within {found['deviation_beyond']:.1e} until a row is unloaded"
+            f"larger moments open nodes: within {facts['deviation_beyond']:.1e} until a row is unloaded"
         )
-    return [*lines, *(f"wrote {path}" for path in found["written"])]
+    return [*lines, *(f"wrote {path}" for path in facts["written"])]

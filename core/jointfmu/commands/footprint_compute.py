@@ -15,8 +15,8 @@ from .common import command
 from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
 
 if TYPE_CHECKING:
+    from ..fem.bolted_contact import JointSolution
     from ..fem.convergence import MeshResult
-    from ..fem.joint import JointSolution
 
 TILT = 1.0 / 3.0
 """Moment of the second field for `--out`, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
@@ -69,12 +69,12 @@ def run(args: argparse.Namespace) -> int:
     except (ImportError, OSError) as error:
         raise without_fem(error) from None
     written = _write(args, file, solution)
-    found = _findings(solution, moment, args.preload)
+    facts = _findings(solution, moment, args.preload)
     warnings = beyond_law(solution.peak, float(file.values.hardness))
     if args.json:
-        print(json.dumps(found | {"meshes": list(_meshes(rows)), "written": written, "warnings": warnings}))
+        print(json.dumps(facts | {"meshes": list(_meshes(rows)), "written": written, "warnings": warnings}))
     else:
-        print("\n".join([*_lines(found), *_table(rows)]))
+        print("\n".join([*_lines(facts), *_table(rows)]))
         print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
@@ -112,7 +112,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """The joint with the field at the preload, and what a moment adds from a second one."""
-    from ..fields.joint import with_field
+    from ..fields.joint_parameters import with_field
 
     joint, law = solution.joint, _law(file)
     moment = args.moment or TILT * joint.assembly.most_moment(args.preload)
@@ -144,15 +144,15 @@ def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[
     }
 
 
-def _lines(found: dict[str, Any]) -> Iterator[str]:
+def _lines(facts: dict[str, Any]) -> Iterator[str]:
     """The findings for people."""
-    yield f"{found['assembly']}: {found['preload']:g} N per bolt, moment {found['moment']:g} N.m"
-    yield f"contact   {found['area'] * 1e4:.2f} cm2, {100 * found['open_share']:.3g} % open"
-    yield f"force     {found['force']:.6g} N"
-    yield f"pressure  mean {found['p_mean'] / 1e6:.3g} MPa, peak {found['p_max'] / 1e6:.4g} MPa"
-    for one in found["between"]:
-        yield f"          between bolts at ({one['x']:g}, {one['y']:g}) m: {one['p'] / 1e6:.3g} MPa"
-    yield f"interface K_N {found['K_N']:.5g} N/m, K_rx {found['K_rx']:.5g}, K_ry {found['K_ry']:.5g} N.m/rad"
+    yield f"{facts['assembly']}: {facts['preload']:g} N per bolt, moment {facts['moment']:g} N.m"
+    yield f"contact   {facts['area'] * 1e4:.2f} cm2, {100 * facts['open_share']:.3g} % open"
+    yield f"force     {facts['force']:.6g} N"
+    yield f"pressure  mean {facts['p_mean'] / 1e6:.3g} MPa, peak {facts['p_max'] / 1e6:.4g} MPa"
+    for middle in facts["between"]:
+        yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
+    yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
 
 
 def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, Any]]:
@@ -174,5 +174,5 @@ def _table(rows: list["MeshResult"]) -> Iterator[str]:
     for change, row in zip(changes(rows), rows[1:], strict=True):
         percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in COLUMNS)
         yield f"change to {row.refinement:6.2f} {percent}"
-    if found := orders(rows):
-        yield "observed order   " + " ".join(f"{found[name]:16.1f}" for name in COLUMNS)
+    if observed := orders(rows):
+        yield "observed order   " + " ".join(f"{observed[name]:16.1f}" for name in COLUMNS)

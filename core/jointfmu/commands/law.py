@@ -22,7 +22,8 @@ ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 def add(commands: Any) -> None:
     """Declare the command."""
     law = command(commands, "law", _law, "evaluate one interface law at pressures or largest spots")
-    law.add_argument("law", choices=list(LAWS), metavar="LAW", help=f"one of {', '.join(LAWS)}")
+    laws = [name for name in LAWS if _joints(name)]
+    law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
     at = law.add_mutually_exclusive_group(required=True)
     at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
     at.add_argument(
@@ -35,19 +36,22 @@ def add(commands: Any) -> None:
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
     """The law's parameter set from a joint's parameter file (default: of the first joint with this law)
     and settings."""
-    cls = LAWS[law]
-    file = file or default(next(name for name, kind in KINDS.items() if kind.law is cls))
+    file = file or default(_joints(law)[0])
     known = flatten(KINDS[file.joint].law_of(file.values))
-    names = {name for name, _ in flat_fields(cls)}
-    return build(cls, {k: v for k, v in known.items() if k in names} | settings)
+    names = {name for name, _ in flat_fields(LAWS[law])}
+    return build(LAWS[law], {k: v for k, v in known.items() if k in names} | settings)
+
+
+def _joints(law: str) -> list[str]:
+    """The joints that have a law."""
+    return [name for name, kind in KINDS.items() if kind.law is LAWS[law]]
 
 
 def _file(path: Path, law: str) -> ParameterFile:
     """A parameter file of a joint that has the law."""
     file = load(path)
-    allowed = [name for name, kind in KINDS.items() if kind.law is LAWS[law]]
-    if file.joint not in allowed:
-        expected = " or ".join(repr(name) for name in allowed)
+    if file.joint not in _joints(law):
+        expected = " or ".join(repr(name) for name in _joints(law))
         raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {expected}")
     return file
 

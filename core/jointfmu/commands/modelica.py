@@ -57,10 +57,10 @@ def _meaning(kind: Kind, name: str) -> str:
 
 def _points(kind: Kind, args: argparse.Namespace) -> list[tuple[float, ...]]:
     """The working points asked for: values of the first input, each with those of the others, else zero."""
-    first, *others = kind.working_point
-    given = {name: getattr(args, name) for name in others if getattr(args, name) is not None}
+    first, *rest = kind.working_point
+    given = {name: getattr(args, name) for name in rest if getattr(args, name) is not None}
     values: list[float] = getattr(args, first) or []
     if given and not values:
         needed = f"{flag(first)}, the {_meaning(kind, first)}"
         raise ValueError(f"{flag(next(iter(given)))} needs {needed}")
-    return [(value, *(given.get(name, 0.0) for name in others)) for value in values]
+    return [(value, *(given.get(name, 0.0) for name in rest)) for value in values]

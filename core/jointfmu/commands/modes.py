@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         from ..fem import assembly_modes, shapes
         from ..fem.assembly import load
-        from ..fem.joint import BoltedContact
+        from ..fem.bolted_contact import BoltedContact
     except ImportError as error:
         raise without_fem(error) from None
     assembly = load(args.assembly)
@@ -53,20 +53,20 @@ def run(args: argparse.Namespace) -> int:
     try:
         contact = BoltedContact.of(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
-        found = assembly_modes.computed(solution, shear, args.count)
+        modes = assembly_modes.computed(solution, shear, args.count)
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
     except (ImportError, OSError) as error:
         raise without_fem(error) from None
     if args.vtu:
-        write_bytes(args.vtu, shapes.vtu(contact.bodies, found))
+        write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
     warnings = beyond_law(solution.peak, float(file.values.hardness))
     if args.json:
-        print(json.dumps(_document(args, assembly.name, found, even) | {"warnings": warnings}))
+        print(json.dumps(_document(args, assembly.name, modes, even) | {"warnings": warnings}))
     else:
         print(
-            f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {found.mass:.4g} kg"
+            f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
         )
-        print("\n".join(_table(found, even)))
+        print("\n".join(_table(modes, even)))
         for warning in warnings:
             print(f"warning: {warning}", file=sys.stderr)
     return 0
@@ -85,19 +85,19 @@ def _check(args: argparse.Namespace) -> None:
         check_writable(args.vtu)
 
 
-def _document(args: argparse.Namespace, name: str, found: "Modes", even: "Modes") -> dict[str, Any]:
-    rows = zip(found.frequency.tolist(), even.frequency.tolist(), strict=True)
+def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes") -> dict[str, Any]:
+    rows = zip(modes.frequency.tolist(), even.frequency.tolist(), strict=True)
     return {
         "assembly": name,
         "preload": args.preload,
         "moment": args.moment,
-        "mass": found.mass,
+        "mass": modes.mass,
         "modes": [{"f": f, "f_uniform_pressure": g} for f, g in rows],
         "written": [str(args.vtu)] if args.vtu else [],
     }
 
 
-def _table(found: "Modes", even: "Modes") -> Iterator[str]:
+def _table(modes: "Modes", even: "Modes") -> Iterator[str]:
     yield "mode   f [Hz]   with uniform pressure [Hz]"
-    for i, (f, g) in enumerate(zip(found.frequency, even.frequency, strict=True), 1):
+    for i, (f, g) in enumerate(zip(modes.frequency, even.frequency, strict=True), 1):
         yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

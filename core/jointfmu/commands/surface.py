@@ -17,7 +17,7 @@ from ..topography.form import FORMS
 from ..topography.fractal import zhao_roughness
 from ..topography.heights import Areal, Heights
 from ..topography.identify import METHODS, identify
-from ..topography.joint import changes, meaning, with_surface
+from ..topography.joint_parameters import changes, meaning, with_surface
 from ..topography.reading import read
 from ..topography.results import Estimate, Identification, Result
 from . import synthesize
@@ -67,16 +67,16 @@ def _identify(args: argparse.Namespace) -> int:
     if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):
         raise ValueError(f"range {args.span[0]:g} {args.span[1]:g} m, expected 0 < LOW < HIGH")
     heights = [read(path, args.unit) for path in args.files]
-    found = identify(heights, args.form, tuple(args.span) if args.span else None)
-    file = with_surface(base, found, args.method) if base else None
+    identified = identify(heights, args.form, tuple(args.span) if args.span else None)
+    file = with_surface(base, identified, args.method) if base else None
     if args.out and file:
         write_text(args.out, dump(file))
     if args.plot:
-        draw(found, args.plot)
+        draw(identified, args.plot)
     if args.json:
-        print(json.dumps(_as_dict(found, heights, args)))
+        print(json.dumps(_as_dict(identified, heights, args)))
     else:
-        _print(found, heights, args)
+        _print(identified, heights, args)
     return 0
 
 
@@ -96,21 +96,21 @@ def _base(args: argparse.Namespace) -> Any:
     return None
 
 
-def _print(found: Identification, heights: Sequence[Heights], args: argparse.Namespace) -> None:
-    for one in heights:
-        print(f"{one.name}: {synthesize.size(one)}")
+def _print(identified: Identification, heights: Sequence[Heights], args: argparse.Namespace) -> None:
+    for surface in heights:
+        print(f"{surface.name}: {synthesize.size(surface)}")
     if len(heights) == 2:
         print("equivalent surface of the pair: structure functions and spectra added")
-    for name, repair in found.repairs:
+    for name, repair in identified.repairs:
         print(f"repaired in {name}: {repair}")
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
-    rows = [heads, *(_row(result) for result in found.results)]
+    rows = [heads, *(_row(result) for result in identified.results)]
     widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
     for row in rows:
         print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
     print("brackets: 95 % confidence intervals")
     for joint in [args.joint] if args.joint else _rough():
-        values = changes(found, joint, args.method)
+        values = changes(identified, joint, args.method)
         text = ", ".join(
             f"{name} = {value:.6g}" if math.isfinite(value) else f"{name} not determined"
             for name, (value, _) in values.items()
@@ -120,7 +120,7 @@ def _print(found: Identification, heights: Sequence[Heights], args: argparse.Nam
         print(f"wrote {args.out}")
     if args.plot:
         print(f"wrote {args.plot}")
-    for warning in found.warnings:
+    for warning in identified.warnings:
         print(f"warning: {warning}", file=sys.stderr)
 
 
@@ -140,29 +140,33 @@ def _row(result: Result) -> tuple[str, ...]:
     )
 
 
-def _bracket(one: Estimate, style: str) -> str:
-    if not math.isfinite(one.value):
+def _bracket(estimate: Estimate, style: str) -> str:
+    if not math.isfinite(estimate.value):
         return "not determined"
-    return f"{one.value:{style}} [{one.low:{style}}, {one.high:{style}}]"
+    return f"{estimate.value:{style}} [{estimate.low:{style}}, {estimate.high:{style}}]"
 
 
-def _as_dict(found: Identification, heights: Sequence[Heights], args: argparse.Namespace) -> dict[str, Any]:
+def _as_dict(
+    identified: Identification, heights: Sequence[Heights], args: argparse.Namespace
+) -> dict[str, Any]:
     return {
-        "files": list(found.names),
+        "files": list(identified.names),
         "kind": "areal" if isinstance(heights[0], Areal) else "profile",
         "pair": len(heights) == 2,
-        "textured": found.textured,
+        "textured": identified.textured,
         "form": args.form,
         "repairs": [
-            {"file": n, "repair": r.name, "count": r.count, "points": r.points} for n, r in found.repairs
+            {"file": n, "repair": r.name, "count": r.count, "points": r.points} for n, r in identified.repairs
         ],
-        "results": [_result_dict(result, args.gamma) for result in found.results],
+        "results": [_result_dict(result, args.gamma) for result in identified.results],
         "joints": {
-            joint: {name: _number(value) for name, (value, _) in changes(found, joint, args.method).items()}
+            joint: {
+                name: _number(value) for name, (value, _) in changes(identified, joint, args.method).items()
+            }
             for joint in ([args.joint] if args.joint else _rough())
         },
         "written": str(args.out) if args.out else None,
-        "warnings": list(found.warnings),
+        "warnings": list(identified.warnings),
     }
 
 
@@ -182,8 +186,8 @@ def _result_dict(result: Result, gamma: float) -> dict[str, Any]:
     }
 
 
-def _interval(one: Estimate) -> dict[str, float | None]:
-    return {"value": _number(one.value), "low": _number(one.low), "high": _number(one.high)}
+def _interval(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": _number(estimate.value), "low": _number(estimate.low), "high": _number(estimate.high)}
 
 
 def _number(value: Number) -> float | None:

@@ -69,15 +69,15 @@ def _uncertainty(args: argparse.Namespace) -> int:
     A, B = propagate.design(task, count, args.seed)
     bands = propagate.bands(task, A)
     rows = min(count, max(1024, count // 32))
-    found = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 else None
+    indices = sensitivity(task, A[:rows], B[:rows]) if len(task.uncertain) > 1 else None
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import figures
+        from ..uncertainty import figure
 
-        figures.draw(args.plot, bands, found, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
+        figure.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     if args.json:
-        print(json.dumps(report.as_json(task, bands, found)))
+        print(json.dumps(report.as_json(task, bands, indices)))
     else:
-        print(report.table(task, bands, found))
+        print(report.table(task, bands, indices))
     return 0

@@ -24,20 +24,20 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> st
 
     Sets of real constants are shared by pairs that are equal to nine digits, which the format holds.
     """
-    first, kind, units, count = placing.first, placing.first_set, placing.units, len(springs.nodes)
+    first, first_set, units, count = placing.first, placing.first_set, placing.units, len(springs.nodes)
     stiffness = placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m"))
     damping = placing.along(units.of(springs.C_t, "N.s/m"), units.of(springs.C_n, "N.s/m"))
     sets: dict[tuple[str, ...], int] = {}
-    reals = [_real(sets, row, kind) for row in (*stiffness, *damping)]
-    types = np.repeat([kind, kind + 1], count)
+    reals = [_real(sets, row, first_set) for row in (*stiffness, *damping)]
+    types = np.repeat([first_set, first_set + 1], count)
     pairs = np.vstack([springs.nodes, springs.nodes])
     rows = zip(types, reals, range(first, first + 2 * count), pairs, strict=True)
     lines = [
         *header(about, "!"),
         "/PREP7",
         *(_nodes(springs, placing) if placing.own else []),
-        *_type(kind, STIFFNESS),
-        *_type(kind + 1, DAMPING),
+        *_type(first_set, STIFFNESS),
+        *_type(first_set + 1, DAMPING),
         *_constants(sets),
         f"EBLOCK,19,SOLID,{first + 2 * count - 1:10d},{2 * count:10d}",
         "(19i10)",
@@ -50,9 +50,9 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str]) -> st
 def triangle(values: Array) -> Array:
     """C1 to C78 (78) of three springs (3) along x, y, z between two nodes."""
     matrix = np.zeros((12, 12))
-    here = np.arange(3)
-    matrix[here, here] = matrix[here + 6, here + 6] = values
-    matrix[here, here + 6] = matrix[here + 6, here] = -values
+    axes = np.arange(3)
+    matrix[axes, axes] = matrix[axes + 6, axes + 6] = values
+    matrix[axes, axes + 6] = matrix[axes + 6, axes] = -values
     return np.asarray(matrix[_UPPER])
 
 
@@ -70,10 +70,10 @@ def _constants(sets: dict[tuple[str, ...], int]) -> Iterable[str]:
         yield from ("".join(cells[i : i + 7]) for i in range(6, len(cells), 7))
 
 
-def _type(number: int, kind: int) -> Iterable[str]:
-    yield f"ET,{number:9d},{MATRIX27:4d}"
-    yield f"KEYOP,{number:9d},{2:3d},{0:9d}"
-    yield f"KEYOP,{number:9d},{3:3d},{kind:9d}"
+def _type(type_number: int, matrix: int) -> Iterable[str]:
+    yield f"ET,{type_number:9d},{MATRIX27:4d}"
+    yield f"KEYOP,{type_number:9d},{2:3d},{0:9d}"
+    yield f"KEYOP,{type_number:9d},{3:3d},{matrix:9d}"
 
 
 def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:

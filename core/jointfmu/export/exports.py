@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ..joints import KINDS
+from ..joints.model import Variable
 from ..quantity import flat_fields
 
 if TYPE_CHECKING:
@@ -23,13 +24,13 @@ class LoadCurve:
     """Load over displacement of the whole joint.
 
     meaning : what the file holds, in words
-    heads   : (name, SI unit) of displacement, load and stiffness
+    columns : displacement, load and stiffness
     name    : of the table in a Modelica file
     table   : (parameters, working point or None, largest error [1]) -> Table
     """
 
     meaning: str
-    heads: Sequence[tuple[str, str]]
+    columns: Sequence[Variable]
     name: str
     table: "Callable[[Any, Any, float], Table]"
 

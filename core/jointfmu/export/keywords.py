@@ -26,12 +26,12 @@ def springs_text(springs: Springs, placing: Placing, about: Sequence[str], dashp
     """
     units = placing.units
     lines = [*header(about, "**"), *(_nodes(springs, placing) if placing.own else [])]
-    kinds = [("SPRING", "K", placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m")))]
+    elements = [("SPRING", "K", placing.along(units.of(springs.K_t, "N/m"), units.of(springs.K_n, "N/m")))]
     if dashpots:
         values = placing.along(units.of(springs.C_t, "N.s/m"), units.of(springs.C_n, "N.s/m"))
-        kinds.append(("DASHPOT", "C", values))
+        elements.append(("DASHPOT", "C", values))
     element = placing.first
-    for keyword, symbol, columns in kinds:
+    for keyword, symbol, columns in elements:
         for axis in range(3):
             groups: dict[str, list[int]] = {}
             for pair, value in enumerate(columns[:, axis]):

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..columns import Table, read
+from ..columns import Columns, read
 from ..units import Sizes, sizes
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ def read_pairs(path: str | Path) -> Mesh:
     return Mesh(table.path, nodes, place - np.average(place, axis=0, weights=area), area, pressure)
 
 
-def _labels(table: Table, name: str) -> NDArray[np.int64]:
+def _labels(table: Columns, name: str) -> NDArray[np.int64]:
     value = table.require(name, COLUMNS)
     bad = (value != np.round(value)) | (value < 1.0) | (value > LARGEST_LABEL)
     if np.any(bad):
@@ -81,7 +81,7 @@ def _labels(table: Table, name: str) -> NDArray[np.int64]:
 
 
 def _refuse(
-    table: Table, nodes: NDArray[np.int64], name: str, value: Array, bad: NDArray[np.bool_], why: str
+    table: Columns, nodes: NDArray[np.int64], name: str, value: Array, bad: NDArray[np.bool_], why: str
 ) -> None:
     if np.any(bad):
         raise ValueError(f"{table.path}: {name} = {value[bad][0]:g} (SI) at node {nodes[bad][0, 0]}: {why}")

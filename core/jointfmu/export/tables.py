@@ -104,10 +104,10 @@ def _errors(
     slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
     cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
 
-    def worst(found: Array, exact: Array, least: float) -> float:
+    def worst(approximate: Array, exact: Array, least: float) -> float:
         size = np.maximum(np.abs(exact), least)
         some = size > 0.0
-        return float(np.max(np.abs(found - exact)[some] / size[some]))
+        return float(np.max(np.abs(approximate - exact)[some] / size[some]))
 
     straight = worst(np.interp(x, rows[:, 0], rows[:, 1]), y, floor[0]), worst(slope, k, floor[1])
     return straight, (worst(cubic(x), y, floor[0]), worst(cubic(x, 1), k, floor[1]))

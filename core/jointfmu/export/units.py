@@ -33,5 +33,5 @@ class Units:
 
 
 SI = Units("m-N-Pa-kg", {})
-UNITS = {one.name: one for one in (SI, Units("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
+UNITS = {units.name: units for units in (SI, Units("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
 """The sets by name, SI first; the second is the one usual in finite elements."""

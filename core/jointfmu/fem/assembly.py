@@ -49,12 +49,12 @@ def _part(path: Path, document: Mapping[str, Any], name: str) -> Any:
     table = document.get(name)
     if not isinstance(table, Mapping):
         raise ValueError(f"{path}: the section [{name}] is missing")
-    kind = table.get(word)
-    if not isinstance(kind, str) or kind not in classes:
-        raise ValueError(f"{path}: {name}.{word} = {kind!r}, allowed are {', '.join(classes)}")
+    shape = table.get(word)
+    if not isinstance(shape, str) or shape not in classes:
+        raise ValueError(f"{path}: {name}.{word} = {shape!r}, allowed are {', '.join(classes)}")
     body = {k: v for k, v in table.items() if k != word}
-    values, _, _ = entries(path, dict(flat_fields(classes[kind])), body)
+    values, _, _ = entries(path, dict(flat_fields(classes[shape])), body)
     try:
-        return build(classes[kind], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
+        return build(classes[shape], {k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
     except ValueError as error:
         raise ValueError(f"{path}: [{name}] {error}") from None

@@ -7,10 +7,10 @@ import numpy as np
 
 from ..curve import approach_curve
 from ..joints.clamped import Clamped
-from .contact import Law
+from .bolted_contact import BoltedContact, JointSolution
+from .contact import PressureLaw
 from .elasticity import Array
 from .geometry import Assembly
-from .joint import BoltedContact, JointSolution
 from .modes import Modes, modes
 
 REFINEMENT = 0.5
@@ -27,7 +27,7 @@ def computed(solution: JointSolution, shear: float, count: int = 6) -> Modes:
     return _on(solution.joint, solution.contact.stiffness, shear, count)
 
 
-def uniform(joint: BoltedContact, law: Law, force: float, shear: float, count: int = 6) -> Modes:
+def uniform(joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6) -> Modes:
     """Modes if the total force [N] of the bolts were spread evenly over the contact."""
     area = joint.interface.area
     approach = law.inverse(np.asarray(force / area.sum()))
@@ -53,14 +53,14 @@ def frequencies(
     """
     law = approach_curve(replace(joint, A_0=assembly.contact_area))
     contact = BoltedContact.of(assembly, refinement)
-    found = []
+    rows = []
     for preload, moment in states:
         if even:
             force = float(assembly.bolt_forces(preload, moment).sum())
-            found.append(uniform(contact, law, force, shear, count).frequency)
+            rows.append(uniform(contact, law, force, shear, count).frequency)
         else:
-            found.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
-    return np.array(found)
+            rows.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
+    return np.array(rows)
 
 
 def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> Modes:

@@ -32,7 +32,7 @@ QUADRATURE = 4
 """Degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""
 
 
-class Law(Protocol):
+class PressureLaw(Protocol):
     """Pressure over approach: a curve of jointfmu.curve, or anything of the same kind."""
 
     def derivatives(self, x: Array, order: int = 1) -> list[Array]:
@@ -85,7 +85,7 @@ class ContactModel:
 
     bodies: tuple[ElasticBody, ...]
     interface: Interface
-    law: Law
+    law: PressureLaw
     gap: Callable[[Array, Array], Array] | None = None
     held: tuple[Index, ...] | None = None
 
@@ -121,7 +121,9 @@ class ContactModel:
         held = self.supports()
         balance = self.balance(loads)
         balance.check_loads()
-        free = [np.setdiff1d(np.arange(body.size), one) for body, one in zip(self.bodies, held, strict=True)]
+        free = [
+            np.setdiff1d(np.arange(body.size), fixed) for body, fixed in zip(self.bodies, held, strict=True)
+        ]
         traces = [trace[:, part] for trace, part in zip(self.traces(), free, strict=True)]
         split = np.cumsum([part.size for part in free])[:-1]
         energy = Energy(
@@ -133,10 +135,10 @@ class ContactModel:
         )
         gap = self.opening(*self.interface.position.T)
         offset = float(self.law.inverse(np.asarray(start))) + float(gap.max())
-        found, approach, steps = energy.minimise(offset - gap)
+        unknowns, approach, steps = energy.minimise(offset - gap)
         balance.check_contact(energy.weight * self.law.derivatives(approach, 1)[0])
         displacement = []
-        for body, part, values in zip(self.bodies, free, np.split(found, split), strict=True):
+        for body, part, values in zip(self.bodies, free, np.split(unknowns, split), strict=True):
             whole = np.zeros(body.size)
             whole[part] = values
             displacement.append(whole)
@@ -219,8 +221,8 @@ def node_trace(body: ElasticBody, interface: Interface, axis: int = 2) -> sp.csr
     distance, node = cKDTree(body.nodes.T).query(flat.T)
     if distance.max() > 1e-9:
         raise RuntimeError(f"a node of the contact lies {distance.max():g} m beside the body's nodes")
-    one = np.ones(node.size)
-    return sp.csr_matrix((one, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.size))
+    ones = np.ones(node.size)
+    return sp.csr_matrix((ones, (np.arange(node.size), 3 * node + axis)), shape=(node.size, body.size))
 
 
 def _supports(body: ElasticBody, fully: bool) -> Index:
@@ -231,5 +233,5 @@ def _supports(body: ElasticBody, fully: bool) -> Index:
     """
     x, y, z = body.nodes
     corner, along, across = (int(np.argmin(a * x + b * y + 1e-3 * z)) for a, b in ((1, 1), (-1, 1), (1, -1)))
-    found = [3 * corner, 3 * corner + 1, 3 * along + 1]
-    return np.array(found + [3 * node + 2 for node in (corner, along, across)] if fully else found)
+    unknowns = [3 * corner, 3 * corner + 1, 3 * along + 1]
+    return np.array(unknowns + [3 * node + 2 for node in (corner, along, across)] if fully else unknowns)

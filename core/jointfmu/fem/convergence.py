@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ..progress import track
-from .contact import Law
+from .bolted_contact import BoltedContact, JointSolution
+from .contact import PressureLaw
 from .geometry import Assembly
-from .joint import BoltedContact, JointSolution
 
 RATIO = math.sqrt(2.0)
 """Between the element sizes of two meshes [1]."""
@@ -37,7 +37,7 @@ def refinements(count: int, middle: float = 1.0) -> list[float]:
 
 
 def study(
-    assembly: Assembly, law: Law, preload: float, moment: float, levels: Sequence[float]
+    assembly: Assembly, law: PressureLaw, preload: float, moment: float, levels: Sequence[float]
 ) -> tuple[list[MeshResult], JointSolution]:
     """Results on meshes of rising refinement [1], and the solution on the last of them.
 
@@ -78,8 +78,8 @@ def orders(rows: Sequence[MeshResult]) -> dict[str, float]:
         return {}
     before, after = changes(rows)[-2:]
     ratio = math.log(rows[-1].refinement / rows[-2].refinement)
-    found = {}
+    observed = {}
     for name in COLUMNS:
         falls = 0.0 < abs(after[name]) < abs(before[name])
-        found[name] = math.log(abs(before[name] / after[name])) / ratio if falls else math.nan
-    return found
+        observed[name] = math.log(abs(before[name] / after[name])) / ratio if falls else math.nan
+    return observed

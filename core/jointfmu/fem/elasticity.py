@@ -100,9 +100,16 @@ class ElasticBody:
     def rigid_motions(self) -> Array:
         """Displacements (n, 6) of unit translations [m/m] along and rotations [m/rad] about x, y, z."""
         x, y, z = self.nodes
-        one, no = np.ones_like(x), np.zeros_like(x)
-        motions = [(one, no, no), (no, one, no), (no, no, one), (no, -z, y), (z, no, -x), (-y, x, no)]
-        return np.stack([np.stack(each, axis=1).ravel() for each in motions], axis=1)
+        unit, zero = np.ones_like(x), np.zeros_like(x)
+        motions = [
+            (unit, zero, zero),
+            (zero, unit, zero),
+            (zero, zero, unit),
+            (zero, -z, y),
+            (z, zero, -x),
+            (-y, x, zero),
+        ]
+        return np.stack([np.stack(motion, axis=1).ravel() for motion in motions], axis=1)
 
 
 def _assembled(basis: Basis, blocks: list[Array]) -> sp.csr_matrix:

@@ -144,8 +144,8 @@ class Assembly:
         """Area [m2] where the bodies touch, the holes cut out."""
         layers = [body.layers()[0] for body in (self.side1, self.side2)]
         outer = np.min([layer.outer for layer in layers], axis=0)
-        one, two = (np.minimum(layer.inner, outer) for layer in layers)
-        opening = 4.0 * (one.prod() + two.prod() - np.minimum(one, two).prod())
+        inner1, inner2 = (np.minimum(layer.inner, outer) for layer in layers)
+        opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
         holes = len(self.bolts.positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
         return float(4.0 * outer.prod() - opening - holes)
 

@@ -43,8 +43,8 @@ class Plan:
 
 def contact_cells(plan: Plan, assembly: Assembly) -> NDArray[np.bool_]:
     """(m) cells where the two bodies touch."""
-    one, two = (plan.solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
-    return one & two
+    cells1, cells2 = (plan.solid(body.layers()[0]) for body in (assembly.side1, assembly.side2))
+    return cells1 & cells2
 
 
 def contact_mesh(plan: Plan, touching: NDArray[np.bool_]) -> MeshQuad:
@@ -129,9 +129,9 @@ def _grade(model: object, assembly: Assembly, near: float, far: float) -> None:
     for x, y in assembly.bolts.positions:
         terms = f"(Sqrt((x-({x:.12g}))^2+(y-({y:.12g}))^2))"
         size = f"{2 * near:.12g}+0.35*Abs({terms}-{hole:.12g})"
-        one = field.add("MathEval")
-        field.setString(one, "F", size)
-        circles.append(one)
+        rim = field.add("MathEval")
+        field.setString(rim, "F", size)
+        circles.append(rim)
     flat = field.add("MathEval")
     field.setString(flat, "F", f"{2 * far:.12g}")
     least = field.add("Min")
@@ -213,9 +213,9 @@ def _boundaries(mesh: MeshHex, assembly: Assembly, heads_at: float) -> dict[str,
     free = np.zeros(z.size, dtype=bool)
     free[mesh.boundary_facets()] = True
     slack = 1e-9 + 1e-6 * abs(heads_at)
-    found = {"contact": np.flatnonzero(free & (np.abs(z) < slack))}
+    boundaries = {"contact": np.flatnonzero(free & (np.abs(z) < slack))}
     flat = free & (np.abs(mesh.p[2, mesh.facets] - heads_at).max(axis=0) < slack)
     for i, at in enumerate(bolts.positions):
         under = np.hypot(x - at[0], y - at[1]) < 0.5 * bolts.head_diameter
-        found[f"head{i + 1}"] = np.flatnonzero(flat & under)
-    return found
+        boundaries[f"head{i + 1}"] = np.flatnonzero(flat & under)
+    return boundaries

@@ -46,19 +46,19 @@ def modes(
     """
     if len(bodies) == 2:
         springs = _springs(bodies, interface, {0: tangential, 1: tangential, 2: normal})
-        found = _lowest(bodies, springs, RIGID + count)
+        motions = _lowest(bodies, springs, RIGID + count)
     else:
-        found = []
+        motions = []
         for stiffness, sign in (({2: normal}, 1.0), ({0: tangential, 1: tangential}, -1.0)):
             half = _lowest(bodies, 2.0 * _springs(bodies, interface, stiffness), RIGID // 2 + count)
-            found += [(f, _both(shape[0], sign)) for f, shape in half]
-        found.sort(key=lambda one: one[0])
-    frequency = np.array([one[0] for one in found])
+            motions += [(f, _both(shape[0], sign)) for f, shape in half]
+        motions.sort(key=lambda motion: motion[0])
+    frequency = np.array([motion[0] for motion in motions])
     if frequency[RIGID] < LEAST:
         raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
     last = RIGID + count
-    return Modes(frequency[RIGID:last], tuple(one[1] for one in found[RIGID:last]), mass)
+    return Modes(frequency[RIGID:last], tuple(motion[1] for motion in motions[RIGID:last]), mass)
 
 
 def _springs(
@@ -67,9 +67,9 @@ def _springs(
     """Stiffness matrix [N/m] of the interface; stiffness per area (q) [N/m3] along some of the axes."""
     signs = (1.0, -1.0)[: len(bodies)]
     total: sp.csr_matrix | float = 0.0
-    for axis, each in stiffness.items():
+    for axis, density in stiffness.items():
         opening = sp.hstack([s * trace(body, interface, axis) for s, body in zip(signs, bodies, strict=True)])
-        total = total + opening.T @ sp.diags(interface.area * each) @ opening
+        total = total + opening.T @ sp.diags(interface.area * density) @ opening
     return sp.csr_matrix(total)
 
 

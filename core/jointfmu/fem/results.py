@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .. import plots
 from ..fields import csvfile
 from ..parameters import check_writable, write_bytes, write_text
-from .joint import JointSolution
+from .bolted_contact import JointSolution
 from .vtu import packed
 
 Array = NDArray[np.float64]

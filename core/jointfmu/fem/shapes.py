@@ -7,7 +7,7 @@ from .modes import Modes
 from .vtu import packed
 
 
-def vtu(bodies: tuple[ElasticBody, ...], found: Modes) -> bytes:
+def vtu(bodies: tuple[ElasticBody, ...], modes: Modes) -> bytes:
     """Hexahedra of both bodies; at their corners one displacement [m] per mode, of 1 m at most.
 
     bodies : as in jointfmu.fem.modes; a mirror image is drawn too
@@ -20,7 +20,7 @@ def vtu(bodies: tuple[ElasticBody, ...], found: Modes) -> bytes:
         parts.insert(0, (points * np.array([1.0, 1.0, -1.0]), cells))
     counts = [len(points) for points, _ in parts]
     data = {}
-    for i, (frequency, shape) in enumerate(zip(found.frequency, found.shape, strict=True), 1):
+    for i, (frequency, shape) in enumerate(zip(modes.frequency, modes.shape, strict=True), 1):
         moved = np.concatenate([u[rows] for u, rows in zip(shape, _corners(bodies), strict=True)])
         data[f"mode {i}, {frequency:.1f} Hz"] = moved / np.linalg.norm(moved, axis=1).max()
     points = np.concatenate([points for points, _ in parts])

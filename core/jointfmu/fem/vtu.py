@@ -7,11 +7,11 @@ from pathlib import Path
 from .elasticity import Array, Index
 
 
-def packed(points: Array, kind: str, cells: Index, data: Mapping[str, Array]) -> bytes:
-    """A VTU file: points (k, 3) [m], cells (m, corners) of meshio's `kind`, values (k, ...) by name."""
+def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
+    """A VTU file: points (k, 3) [m], cells (m, corners) of meshio's `cell_type`, values (k, ...) by name."""
     import meshio
 
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder) / "mesh.vtu"
-        meshio.Mesh(points, [(kind, cells)], point_data=dict(data)).write(place)
+        meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(place)
         return place.read_bytes()

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .result import NodalResult, Nodes
+from ..refusal import Refusal
+from .nodal_result import NodalResult, Nodes
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 _ELEMENT_HEAD = 6
@@ -30,16 +31,17 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     places: dict[int, tuple[float, ...]] = {}
     elements: list[list[int]] = []
     for path in paths:
-        for where, kind, row in _rows(path):
-            if kind == "element":
+        for where, content, row in _rows(path):
+            if content == "element":
                 elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
-            elif kind == "more":
+            elif content == "more":
                 elements[-1] += [int(x) for x in row]
             else:
-                found: dict[int, object] = values if kind == "pressure" else places  # type: ignore[assignment]
-                name, value = int(row[0]), row[1] if kind == "pressure" else tuple(row[1:])
-                if found.setdefault(name, value) != value:
-                    raise ValueError(f"{where}: node {name} has a second {kind}, expected one")
+                pressed = content == "pressure"
+                listed: dict[int, object] = values if pressed else places  # type: ignore[assignment]
+                name, value = int(row[0]), row[1] if pressed else tuple(row[1:])
+                if listed.setdefault(name, value) != value:
+                    raise ValueError(f"{where}: node {name} has a second {content}, expected one")
     first = paths[0]
     for table, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
@@ -47,7 +49,7 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
         (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
     ):
         if not table:
-            raise ValueError(f"{first}: has {text}; give further listings with --with")
+            raise Refusal(f"{first}: has {text}; give further listings", "beside")
     return _result(first, values, places, elements, length, pressure)
 
 
@@ -63,9 +65,9 @@ def _result(
     if missing := [node for node in used if node not in places]:
         raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
     if stray := sorted(values.keys() - set(used)):
-        others = [node for node in stray if values[node] != 0.0]
-        if others:
-            raise ValueError(f"{path}: node {others[0]} has a pressure and is in no listed element (ELIST)")
+        loaded = [node for node in stray if values[node] != 0.0]
+        if loaded:
+            raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
     index = {name: i for i, name in enumerate(used)}
     return NodalResult(
         path=path,
@@ -79,7 +81,7 @@ def _result(
 
 def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int]) -> list[Nodes]:
     """Elements of one size together; a quadrilateral whose third and fourth node agree is a triangle."""
-    found: dict[int, list[list[int]]] = {}
+    blocks: dict[int, list[list[int]]] = {}
     for element in elements:
         nodes = [node for node in element if node]
         if len(nodes) == 8 and nodes[2] == nodes[3]:
@@ -91,24 +93,24 @@ def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int])
                 f"{path}: an element has {len(nodes)} nodes, expected contact elements with 3, 4, 6 or 8: "
                 "select them before ELIST"
             )
-        found.setdefault(len(nodes), []).append([index[node] for node in nodes])
-    return [np.array(rows, dtype=np.intp) for rows in found.values()]
+        blocks.setdefault(len(nodes), []).append([index[node] for node in nodes])
+    return [np.array(rows, dtype=np.intp) for rows in blocks.values()]
 
 
 def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
-    """(file and line, kind, numbers) of all rows: pressure, place, element, more nodes of an element."""
+    """(file and line, content, numbers) of all rows: pressure, place, element, more nodes of an element."""
     try:
         text = path.read_text(encoding="latin-1")
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an ANSYS listing") from None
     head: list[str] = []
-    last = ""
+    before = ""
     for number, line in enumerate(text.splitlines(), 1):
         words = line.replace("(", " ").split()
         if not words:
             continue
         if words[0] in ("NODE", "ELEM") and not any(map(_is_number, words)):
-            head, last = words, ""
+            head, before = words, ""
             continue
         if words[0] in ("MINIMUM", "MAXIMUM"):
             head = []
@@ -116,10 +118,10 @@ def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
         if not head or numbers is None:
             continue
         where = f"{path}: line {number}"
-        kind, row = _kind(head, numbers, where, last)
-        if kind:
-            yield where, kind, row
-            last = kind
+        content, row = _content(head, numbers, where, before)
+        if content:
+            yield where, content, row
+            before = content
 
 
 def _is_number(word: str) -> bool:
@@ -133,7 +135,7 @@ def _numbers(line: str) -> list[float] | None:
     return [float(x.replace("D", "E").replace("d", "e")) for x in _NUMBER.findall(line)]
 
 
-def _kind(head: list[str], numbers: list[float], where: str, last: str) -> tuple[str, list[float]]:
+def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
     """What a row of a table is, and its numbers that count."""
     if head[0] == "ELEM":
         whole = all(x % 1.0 == 0.0 for x in numbers)
@@ -141,7 +143,7 @@ def _kind(head: list[str], numbers: list[float], where: str, last: str) -> tuple
             return "", []
         if len(numbers) > _ELEMENT_HEAD:
             return "element", numbers
-        return ("more", numbers) if last in ("element", "more") else ("", [])
+        return ("more", numbers) if before in ("element", "more") else ("", [])
     if PRESSURE in head and "X" not in head:
         if len(numbers) != len(head):
             raise ValueError(f"{where}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}")

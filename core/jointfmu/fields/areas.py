@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .result import Array, Nodes
+from .nodal_result import Array, Nodes
 
 CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
     3: ((0, 1, 2),),

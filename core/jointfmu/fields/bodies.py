@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from .result import Nodes
+from .nodal_result import Nodes
 
 _TETRA = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
 _WEDGE = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (0, 2, 5, 3))

@@ -11,7 +11,7 @@ import numpy as np
 from .. import columns
 from ..units import Sizes, sizes
 from .contact import ContactField
-from .result import LENGTHS, PRESSURES, NodalResult
+from .nodal_result import LENGTHS, PRESSURES, NodalResult
 
 COLUMNS: Mapping[str, Sizes] = {
     "x": LENGTHS,
@@ -24,14 +24,14 @@ COLUMNS: Mapping[str, Sizes] = {
 def read(path: Path) -> NodalResult:
     """The nodes of a file, in SI units; ValueError with file, line and column otherwise."""
     table = columns.read(path, COLUMNS, 1)
-    found = {name: table.require(name, COLUMNS) for name in COLUMNS}
+    quantities = {name: table.require(name, COLUMNS) for name in COLUMNS}
     return NodalResult(
         path=path,
         word="line",
         names=np.array(table.lines, dtype=np.int64),
-        place=np.column_stack([found["x"], found["y"], np.zeros_like(found["x"])]),
-        pressure=found["pressure"],
-        area=found["area"],
+        place=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
+        pressure=quantities["pressure"],
+        area=quantities["area"],
     )
 
 

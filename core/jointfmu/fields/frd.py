@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import bodies, boundary
-from .result import Array, NodalResult, Nodes
+from .nodal_result import Array, NodalResult, Nodes
 
 TYPES: dict[int, tuple[str, int]] = {
     1: ("hexahedron", 8),
@@ -87,12 +87,12 @@ def _block(lines: list[str], start: int) -> Iterator[tuple[int, str]]:
 
 
 def _start(path: Path, lines: list[str], key: str, what: str) -> int:
-    found = [i for i, line in enumerate(lines) if line.startswith(key)]
-    if not found:
+    starts = [i for i, line in enumerate(lines) if line.startswith(key)]
+    if not starts:
         raise ValueError(f"{path}: has no {what}, expected a block {key.strip()}")
-    if lines[found[-1]].rstrip().endswith(("2", "3")):
-        raise ValueError(f"{path}: line {found[-1] + 1}: is binary, expected an ASCII .frd file")
-    return found[-1]
+    if lines[starts[-1]].rstrip().endswith(("2", "3")):
+        raise ValueError(f"{path}: line {starts[-1] + 1}: is binary, expected an ASCII .frd file")
+    return starts[-1]
 
 
 def _nodes(path: Path, lines: list[str]) -> tuple[NDArray[np.int64], Array]:
@@ -117,13 +117,13 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
 
 
 def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, Nodes]:
-    found: dict[str, list[list[int]]] = {}
-    kind, count = "", 0
+    cells: dict[str, list[list[int]]] = {}
+    cell_type, count = "", 0
     nodes: list[int] = []
     for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
         try:
             if line.startswith(" -1"):
-                kind, count = TYPES[int(line[13:18])]
+                cell_type, count = TYPES[int(line[13:18])]
                 nodes = []
                 continue
             nodes += [index[int(line[i : i + 10])] for i in range(3, len(line.rstrip()), 10)]
@@ -132,9 +132,11 @@ def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, 
                 f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
             ) from None
         if len(nodes) == count:
-            found.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(count))])
+            cells.setdefault(cell_type, []).append([nodes[i] for i in ORDER.get(cell_type, range(count))])
     return {
-        kind: np.array(rows, dtype=np.intp) for kind, rows in found.items() if not kind.startswith("line")
+        cell_type: np.array(rows, dtype=np.intp)
+        for cell_type, rows in cells.items()
+        if not cell_type.startswith("line")
     }
 
 

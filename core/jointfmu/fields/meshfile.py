@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from ..refusal import Refusal
 from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
-from .result import Array, NodalResult
+from .nodal_result import Array, NodalResult
 
 
 def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:
@@ -60,14 +61,14 @@ def _read(path: Path) -> Any:
         ) from None
 
 
-def _values(path: Path, found: dict[str, Any], data: str | None) -> Array:
+def _values(path: Path, point_data: dict[str, Any], data: str | None) -> Array:
     """One number per node."""
-    shown = {name: np.asarray(value) for name, value in found.items()}
+    shown = {name: np.asarray(value) for name, value in point_data.items()}
     there = (
         ", ".join(f"{n} ({v.shape[1]} components)" if v.ndim > 1 else n for n, v in shown.items()) or "none"
     )
     if data is None:
-        raise ValueError(f"{path}: state the point data that is the pressure with --data; there are {there}")
+        raise Refusal(f"{path}: state the point data that is the pressure; there are {there}", "data")
     name, _, component = data.partition(":")
     name, component = (data, "") if data in shown else (name, component)
     if name not in shown:

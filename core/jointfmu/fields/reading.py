@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..refusal import Refusal
 from . import ansys, csvfile, frd, meshfile
 from .contact import ContactField
-from .result import LENGTHS, PRESSURES, NodalResult
-from .surface import OPEN, Plane, Surface, surface
+from .contact_surface import OPEN, ContactSurface, Plane, contact_surface
+from .nodal_result import LENGTHS, PRESSURES, NodalResult
 
 FORMATS = ("csv", "mesh", "ansys", "frd")
 SUFFIXES = {".csv": "csv", ".frd": "frd", ".lis": "ansys", ".txt": "ansys", ".out": "ansys"}
@@ -51,8 +52,8 @@ class Reading:
         if self.open == "drop":
             kept = first.pressure > 0.0
         elif self.open == "refuse":
-            for one in filter(None, (first, second)):
-                _refuse_open(one)
+            for surface in filter(None, (first, second)):
+                _refuse_open(surface)
         if second is None:
             return first.field(kept), None
         if second.area.size != first.area.size:
@@ -62,51 +63,56 @@ class Reading:
             )
         return first.field(kept), second.field(kept)
 
-    def _surface(self, path: Path, beside: Sequence[Path]) -> Surface:
-        return surface(self._result(path, beside), self.plane)
+    def _surface(self, path: Path, beside: Sequence[Path]) -> ContactSurface:
+        return contact_surface(self._result(path, beside), self.plane)
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
-        kind = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
-        for given, name, only in ((self.data, "--data", "mesh"), (beside, "--with", "ansys")):
-            if given and kind != only:
-                raise ValueError(f"{path}: is read as {kind}, {name} is for the format {only}")
-        if kind == "csv":
+        format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
+        for given, what, name, only in (
+            (self.data, "point data are", "data", "mesh"),
+            (beside, "further listings are", "beside", "ansys"),
+        ):
+            if given and format != only:
+                raise Refusal(f"{path}: is read as {format}, {what} for the format {only}", name)
+        if format == "csv":
             self._stated_by_file(path)
             return csvfile.read(path)
         length, pressure = self._units(path)
-        if kind == "ansys":
+        if format == "ansys":
             return ansys.read([path, *beside], length, pressure)
-        if kind == "frd":
+        if format == "frd":
             return frd.read(path, length, pressure)
         return meshfile.read(path, length, pressure, self.data)
 
     def _units(self, path: Path) -> tuple[float, float]:
         """Sizes of the stated units."""
         for value, name, units in (
-            (self.length, "--length-unit", LENGTHS),
-            (self.pressure, "--pressure-unit", PRESSURES),
+            (self.length, "length", LENGTHS),
+            (self.pressure, "pressure", PRESSURES),
         ):
             if value is None:
-                raise ValueError(f"{path}: states no units; state {name}, one of {', '.join(units)}")
+                raise Refusal(f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name)
         return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]
 
     def _stated_by_file(self, path: Path) -> None:
-        """Refuse options that a CSV file answers itself."""
+        """Refuse what a CSV file answers itself."""
         for given, name in (
-            (self.length, "--length-unit"),
-            (self.pressure, "--pressure-unit"),
-            (self.plane.side, "--side"),
-            (self.plane.rows, "--rows"),
-            (None if self.plane.normal == "z" else self.plane.normal, "--normal"),
+            (self.length, "length"),
+            (self.pressure, "pressure"),
+            (self.plane.side, "side"),
+            (self.plane.rows, "rows"),
+            (None if self.plane.normal == "z" else self.plane.normal, "normal"),
         ):
             if given is not None:
-                raise ValueError(f"{path}: {name} {given}: a CSV file states units and plane in its heading")
+                text = f"{path}: {name} = {given!r}: a CSV file states units and plane in its heading"
+                raise Refusal(text, name)
 
 
-def _refuse_open(found: Surface) -> None:
-    open_nodes = np.flatnonzero(found.pressure == 0.0)
+def _refuse_open(surface: ContactSurface) -> None:
+    open_nodes = np.flatnonzero(surface.pressure == 0.0)
     if open_nodes.size:
-        raise ValueError(
-            f"{found.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
-            f"{found.area.size} nodes; state --open keep (they just touch) or --open drop (they never do)"
+        raise Refusal(
+            f"{surface.at(int(open_nodes[0]))}: is open (no pressure), with {open_nodes.size} of "
+            f"{surface.area.size} nodes; say keep (they just touch) or drop (they never do)",
+            "open",
         )

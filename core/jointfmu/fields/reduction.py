@@ -17,8 +17,8 @@ from scipy.optimize import nnls
 from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
 from ..progress import track
-from .result import Array, Nodes
-from .sums import PRELOADS, SEED, Load, Row, Sums, balance, first_loads, further_loads, largest_moment
+from .nodal_result import Array, Nodes
+from .sums import PRELOADS, SEED, Load, Sums, SumsAtLoad, balance, first_loads, further_loads, largest_moment
 
 TOLERANCE = 1e-6
 """Largest deviation of a sum [1] that a reduced field may have."""
@@ -83,9 +83,9 @@ def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pres
     rng, sums = np.random.default_rng(SEED), Sums.of(joint, preload, pressures)
     for size in (CANDIDATES, 2 * CANDIDATES, 4 * CANDIDATES):
         few = rng.choice(nodes, min(size, nodes), replace=False)
-        found = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))
-        if found is not None:
-            return found
+        reduction = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))
+        if reduction is not None:
+            return reduction
         if size >= nodes:
             break
     if nodes <= MOST:
@@ -138,7 +138,7 @@ def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: floa
 
 
 def _weights(
-    rows: Sequence[Row], values: Sequence[Array], shape: PressureShape, some: PressureShape
+    rows: Sequence[SumsAtLoad], values: Sequence[Array], shape: PressureShape, some: PressureShape
 ) -> Array | None:
     """Shares (c) of the nodes, most of them zero, that keep the sums; None if there are none."""
     everywhere = balance(shape)
@@ -155,13 +155,13 @@ def _weights(
         kept = directions[size > least * size[0]]
         scale = np.sqrt(size[: len(kept)])[:, None]
         try:
-            found, _ = nnls((kept @ columns.T) / scale, (kept @ rest) / scale[:, 0], maxiter=50 * len(kept))
+            shares, _ = nnls((kept @ columns.T) / scale, (kept @ rest) / scale[:, 0], maxiter=50 * len(kept))
         except RuntimeError:  # too many steps
             break
-        miss = float(np.max(np.abs(found @ columns - rest)))
+        miss = float(np.max(np.abs(shares @ columns - rest)))
         if miss > error:
             break
-        best, error = fixed + found, miss
+        best, error = fixed + shares, miss
         if error <= AIM * TOLERANCE:
             break
     return best if error <= LET_PASS * TOLERANCE else None

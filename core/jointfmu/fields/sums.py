@@ -11,7 +11,7 @@ from scipy.stats import qmc
 from ..curve import Curve, approach_curve
 from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
-from .result import Array
+from .nodal_result import Array
 
 PRELOADS = (0.05, 3.0)
 """Range of the preload over the one of the field [1]."""
@@ -41,7 +41,7 @@ class Load(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SumsAtLoad:
     """The sums of the functions at a load.
 
     apart : [m] normal motion
@@ -99,7 +99,7 @@ class Sums:
         x, y = shape.position.T
         return np.stack([p, p * x, p * y, k, k * x, k * y, k * y * y, k * x * x, k * x * y], axis=1)
 
-    def row(self, shape: PressureShape, load: Load) -> Row:
+    def row(self, shape: PressureShape, load: Load) -> SumsAtLoad:
         """The sums over a shape at a load."""
         start = self.approach(shape, load)
         apart = load.apart * float(np.max(start) - self.curve.displacement[0])
@@ -108,13 +108,13 @@ class Sums:
         size = _sizes(total, *arms)
         if apart > 0.0:
             size = np.maximum(size, _sizes(shape.share @ self.values(shape, start), *arms))
-        return Row(load, total / size, apart, size)
+        return SumsAtLoad(load, total / size, apart, size)
 
-    def columns(self, some: PressureShape, row: Row) -> Array:
+    def columns(self, some: PressureShape, row: SumsAtLoad) -> Array:
         """(c, 9) the functions at some nodes, over their size."""
         return self.values(some, self.approach(some, row.load) - row.apart) / row.size
 
-    def deviation(self, points: PressureShape, row: Row) -> float:
+    def deviation(self, points: PressureShape, row: SumsAtLoad) -> float:
         """Largest deviation [1] of the points' sums at a load."""
         return float(np.max(np.abs(points.share @ self.columns(points, row) - row.total)))
 

@@ -53,7 +53,7 @@ def combinations(solution: Solution) -> list[Combination]:
     """The independent combinations, best determined first."""
     limits = np.array([limit(u) for u in solution.unknowns])
     _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
-    found = []
+    independent = []
     for value, row in zip(s, rows, strict=True):
         powers = row / limits  # ln of the combination is row . (ln x / limits)
         top = powers[np.argmax(np.abs(row))]
@@ -65,8 +65,8 @@ def combinations(solution: Solution) -> list[Combination]:
         }
         blind = value <= NUMERICAL * s[0]
         deviation = np.inf if blind else solution.noise / value
-        found.append(Combination(exponents, float(deviation / abs(top)), bool(deviation <= 1.0)))
-    return found
+        independent.append(Combination(exponents, float(deviation / abs(top)), bool(deviation <= 1.0)))
+    return independent
 
 
 def undetermined(solution: Solution) -> list[str]:

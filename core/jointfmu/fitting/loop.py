@@ -91,22 +91,22 @@ def _branches(torque: Array) -> list[_Branch]:
     least = PROMINENCE * float(np.ptp(torque))
     turns = np.sort(np.concatenate([find_peaks(way * torque, prominence=least)[0] for way in (1.0, -1.0)]))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
-    found = []
+    branches = []
     for first, last in pairwise(ends):
         places = np.arange(first, last + 1)
         part = torque[places]
-        found.append(_Branch(places, bool(part[-1] > part[0]), float(np.min(part)), float(np.max(part))))
-    return found
+        branches.append(_Branch(places, bool(part[-1] > part[0]), float(np.min(part)), float(np.max(part))))
+    return branches
 
 
 def _whole(branches: list[_Branch]) -> list[_Branch]:
     """The branches over the whole range; of a direction that has none, all."""
     span = max(b.high for b in branches) - min(b.low for b in branches)
-    found = []
+    whole = []
     for rising in (True, False):
         same = [b for b in branches if b.rising is rising]
-        found += [b for b in same if b.high - b.low >= FULL * span] or same
-    return sorted(found, key=lambda b: int(b.places[0]))
+        whole += [b for b in same if b.high - b.low >= FULL * span] or same
+    return sorted(whole, key=lambda b: int(b.places[0]))
 
 
 def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, high: float) -> Backbone:
@@ -159,19 +159,19 @@ def _turns(used: list[_Branch], end: float, span: float, side: int) -> bool:
     """Whether a falling and a rising branch meet at an end of the range."""
     following = pairwise(used)
     return any(
-        one.rising is not other.rising
-        and one.places[-1] == other.places[0]
-        and one.rising is (side == -1)
-        and abs((one.high if one.rising else one.low) - end) < (1.0 - FULL) * span
-        for one, other in following
+        branch.rising is not next_branch.rising
+        and branch.places[-1] == next_branch.places[0]
+        and branch.rising is (side == -1)
+        and abs((branch.high if branch.rising else branch.low) - end) < (1.0 - FULL) * span
+        for branch, next_branch in following
     )
 
 
 def _seen(design: scipy.sparse.csr_matrix) -> bool:
     """Whether the last column stands out of the span of the others."""
-    others, last = design[:, :-1], design[:, -1].toarray()[:, 0]
-    normal = np.linalg.pinv((others.T @ others).toarray(), hermitian=True)
-    left = last - others @ (normal @ (others.T @ last))
+    columns, last = design[:, :-1], design[:, -1].toarray()[:, 0]
+    normal = np.linalg.pinv((columns.T @ columns).toarray(), hermitian=True)
+    left = last - columns @ (normal @ (columns.T @ last))
     return bool(np.linalg.norm(left) > SEEN * np.linalg.norm(last))
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..joints import KINDS
 from ..parameters import ParameterFile
-from ..quantity import Interval, flat_fields, flatten
+from ..quantity import Interval, flat_fields
 from ..stamp import build_time
 from .identifiability import combinations, undetermined
 from .least_squares import Array, Solution, Unknown
@@ -66,11 +66,11 @@ class Outcome:
         if loose := undetermined(self.solution):
             lines.append(f"the data do not determine {', '.join(loose)}")
             ranked = combinations(self.solution)
-            for one in ranked:
-                if one.determined:
-                    lines.append(f"they determine {one} to {percent(one.deviation)}")
-                elif len(one.exponents) > 1:
-                    lines.append(f"they know {one} only to {percent(one.deviation)}")
+            for combination in ranked:
+                if combination.determined:
+                    lines.append(f"they determine {combination} to {percent(combination.deviation)}")
+                elif len(combination.exponents) > 1:
+                    lines.append(f"they know {combination} only to {percent(combination.deviation)}")
         lines += [f"{name} ended on its bound" for name in self.solution.at_bound]
         if self.solution.limit:
             lines.append(f"the fit ended where the model refuses: {self.solution.limit}")
@@ -84,15 +84,15 @@ class Outcome:
             "correlation": [[_finite(x) for x in row] for row in self.solution.correlation.tolist()],
             "combinations": [
                 {
-                    "exponents": dict(one.exponents),
-                    "relative_deviation": _finite(one.deviation),
-                    "determined": one.determined,
+                    "exponents": dict(combination.exponents),
+                    "relative_deviation": _finite(combination.deviation),
+                    "determined": combination.determined,
                 }
-                for one in combinations(self.solution)
+                for combination in combinations(self.solution)
             ],
             "facts": {name: {"value": _finite(v), "unit": unit} for name, (v, unit, _) in self.facts.items()},
             "warnings": self.warnings(),
-            "parameters": flatten(self.parameters.values),
+            "parameters": dict(self.parameters.flat),
         }
 
 
@@ -114,7 +114,7 @@ def unknowns(
 
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
-    values, wanted = flatten(start.values), []
+    values, wanted = start.flat, []
     declared = {
         n: f for n, f in flat_fields(KINDS[start.joint].parameters) if isinstance(values.get(n), float)
     }
@@ -135,11 +135,11 @@ def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Ma
 
 
 def fitted(
-    start: ParameterFile, values: Mapping[str, float], kind: str, origin: str, span: str
+    start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
     """The file with fitted values; their source says from what, when and over which range."""
-    file = start.with_values(values, kind, f"fitted to {origin}, {today()}, {span}")
-    return replace(file, name=f"fitted to {origin}")
+    file = start.with_values(values, origin, f"fitted to {data}, {today()}, {span}")
+    return replace(file, name=f"fitted to {data}")
 
 
 def today() -> str:

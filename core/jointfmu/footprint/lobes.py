@@ -1,9 +1,10 @@
 """Two-lobe pressure on the elliptical cone between flexspline and bearing ring."""
 
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..quantity import Number
 from .nodes import Footprint
@@ -107,25 +108,66 @@ def two_lobes(
     radius      : [m]  mean radius; deformation: [m] radial deformation w
     length, cup : [m]  axial length of the contact and of the cup that tapers the deformation
     """
-    z, axial = heights(np.asarray(peak, dtype=np.float64), breaks, length, cup)
-    z, axial = z[..., None], axial[..., None]
-    local = np.asarray(peak, dtype=np.float64)[..., None, None] * (1.0 - z / cup)
-    limits = piece_ends(local, breaks, mismatch)
-    width = np.diff(limits)[..., None]
-    t = _flat(limits[..., :-1, None] + width * PLACES)
-    point = lobe(
-        np.sin(t), np.cos(t), z, local, mismatch=mismatch, radius=radius, deformation=deformation, cup=cup
+    found = list(
+        lobe_pieces(
+            peak, breaks, mismatch=mismatch, radius=radius, deformation=deformation, length=length, cup=cup
+        )
     )
-    share = axial * _flat(width * WEIGHTS) * point.stretch * (2.0 / np.pi)
-    shape = (*np.shape(peak), -1)
-    height = np.broadcast_to(z, t.shape)
-    normal_z = np.broadcast_to(point.normal_z, t.shape)
+
+    def flat(*parts: Callable[[Piece], Array]) -> Array:
+        """Numbers of all nodes (..., n), or vectors of them (..., n, parts)."""
+        rows = [np.concatenate([part(piece) for piece in found], axis=-1) for part in parts]
+        shape = (*np.shape(peak), -1)
+        return np.stack([row.reshape(shape) for row in rows], axis=-1)
+
     return Footprint(
-        share=share.reshape(shape),
-        position=np.stack([point.x, point.y, height], axis=-1).reshape(*shape, 3),
-        normal=np.stack([point.normal_x, point.normal_y, normal_z], axis=-1).reshape(*shape, 3),
-        pressure=point.pressure.reshape(shape),
+        share=flat(lambda piece: piece.share)[..., 0],
+        position=flat(lambda p: p.point.x, lambda p: p.point.y, lambda p: p.spread(p.height)),
+        normal=flat(
+            lambda p: p.point.normal_x, lambda p: p.point.normal_y, lambda p: p.spread(p.point.normal_z)
+        ),
+        pressure=flat(lambda piece: piece.point.pressure)[..., 0],
     )
+
+
+class Piece(NamedTuple):
+    """Nodes (..., heights, n) around a lobe between two breaks of the law; shares count for the whole.
+
+    height : (..., heights, 1) [m]; axis: (..., heights, 1) [Pa] pressure on the major axis there
+    """
+
+    point: Lobe
+    share: Array
+    height: Array
+    axis: Array
+
+    def spread(self, value: Array) -> Array:
+        """The same value at every node."""
+        return np.broadcast_to(value, self.share.shape)
+
+
+def lobe_pieces(
+    peak: ArrayLike,
+    breaks: Array,
+    *,
+    mismatch: float,
+    radius: float,
+    deformation: float,
+    length: float,
+    cup: float,
+) -> Iterator[Piece]:
+    """The quadrature of `two_lobes`, from the major axis outward: above the highest break first."""
+    peaks = np.asarray(peak, dtype=np.float64)
+    z, axial = (column[..., None] for column in heights(peaks, breaks, length, cup))
+    axis = peaks[..., None, None] * (1.0 - z / cup)
+    limits = piece_ends(axis, breaks, mismatch)
+    for i in range(limits.shape[-1] - 1):
+        width = np.diff(limits[..., i : i + 2])
+        t = limits[..., i : i + 1] + width * PLACES
+        point = lobe(
+            np.sin(t), np.cos(t), z, axis, mismatch=mismatch, radius=radius, deformation=deformation, cup=cup
+        )
+        yield Piece(point, 2.0 / np.pi * axial * width * WEIGHTS * point.stretch, z, axis)
 
 
 def height_at(peak: Number, pressure: Number, length: Number, cup: Number) -> Number:

@@ -13,6 +13,10 @@ BALANCE = 1e-6
 """Largest error of a field's sums [1]: what the reduction of a field keeps."""
 
 
+ALIKE = 11
+"""Decimals to which `equal` and `tilt` of nodes agree that symmetry makes equal: they are numbers near 1."""
+
+
 @dataclass(frozen=True, slots=True)
 class PressureShape:
     """Nodes of the bolted contact and the pressure that unit bolt forces make.
@@ -28,6 +32,32 @@ class PressureShape:
     position: Array
     equal: Array
     tilt: Array
+
+    def merged(self, moment: bool = True) -> "MergedShape":
+        """Nodes that have the same pressure under every preload and moment as one.
+
+        Without `moment` they are those that have it under every preload.
+        """
+        tilt = self.tilt if moment else 0.0 * self.tilt
+        keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
+        _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
+        x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
+        return MergedShape(share, self.equal[first], tilt[first], x2, y2)
+
+
+@dataclass(frozen=True, slots=True)
+class MergedShape:
+    """Nodes of different pressure; share, equal and tilt as in PressureShape.
+
+    x2, y2 : (n) [m2] means of the squared distances from the centroid along and across the bolt rows
+    """
+
+    share: Array
+    equal: Array
+    tilt: Array
+    x2: Array
+    y2: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -74,8 +74,8 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
     number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)
     if not number or array.dtype.kind not in "fiu":
-        kind = "real number" if number else "number"
-        return f"{name} = {_shown(value)} is not a {kind}{unit and f' in{unit}'}: {meta['doc']}"
+        expected = "real number" if number else "number"
+        return f"{name} = {_shown(value)} is not a {expected}{unit and f' in{unit}'}: {meta['doc']}"
     inside = meta["interval"].contains(array)
     if not np.all(inside):
         first = array[~inside].flat[0]

@@ -85,7 +85,7 @@ def build(cls: type[T], values: Mapping[str, Any]) -> T:
     if texts:
         raise ValueError("; ".join(texts))
     plain = {name: _plain(value) for name, value in values.items()}
-    return assemble(cls, plain, lambda kind, arguments: kind(**arguments))
+    return assemble(cls, plain, lambda part, arguments: part(**arguments))
 
 
 def changed(obj: T, changes: Mapping[str, Any]) -> T:

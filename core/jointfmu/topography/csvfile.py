@@ -19,13 +19,14 @@ LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units in metres."""
 LAYOUTS = {"profile": ("x", "z"), "points": ("x", "y", "z"), "grid": ("z",)}
 _HEADER = re.compile(r"#\s*(profile|points|grid)\s*:(.*)")
+ALLOWED = ", ".join(filter(str.isascii, LENGTHS))
+"""The length units as text."""
 
 
 def unit(text: str, where: str) -> float:
     """A length unit in metres."""
     if text not in LENGTHS:
-        allowed = ", ".join(filter(str.isascii, LENGTHS))
-        raise ValueError(f"{where}: unit {text!r} is not one of {allowed}")
+        raise ValueError(f"{where}: unit {text!r} is not one of {ALLOWED}")
     return LENGTHS[text]
 
 

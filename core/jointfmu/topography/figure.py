@@ -14,11 +14,11 @@ from .structure import power_law
 COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED, "y": plots.GREEN}
 
 
-def draw(found: Identification, path: str | Path) -> None:
+def draw(identified: Identification, path: str | Path) -> None:
     """Save the picture as .png or .svg."""
     with plots.drawing(path, (9.6, 4.6)) as figure:
         axes = dict(zip(("structure", "psd"), figure.subplots(1, 2), strict=True))
-        for result in found.results:
+        for result in identified.results:
             _one(axes[result.method], result)
         axes["structure"].set_title("structure function", loc="left")
         axes["structure"].set_xlabel("lag τ [m]")
@@ -26,10 +26,10 @@ def draw(found: Identification, path: str | Path) -> None:
         axes["psd"].set_title("power spectral density, one-sided", loc="left")
         axes["psd"].set_xlabel("frequency ω [1/m]")
         axes["psd"].set_ylabel("P(ω) [m³]")
-        for one in axes.values():
-            one.set_xscale("log")
-            one.set_yscale("log")
-            one.legend(fontsize=8)
+        for panel in axes.values():
+            panel.set_xscale("log")
+            panel.set_yscale("log")
+            panel.legend(fontsize=8)
 
 
 def _one(axes: Any, result: Result) -> None:

@@ -28,7 +28,7 @@ UNSURE = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Fit:
+class SelfAffineLaw:
     """Self-affine law of a series.
 
     H, level  : Hurst exponent, ln Phi [m2] at the wavelength `reference` [m]
@@ -61,7 +61,7 @@ class Fit:
         return float(np.log10(self.high / self.low))
 
 
-def fit(series: Series, low: float | None = None, high: float | None = None) -> Fit:
+def fit(series: Series, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
     """Fit over the given range of scales [m], or over the longest straight one.
 
     Raises ValueError if fewer than four values lie in the range.
@@ -79,7 +79,7 @@ def fit(series: Series, low: float | None = None, high: float | None = None) -> 
     return _search(series.within(sure))
 
 
-def _search(series: Series) -> Fit:
+def _search(series: Series) -> SelfAffineLaw:
     """The longest straight range; if there is none, the straightest."""
     n = series.scale.size
     step = max(1, n // 10)
@@ -93,18 +93,18 @@ def _search(series: Series) -> Fit:
         ),
         reverse=True,
     )
-    tried: list[Fit] = []
+    tried: list[SelfAffineLaw] = []
     for length, negative, j in windows:
         if length < SHORTEST and tried:
             break
-        found = _fit(series.within(np.arange(-negative, j)))
-        if found.straight:
-            return found
-        tried.append(found)
-    return min(tried, key=lambda one: abs(one.drift) + one.deviation)
+        candidate = _fit(series.within(np.arange(-negative, j)))
+        if candidate.straight:
+            return candidate
+        tried.append(candidate)
+    return min(tried, key=lambda fitted: abs(fitted.drift) + fitted.deviation)
 
 
-def _fit(series: Series) -> Fit:
+def _fit(series: Series) -> SelfAffineLaw:
     x, y = np.log(series.scale), np.log(series.value)
     reference = float(np.exp(x.mean()))
     offset = series.method == "structure"
@@ -132,7 +132,7 @@ def _fit(series: Series) -> Fit:
         deviation = _excess(known - law(p), chance, x, p.size)
     drift, drift_error = _drift(x, known - law(p), chance)
     covariance = INFLATION * np.linalg.inv(result.jac.T @ result.jac)[:2, :2]
-    return Fit(
+    return SelfAffineLaw(
         H=float(p[0]),
         level=float(p[1]),
         reference=reference,
@@ -168,6 +168,6 @@ def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
     columns = [np.ones_like(t), t, t**2]
     white = solve_triangular(root, np.stack(columns, axis=1), lower=True)
     inverse = np.linalg.inv(white.T @ white)
-    found = inverse @ white.T @ solve_triangular(root, residual, lower=True)
+    coefficients = inverse @ white.T @ solve_triangular(root, residual, lower=True)
     length = float(x[-1] - x[0])
-    return float(-found[2] * length), float(np.sqrt(inverse[2, 2]) * length)
+    return float(-coefficients[2] * length), float(np.sqrt(inverse[2, 2]) * length)

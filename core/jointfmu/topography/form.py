@@ -62,8 +62,8 @@ def without_form(heights: Heights, form: str = "tilt") -> Heights:
     weights = [np.where(valid, t, 0.0).ravel() for t in terms]
     known = np.where(valid, heights.z, 0.0).ravel()
     normal = np.array([[a @ b for b in weights] for a in weights])
-    found = np.linalg.solve(normal, np.array([w @ known for w in weights]))
-    return heights.with_heights(heights.z - sum(c * t for c, t in zip(found, terms, strict=True)))
+    coefficients = np.linalg.solve(normal, np.array([w @ known for w in weights]))
+    return heights.with_heights(heights.z - sum(c * t for c, t in zip(coefficients, terms, strict=True)))
 
 
 def _polynomial(axes: list[Array], order: int) -> list[Array]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from . import fractal
-from .fit import Fit, fit
+from .fit import SelfAffineLaw, fit
 from .form import Repair, filled, without_form, without_spikes
 from .heights import Areal, Array, Heights
 from .results import (
@@ -59,43 +59,46 @@ def identify(
     """
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
-    kinds = {isinstance(one, Areal) for one in surfaces}
-    if len(kinds) == 2:
+    areal = {isinstance(surface, Areal) for surface in surfaces}
+    if len(areal) == 2:
         raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
-    prepared = [prepare(one, form) for one in surfaces]
-    directions = ("areal", "x", "y") if kinds == {True} else ("profile",)
+    prepared = [prepare(surface, form) for surface in surfaces]
+    directions = ("areal", "x", "y") if areal == {True} else ("profile",)
     low, high = span or (None, None)
     results = []
     for direction in directions:
         for method in (structure, psd):
-            parts = [method(one.gappy if method is structure else one.whole, direction) for one in prepared]
+            parts = [
+                method(surface.gappy if method is structure else surface.whole, direction)
+                for surface in prepared
+            ]
             series = parts[0] if len(parts) == 1 else added(parts[0], parts[1])
             results.append(_result(series, fit(series, low, high)))
-    repairs = [(one.whole.name, repair) for one in prepared for repair in one.repairs]
-    repeats = [texture(one.whole) for one in prepared if isinstance(one.whole, Areal)]
-    names = tuple(one.name for one in surfaces)
+    repairs = [(surface.whole.name, repair) for surface in prepared for repair in surface.repairs]
+    repeats = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
+    names = tuple(surface.name for surface in surfaces)
     textured = any(max(shares) > TEXTURE for shares in repeats)
     return Identification(names, tuple(results), tuple(repairs), tuple(warnings(results, textured)), textured)
 
 
-def added(one: Series, other: Series) -> Series:
+def added(first: Series, second: Series) -> Series:
     """Series of the equivalent surface: values add at equal scale, over the range both have."""
-    keep = (one.scale >= other.scale[0] * 0.999) & (one.scale <= other.scale[-1] * 1.001)
+    keep = (first.scale >= second.scale[0] * 0.999) & (first.scale <= second.scale[-1] * 1.001)
     if keep.sum() < 4:
         raise ValueError(
-            f"the two surfaces share no scales: {one.scale[0]:.3g} to {one.scale[-1]:.3g} m and "
-            f"{other.scale[0]:.3g} to {other.scale[-1]:.3g} m"
+            f"the two surfaces share no scales: {first.scale[0]:.3g} to {first.scale[-1]:.3g} m and "
+            f"{second.scale[0]:.3g} to {second.scale[-1]:.3g} m"
         )
-    one = one.within(keep)
-    at = _interpolation(np.log(one.scale), np.log(other.scale))
-    value, raw = (np.exp(at @ np.log(a)) for a in (other.value, other.raw))
-    share = one.value / (one.value + value)
+    first = first.within(keep)
+    at = _interpolation(np.log(first.scale), np.log(second.scale))
+    value, raw = (np.exp(at @ np.log(a)) for a in (second.value, second.raw))
+    share = first.value / (first.value + value)
 
     def covariance(H: float) -> Array:
-        first, second = one.covariance(H), at @ other.covariance(H) @ at.T
-        return np.asarray(np.outer(share, share) * first + np.outer(1 - share, 1 - share) * second)
+        covariance1, covariance2 = first.covariance(H), at @ second.covariance(H) @ at.T
+        return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
-    return replace(one, value=one.value + value, raw=one.raw + raw, covariance=covariance)
+    return replace(first, value=first.value + value, raw=first.raw + raw, covariance=covariance)
 
 
 def _interpolation(at: Array, x: Array) -> Array:
@@ -103,14 +106,14 @@ def _interpolation(at: Array, x: Array) -> Array:
     return np.stack([np.interp(at, x, unit) for unit in np.eye(x.size)], axis=1)
 
 
-def _result(series: Series, found: Fit) -> Result:
+def _result(series: Series, fitted: SelfAffineLaw) -> Result:
     """Both kinds of parameters; the one that was not measured follows if the surface is isotropic."""
     rng = np.random.default_rng(0)
-    root = np.linalg.cholesky(found.covariance)
-    draws = np.array([found.H, found.level]) + rng.standard_normal((DRAWS, 2)) @ root.T
-    H = np.clip(np.append(found.H, draws[:, 0]), 0.005, 0.995)
-    level = np.append(found.level, draws[:, 1])
-    log = (level + np.log(2.0) - 2.0 * H * np.log(found.reference)) / (2.0 * (1.0 - H))
+    root = np.linalg.cholesky(fitted.covariance)
+    draws = np.array([fitted.H, fitted.level]) + rng.standard_normal((DRAWS, 2)) @ root.T
+    H = np.clip(np.append(fitted.H, draws[:, 0]), 0.005, 0.995)
+    level = np.append(fitted.level, draws[:, 1])
+    log = (level + np.log(2.0) - 2.0 * H * np.log(fitted.reference)) / (2.0 * (1.0 - H))
     shift = np.log(fractal.profile_share(H)) / (2.0 * (1.0 - H))
     if series.method == "psd" and series.direction == "areal":
         profile, areal = log + shift, log
@@ -120,7 +123,7 @@ def _result(series: Series, found: Fit) -> Result:
         method=series.method,
         direction=series.direction,
         series=series,
-        fit=found,
+        fit=fitted,
         profile=ProfileFractal(D=_estimate(2.0 - H), G=_roughness(profile)),
         areal=ArealFractal(D_s=_estimate(3.0 - H), G_s=_roughness(areal)),
     )

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..refusal import Refusal
 from . import csvfile
 from .heights import Areal, Heights, Profile
 
@@ -26,17 +27,21 @@ def read(path: str | Path, unit: str | None = None) -> Heights:
     path = Path(path)
     if not path.is_file():
         raise ValueError(f"{path}: is no file; expected height data")
-    if unit is not None:
-        csvfile.unit(unit, "--unit")
+    if unit is not None and unit not in csvfile.LENGTHS:
+        raise Refusal(f"unit = {unit!r} is not one of {csvfile.ALLOWED}", "unit")
     if path.stat().st_size == 0:
         raise ValueError(f"{path}: is no surface: the file is empty")
     if line := csvfile.header(path):
         if unit is not None:
-            raise ValueError(f"{path}: states its units itself; leave --unit {unit} out")
+            raise Refusal(f"{path}: states its units itself; leave the unit {unit} out", "unit")
         return csvfile.read(path, line)
     if path.suffix.lower() in TEXT and _bare(path):
         return _bare_columns(path, unit)
     return _instrument(path, unit)
+
+
+def _without_unit(path: Path) -> Refusal:
+    return Refusal(f"{path}: states no length unit; state it, one of {csvfile.ALLOWED}", "unit")
 
 
 def _bare(path: Path) -> bool:
@@ -52,7 +57,7 @@ def _bare(path: Path) -> bool:
 
 def _bare_columns(path: Path, unit: str | None) -> Heights:
     if unit is None:
-        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+        raise _without_unit(path)
     values = csvfile.table(path)
     return csvfile.columns(path, values, [csvfile.LENGTHS[unit]] * values.shape[1])
 
@@ -71,8 +76,8 @@ def _instrument(path: Path, unit: str | None) -> Heights:
         quiet = io.StringIO()
         with warnings.catch_warnings(), contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
             warnings.simplefilter("ignore")
-            found = SurfaceTopography.read_topography(str(path))
-            size, heights = found.physical_sizes, found.heights()
+            topography = SurfaceTopography.read_topography(str(path))
+            size, heights = topography.physical_sizes, topography.heights()
     except SurfaceTopography.Exceptions.CannotDetectFileFormat:
         raise ValueError(
             f"{path}: is no surface: neither our CSV nor a format of SurfaceTopography"
@@ -80,14 +85,14 @@ def _instrument(path: Path, unit: str | None) -> Heights:
     except Exception as error:  # the readers raise what they like
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
-    return _heights(path, found, size, heights, _factor(path, found.unit, unit))
+    return _heights(path, topography, size, heights, _factor(path, topography.unit, unit))
 
 
 def _factor(path: Path, stated: str | None, given: str | None) -> float:
     if stated is None and given is None:
-        raise ValueError(f"{path}: states no length unit; give it with --unit um (or m, mm, nm)")
+        raise _without_unit(path)
     if stated is not None and given is not None:
-        raise ValueError(f"{path}: states its unit {stated} itself; leave --unit {given} out")
+        raise Refusal(f"{path}: states its unit {stated} itself; leave the unit {given} out", "unit")
     if given is not None:
         return csvfile.LENGTHS[given]
     from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
@@ -98,13 +103,13 @@ def _factor(path: Path, stated: str | None, given: str | None) -> float:
     return float(factor)
 
 
-def _heights(path: Path, found: Any, size: Any, heights: Any, factor: float) -> Heights:
+def _heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:
     """Heights on our axes (y, x), missing points as NaN."""
     z = np.ma.filled(np.ma.asarray(heights, dtype=np.float64), np.nan) * factor
     if size is None or any(length is None for length in size):
         raise ValueError(f"{path}: states no lateral size; resave it with its size, or as our CSV")
-    if z.ndim == 1 and not found.is_uniform:
-        x = np.asarray(found.positions(), dtype=np.float64) * factor
+    if z.ndim == 1 and not topography.is_uniform:
+        x = np.asarray(topography.positions(), dtype=np.float64) * factor
         return csvfile.columns(path, np.stack([x, z], axis=1), [1.0, 1.0])
     spacing = [float(length) * factor / n for length, n in zip(size, z.shape, strict=True)]
     if z.ndim == 1:

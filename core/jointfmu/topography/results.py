@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .fit import Fit
+from .fit import SelfAffineLaw
 from .form import Repair
 from .heights import Areal
 from .series import Series
@@ -73,7 +73,7 @@ class Result:
     method: str
     direction: str
     series: Series
-    fit: Fit
+    fit: SelfAffineLaw
     profile: ProfileFractal
     areal: ArealFractal
 
@@ -107,30 +107,30 @@ def texture(heights: Areal) -> tuple[float, float]:
 
 def warnings(results: Sequence[Result], textured: bool) -> list[str]:
     """What a user must know about results of one surface, whole surface first."""
-    found = []
+    lines = []
     if textured:
-        found.append(
+        lines.append(
             "the surface is textured (its lines repeat): D_s and G_s of an isotropic surface do not describe "
             "it, use D and G along x and y"
         )
-    for one in results:
-        where = f"{one.method}, {one.direction}"
-        if not one.fit.straight:
-            found.append(
-                f"{where}: not self-affine over {one.fit.low:.3g} to {one.fit.high:.3g} m: D drifts by "
-                f"{one.fit.drift:+.2f}, deviation from the law {100.0 * one.fit.deviation:.0f} %"
+    for result in results:
+        where = f"{result.method}, {result.direction}"
+        if not result.fit.straight:
+            lines.append(
+                f"{where}: not self-affine over {result.fit.low:.3g} to {result.fit.high:.3g} m: D drifts by "
+                f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
-        if one.fit.decades < 1.0:
-            found.append(f"{where}: the range spans {one.fit.decades:.2f} decades, less than one")
-        if not 0.03 < one.fit.H < 0.97:
-            found.append(f"{where}: D = {one.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
-    G = min(results[:2], key=lambda one: one.fit.covariance[0, 0]).profile.G
+        if result.fit.decades < 1.0:
+            lines.append(f"{where}: the range spans {result.fit.decades:.2f} decades, less than one")
+        if not 0.03 < result.fit.H < 0.97:
+            lines.append(f"{where}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
+    G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
     if G.decades > 4.0:
-        found.append(
+        lines.append(
             f"G is {'hardly' if G.determined else 'not'} determined: its interval spans {G.decades:.1f} "
             "decades; a larger patch or more decades are needed"
         )
     structures, spectra = results[0].profile.D, results[1].profile.D
     if structures.low > spectra.high or spectra.low > structures.high:
-        found.append(f"the methods disagree: D = {structures.value:.3f} and {spectra.value:.3f}")
-    return found
+        lines.append(f"the methods disagree: D = {structures.value:.3f} and {spectra.value:.3f}")
+    return lines

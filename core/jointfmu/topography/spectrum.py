@@ -27,8 +27,8 @@ def psd(heights: Heights, direction: str) -> Series:
     used = np.bincount(bins) > 0
     count = np.bincount(bins)[used].astype(float)
     power, share, logs = (
-        np.asarray(np.bincount(bins, one)[used], dtype=np.float64)
-        for one in (power, share, np.log(frequency))
+        np.asarray(np.bincount(bins, weights)[used], dtype=np.float64)
+        for weights in (power, share, np.log(frequency))
     )
     f = np.exp(logs / count)
     wavelength = np.exp(np.arange(np.log(5.0 * spacing), np.log(length / 3.0), 0.2))

@@ -24,14 +24,14 @@ def client(scheduler: str | None, workers: int | None) -> Iterator[Any]:
         raise ValueError(_NO_DASK.format(error.name or "distributed")) from None
     if scheduler is not None:
         try:
-            one = Client(scheduler, timeout="10s")
+            dask_client = Client(scheduler, timeout="10s")
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())[:200]
             raise ValueError(
                 f"scheduler = {scheduler}: cannot be reached ({reason}); expected tcp://HOST:PORT"
             ) from None
-        with one:
-            yield one
+        with dask_client:
+            yield dask_client
         return
     with _deaf():
         cluster = LocalCluster(
@@ -41,9 +41,9 @@ def client(scheduler: str | None, workers: int | None) -> Iterator[Any]:
             dashboard_address=None,
             silence_logs=logging.CRITICAL,
         )
-    with cluster, Client(cluster) as one:
-        one.run(_quiet)
-        yield one
+    with cluster, Client(cluster) as dask_client:
+        dask_client.run(_quiet)
+        yield dask_client
 
 
 @contextmanager

@@ -42,9 +42,9 @@ def claim(folder: Path, study: Mapping[str, Any]) -> None:
         return
     held = held if isinstance(held, dict) else {}
     changed = sorted(key for key in {*held, *study} if held.get(key) != study.get(key))
-    there, here = (json.dumps(one.get(changed[0])) for one in (held, study))
+    before, now = (json.dumps(record.get(changed[0])) for record in (held, study))
     raise ValueError(
-        f"{folder}: holds another study ({changed[0]} = {there[:60]}, now {here[:60]}); "
+        f"{folder}: holds another study ({changed[0]} = {before[:60]}, now {now[:60]}); "
         "expected the same study or another folder"
     )
 
@@ -73,7 +73,9 @@ class Journal:
         self.file.truncate(end)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, error_type: type[BaseException] | None, error: Any, trace: TracebackType | None
+    ) -> None:
         self.file.close()
 
     def add(self, entry: Mapping[str, Any]) -> None:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..joints import KINDS
 from ..joints.reduced import Reduced, reduced
 from ..parameters import ParameterFile
-from ..quantity import Interval, flat_fields, flatten, problem
+from ..quantity import Interval, flat_fields, problem
+from ..refusal import Refusal
 from .distributions import Uncertain, is_relative
 from .study import samples_of, split
 
@@ -55,7 +56,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     """
     kind = KINDS[file.joint]
     curves, declared = reduced(kind), dict(flat_fields(kind.parameters))
-    base = flatten(file.values)
+    base = dict(file.flat)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     known = [*(base.keys() - lists), curves.load.name]
     if unknown := [name for name in given if name not in known]:
@@ -65,29 +66,29 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
     fixed = plain.pop(curves.load.name, None)
-    values = file.with_values(plain, "user", "--set").values
-    for one in uncertain:
-        if one.name != curves.load.name:
-            _check(one, declared[one.name])
-    order = tuple(sorted(uncertain, key=lambda one: one.name == curves.load.name))
+    stated = file.with_values(plain, "user", "set for the study")
+    for parameter in uncertain:
+        if parameter.name != curves.load.name:
+            _check(parameter, declared[parameter.name])
+    order = tuple(sorted(uncertain, key=lambda parameter: parameter.name == curves.load.name))
     if not order:
-        raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
-    load = next((one for one in order if one.name == curves.load.name), None)
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+    load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
-    loads = _ramp(curves, values, at, to, points, load)
-    return Problem(file.joint, flatten(values), order, loads, relative if load else None)
+    loads = _ramp(curves, stated.values, at, to, points, load)
+    return Problem(file.joint, stated.flat, order, loads, relative if load else None)
 
 
-def _check(one: Uncertain, item: Any) -> None:
+def _check(parameter: Uncertain, item: Any) -> None:
     """Raise ValueError if a parameter cannot be uncertain or its distribution leaves the interval."""
     if "allowed" in item.metadata:
-        raise ValueError(f"{one.name} = {one.text}: is a named choice and cannot be uncertain")
+        raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
     if item.metadata["whole"]:
-        raise ValueError(f"{one.name} = {one.text}: is a whole number and cannot be uncertain")
-    for value in (*(end for end in one.support if np.isfinite(end)), float(one.law.median())):
-        tolerated = value == 0.0 and one.support[0] == 0.0 and item.metadata["interval"].low == 0.0
-        if not tolerated and (text := problem(one.name, value, item)):
-            raise ValueError(f"{one.name} = {one.text}: {text}")
+        raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
+    for value in (*(end for end in parameter.support if np.isfinite(end)), float(parameter.law.median())):
+        tolerated = value == 0.0 and parameter.support[0] == 0.0 and item.metadata["interval"].low == 0.0
+        if not tolerated and (text := problem(parameter.name, value, item)):
+            raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
 
 
 def _ramp(

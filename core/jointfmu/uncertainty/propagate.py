@@ -28,14 +28,14 @@ ACCURACY = 1e-2
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class SampledOutputs:
     """Outputs (m, n) in single precision by name at accepted samples, NaN elsewhere."""
 
     outputs: Mapping[str, Singles]
     good: Mask
 
 
-def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
+def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
     """All outputs at loads (m) for points (n, d) of the unit cube."""
     values, factor = task.sampled(points)
     n = len(points)
@@ -47,12 +47,12 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> Outcome:
     index = np.flatnonzero(good)
     blocks = [index[i : i + BLOCK] for i in range(0, index.size, BLOCK)]
     for block in track(blocks, text, len(blocks)):
-        for part, found in _evaluated(task, values, factor, block, loads):
-            for name, value in found.items():
+        for part, results in _evaluated(task, values, factor, block, loads):
+            for name, value in results.items():
                 outputs[name][:, part] = value.T
     for column in outputs.values():
         good &= np.all(np.isfinite(column), axis=0)
-    return Outcome(outputs, good)
+    return SampledOutputs(outputs, good)
 
 
 def _evaluated(
@@ -62,13 +62,13 @@ def _evaluated(
     some = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            found = task.reduced.evaluate(some, loads, factor[block][:, None])
+            results = task.reduced.evaluate(some, loads, factor[block][:, None])
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
             yield from _evaluated(task, values, factor, half, loads)
     else:
-        yield block, found
+        yield block, results
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
     return Refused(int(bad.size), drawn, reason)
 
 
-def check(task: Problem, points: Array, outcome: Outcome) -> float:
+def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
     """Largest relative difference to the exported spring over CHECKED samples and a few loads.
 
     Raises RuntimeError beyond ACCURACY, naming the output and the sample.

@@ -18,16 +18,16 @@ def bands_csv(task: Problem, bands: Bands) -> str:
     load = task.reduced.load
     heads, values = [(load.name, load.unit)], [bands.loads]
     for name, unit in bands.units.items():
-        plain = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
-        for kind, of in plain:
-            heads.append((f"{name} {kind}", unit))
-            values.append(of[name])
+        statistics = (("nominal", bands.nominal), ("mean", bands.mean), ("sd", bands.sd))
+        for statistic, by_output in statistics:
+            heads.append((f"{name} {statistic}", unit))
+            values.append(by_output[name])
         heads += [(f"{name} {100 * q:g} %", unit) for q in QUANTILES]
         values += list(bands.quantiles[name])
     return columns.text(heads, values)
 
 
-def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str, Any]:
+def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, Any]:
     """Everything as one JSON object."""
     outputs = {
         name: {
@@ -44,7 +44,7 @@ def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str,
     refused, load = bands.refused, task.reduced.load
     return {
         "joint": task.joint,
-        "parameters": {one.name: one.text for one in task.uncertain},
+        "parameters": {parameter.name: parameter.text for parameter in task.uncertain},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.samples,
         "refused": {
@@ -54,26 +54,26 @@ def as_json(task: Problem, bands: Bands, found: Sensitivity | None) -> dict[str,
         },
         "reduction_error": bands.error,
         "outputs": outputs,
-        "indices": None if found is None else _indices_json(found),
+        "indices": None if sensitivity is None else _indices_json(sensitivity),
     }
 
 
-def _indices_json(found: Sensitivity) -> dict[str, Any]:
-    kinds = ("first", "first_half", "total", "total_half")
+def _indices_json(sensitivity: Sensitivity) -> dict[str, Any]:
+    numbers = ("first", "first_half", "total", "total_half")
     return {
-        "rows": found.rows,
-        "loads": found.loads.tolist(),
+        "rows": sensitivity.rows,
+        "loads": sensitivity.loads.tolist(),
         "outputs": {
             output: {
-                parameter: {kind: getattr(one, kind)[:, i].tolist() for kind in kinds}
-                for i, parameter in enumerate(found.names)
+                parameter: {number: getattr(indices, number)[:, i].tolist() for number in numbers}
+                for i, parameter in enumerate(sensitivity.names)
             }
-            for output, one in found.outputs.items()
+            for output, indices in sensitivity.outputs.items()
         },
     }
 
 
-def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
+def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     """Bands at a few loads, and the indices at the end of the ramp."""
     lines = []
     picked = np.unique(np.linspace(0, bands.loads.size - 1, SHOWN).astype(int))
@@ -87,8 +87,8 @@ def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
             row += [bands.quantiles[name][i, j] for i in at.values()]
             lines.append("".join(f"{x:16.5g}" for x in row))
         lines.append("")
-    if found is not None:
-        lines += _indices_table(task, found)
+    if sensitivity is not None:
+        lines += _indices_table(task, sensitivity)
     lines.append(f"{bands.samples} samples, {bands.refused.count} refused by the law")
     if bands.refused.count:
         example = ", ".join(f"{k} = {v:.6g}" for k, v in bands.refused.example.items())
@@ -99,16 +99,16 @@ def table(task: Problem, bands: Bands, found: Sensitivity | None) -> str:
     return "\n".join(lines)
 
 
-def _indices_table(task: Problem, found: Sensitivity) -> list[str]:
-    load = f"{task.reduced.load.name} = {found.loads[-1]:g} {task.reduced.load.unit}"
+def _indices_table(task: Problem, sensitivity: Sensitivity) -> list[str]:
+    load = f"{task.reduced.load.name} = {sensitivity.loads[-1]:g} {task.reduced.load.unit}"
     lines = [f"Sobol' indices at {load}, first order / total, +- 95 % interval"]
-    width = max(len(name) for name in found.names) + 2
-    lines.append(" " * width + "".join(f"{name:>32}" for name in found.outputs))
-    for i, parameter in enumerate(found.names):
+    width = max(len(name) for name in sensitivity.names) + 2
+    lines.append(" " * width + "".join(f"{name:>32}" for name in sensitivity.outputs))
+    for i, parameter in enumerate(sensitivity.names):
         cells = []
-        for one in found.outputs.values():
-            first = f"{one.first[-1, i]:.3f} +- {one.first_half[-1, i]:.3f}"
-            total = f"{one.total[-1, i]:.3f} +- {one.total_half[-1, i]:.3f}"
+        for indices in sensitivity.outputs.values():
+            first = f"{indices.first[-1, i]:.3f} +- {indices.first_half[-1, i]:.3f}"
+            total = f"{indices.total[-1, i]:.3f} +- {indices.total_half[-1, i]:.3f}"
             cells.append(f"{first} / {total}")
         lines.append(f"{parameter:<{width}}" + "".join(f"{cell:>32}" for cell in cells))
     return [*lines, ""]

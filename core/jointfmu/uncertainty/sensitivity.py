@@ -51,9 +51,9 @@ def indices(f_A: Array, f_B: Array, f_AB: Array) -> Indices:
     middle = 0.5 * (f_A[:, good].mean(1) + f_B[:, good].mean(1))[:, None]
     scale = np.where(middle == 0.0, 1.0, np.abs(middle))
     a, b, ab = (np.where(good, (f - middle) / scale, 0.0) for f in (f_A, f_B, f_AB))
-    found = sobol_indices(func={"f_A": a, "f_B": b, "f_AB": ab}, n=n)
+    sobol = sobol_indices(func={"f_A": a, "f_B": b, "f_AB": ab}, n=n)
     shape = (len(a), len(ab))
-    first, total = (np.reshape(x, shape) for x in (found.first_order, found.total_order))
+    first, total = (np.reshape(x, shape) for x in (sobol.first_order, sobol.total_order))
     variance = 0.5 * (a**2 + b**2)
     level = np.mean(variance, axis=1)
     level = np.where(level > 0.0, level, np.inf)
@@ -78,8 +78,8 @@ def sensitivity(task: Problem, A: Array, B: Array) -> Sensitivity:
         mixed[:, i] = B[:, i]
         sets.append(mixed)
     outputs = run(task, np.concatenate(sets), loads, "indices").outputs
-    found = {}
+    by_output = {}
     for name, value in outputs.items():
         f = value.astype(np.float64).reshape(loads.size, d + 2, n)
-        found[name] = indices(f[:, 0], f[:, 1], np.moveaxis(f[:, 2:], 1, 0))
-    return Sensitivity(loads, tuple(one.name for one in task.uncertain), found, n)
+        by_output[name] = indices(f[:, 0], f[:, 1], np.moveaxis(f[:, 2:], 1, 0))
+    return Sensitivity(loads, tuple(parameter.name for parameter in task.uncertain), by_output, n)

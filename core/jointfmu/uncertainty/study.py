@@ -40,22 +40,22 @@ def read(path: str | Path) -> dict[str, Any]:
     table = document.get("parameters")
     if not isinstance(table, dict) or not table:
         raise ValueError(f"{path}: parameters = {table!r}, expected a table of NAME = VALUE or DISTRIBUTION")
-    found = dict(_leaves(table, ""))
-    for name, value in found.items():
+    entries = dict(_leaves(table, ""))
+    for name, value in entries.items():
         if not isinstance(value, str | bool | int | float):
             raise ValueError(f"{path}: {name} = {value!r}, expected a number or a text")
-    return {name: float(value) if type(value) is int else value for name, value in found.items()}
+    return {name: float(value) if type(value) is int else value for name, value in entries.items()}
 
 
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    found: list[tuple[str, Any]] = []
+    leaves: list[tuple[str, Any]] = []
     for key, value in table.items():
-        found += _leaves(value, f"{prefix}{key}.") if isinstance(value, Mapping) else [(prefix + key, value)]
-    return found
+        leaves += _leaves(value, f"{prefix}{key}.") if isinstance(value, Mapping) else [(prefix + key, value)]
+    return leaves
 
 
 def settings(path: Path | None, given: Sequence[tuple[str, Any]]) -> dict[str, Any]:
-    """Settings of a study file, if any, and of `--set`, which wins."""
+    """Settings of a study file, if any, and those given, which win."""
     return (read(path) if path else {}) | dict(given)
 
 
@@ -102,7 +102,9 @@ def unit_design(count: int, dimensions: int, seed: int) -> Array:
 
 def samples_of(uncertain: Sequence[Uncertain], points: Array) -> dict[str, Array]:
     """{name: samples (n)} from points (n, d) of the unit cube, by the inverse distribution functions."""
-    return {one.name: np.asarray(one.law.ppf(points[:, i])) for i, one in enumerate(uncertain)}
+    return {
+        parameter.name: np.asarray(parameter.law.ppf(points[:, i])) for i, parameter in enumerate(uncertain)
+    }
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from .. import columns, ramp
 from ..parameters import write_text
 from ..progress import track
+from ..refusal import Refusal
 from . import journal
 from .cluster import client
 from .journal import Journal
@@ -63,8 +64,8 @@ def plan(
     real = [name for name in settable if variables[name].type in ("Real", "Float64")]
     plain, uncertain = split(given, {name: float(variables[name].start or 0.0) for name in real})
     if not uncertain:
-        raise ValueError("no parameter has a distribution; expected --set NAME=LOW..HIGH or a study file")
-    if wrong := [one for one in uncertain if one.name not in real]:
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+    if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
         raise ValueError(
             f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
         )
@@ -76,7 +77,7 @@ def plan(
         **asdict(drive),
         "samples": count,
         "seed": seed,
-        "parameters": {one.name: one.text for one in uncertain} | plain,
+        "parameters": {parameter.name: parameter.text for parameter in uncertain} | plain,
     }
     return record, runs
 
@@ -97,8 +98,8 @@ def sweep(
         before = len(held.finished)
         todo = [i for i in range(len(runs)) if i not in held.finished]
         if todo:
-            with client(scheduler, workers) as one:
-                finished = _finished(one, fmu, drive, runs, todo)
+            with client(scheduler, workers) as dask_client:
+                finished = _finished(dask_client, fmu, drive, runs, todo)
                 for entry in track(finished, "sweep", len(todo)):
                     held.add(entry)
         summary = Summary(len(runs), len(held.finished) - before, held.failed, held.first_failure)
@@ -108,37 +109,37 @@ def sweep(
 
 
 def _finished(
-    one: Any, fmu: Path, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+    dask_client: Any, fmu: Path, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, Any]]:
     """Finished runs as they come; never more than AHEAD per worker are under way."""
     from .plugin import Bring
 
     try:
-        one.wait_for_workers(1, timeout=60)
+        dask_client.wait_for_workers(1, timeout=60)
     except TimeoutError:
-        raise RuntimeError(f"{one.scheduler.address}: has had no worker for 60 s") from None
+        raise RuntimeError(f"{dask_client.scheduler.address}: has had no worker for 60 s") from None
     key = f"jointfmu-{uuid4()}"
-    one.register_plugin(Bring(key, fmu.name, fmu.read_bytes()), name=key)
+    dask_client.register_plugin(Bring(key, fmu.name, fmu.read_bytes()), name=key)
     try:
-        yield from _as_completed(one, key, drive, runs, todo)
+        yield from _as_completed(dask_client, key, drive, runs, todo)
     finally:
         with suppress(Exception):  # the scheduler may be gone
-            one.unregister_worker_plugin(key)
+            dask_client.unregister_worker_plugin(key)
 
 
 def _as_completed(
-    one: Any, key: str, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+    dask_client: Any, key: str, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, Any]]:
     from distributed import KilledWorker, as_completed
 
     waiting, indices, lost = iter(todo), {}, Counter[int]()
 
     def submit(index: int) -> Any:
-        future = one.submit(one_run, key, drive, index, runs[index], pure=False)
+        future = dask_client.submit(one_run, key, drive, index, runs[index], pure=False)
         indices[future.key] = index
         return future
 
-    ahead = AHEAD * max(sum(one.nthreads().values()), 1)
+    ahead = AHEAD * max(sum(dask_client.nthreads().values()), 1)
     queue = as_completed([submit(i) for i in islice(waiting, ahead)])
     for future in queue:
         index = indices.pop(future.key)
@@ -151,8 +152,8 @@ def _as_completed(
             lost[index] += 1
             if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
                 text = " ".join(str(error).split())[:200]
-                kind = type(error).__name__
-                raise RuntimeError(f"run {index}: the worker failed: {kind}: {text}") from None
+                error_name = type(error).__name__
+                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
             queue.add(submit(index))  # its result went down with another run's process
             continue
         for following in islice(waiting, 1):

@@ -12,7 +12,7 @@ from ...checks import deviation
 _FMU = "BoltedJoint"
 
 
-def _pulled(folder: Path, result: ramp.Ramp) -> tuple[str, float]:
+def _pulled(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
     pulled = ramp.run(folder / f"{_FMU}.fmu", "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     return "f_z pulled apart against the integral of K_zz ds (scipy, Simpson)", deviation(

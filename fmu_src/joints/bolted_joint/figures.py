@@ -4,9 +4,10 @@ from typing import Any
 
 from matplotlib.figure import Figure as Canvas
 
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, bolt_pattern
+from jointfmu.joints.bolted_joint.law import bolt_pattern
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 
 from ...drawing import BLUE, RED, labels, svg
 from ...report.figure import Figure
@@ -32,7 +33,7 @@ def figures(outcome: Any) -> list[Figure]:
     ]
 
 
-def stiffness(result: Ramp) -> str:
+def stiffness(result: RampResult) -> str:
     """Stiffness and damping of the bolted joint over preload."""
 
     def draw(canvas: Canvas) -> None:

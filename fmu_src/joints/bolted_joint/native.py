@@ -1,17 +1,15 @@
 """The bolted joint in C: its functions and its nodes."""
 
-from typing import Any
-
 import casadi as ca
 import numpy as np
 
 from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.shape import PressureShape
-from jointfmu.joints.bolted_joint import spring
+from jointfmu.footprint.shape import MergedShape
+from jointfmu.joints.bolted_joint import law, spring
 from jointfmu.joints.model import Model
 
 from ...native.c_text import number
-from ...native.graph import Graph, law_functions, symbols
+from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import APPROACH, Definitions, NativePart
 
 
@@ -20,46 +18,39 @@ def _functions(g: Graph, model: Model) -> None:
     law_functions(
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
-    node = symbols("node", 4)
+    add_closing(g)
+    equal, tilt, mean, shift = symbols("node", 4)
     preload, moment, *rest = symbols("v", 8)
-    pressure = spring.node_pressure(joint, node[0], node[1], preload, moment)
-    doc = "equal, tilt, preload, moment -> pressure of a node at tightening"
-    g.add_with_seed("node_pressure", doc, [node[0], node[1], preload, moment], [pressure], fixed=2)
+    doc = "preload, moment -> mean pressure, pressure that the moment adds"
+    bolts = law.bolt_pressures(joint, preload, moment)
+    g.add_with_seed("bolt_pressures", doc, [preload, moment], bolts)
+    doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
+    pressure = law.shaped_pressure(equal, tilt, mean, shift)
+    g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)
     s_rel, v_rel = rest[:3], rest[3:]
-    tightened, *curve = symbols("p", 5)
-    works = symbols("w", 2)
-    parts = spring.node_parts(joint, node[2], node[3], s_rel, tightened, curve, works)
-    doc = "x2, y2, s_rel, pressure at tightening, pressure and 3 derivatives, works -> parts of a node"
-    x = [*node[2:], *s_rel, tightened, *curve, *works]
-    g.add_with_seed("node_parts", doc, x, list(parts.values()), fixed=2)
-    sums = dict(zip(parts, symbols("sum", len(parts)), strict=True))
+    sums = dict(zip(spring.SUMS, symbols("sum", len(spring.SUMS)), strict=True))
     p_max = ca.SX.sym("p_max")
     out = spring.motion(joint, sums, s_rel, v_rel, p_max)
-    doc = "sums of the parts, s_rel, v_rel, largest pressure -> outputs"
+    doc = f"sums over the nodes ({', '.join(sums)}), s_rel, v_rel, largest pressure -> outputs"
     y = [out[o.name] for o in model.outputs]
     g.add_with_seed("outputs", doc, [*sums.values(), *s_rel, *v_rel, p_max], y)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
-    rows = merged(pressure_shape(g.joint.pattern))
-    count = {f.name: len(f.y) for f in g.functions}["node_parts"]
-    counts = {"SHARE": 0, "EQUAL": 1, "TILT": 2, "X2": 3, "Y2": 4, "N_NODES": len(rows)}
-    nodes = ["{" + ", ".join(number(x) for x in row) + "}" for row in rows]
-    return Definitions(
-        {**counts, "N_PARTS": count, "N_OUTPUTS_X": count + 7}, {}, {"NODES[N_NODES][5]": nodes}
-    )
+    shape = pressure_shape(g.joint.pattern)
+    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(spring.SUMS)} | {"N_SUMS": len(spring.SUMS)}
+    counts |= {name: k for k, name in enumerate(("SHARE", "SHARE_X2", "SHARE_Y2", "EQUAL", "TILT"))}
+    nodes = _nodes("NODES", shape.merged()) | _nodes("EVEN_NODES", shape.merged(moment=False))
+    return Definitions(counts) | nodes
 
 
-def merged(shape: PressureShape) -> np.ndarray[Any, Any]:
-    """Rows (n, 5) of share, equal, tilt, x2, y2: nodes that always have the same pressure as one.
-
-    x2, y2 [m2] are the means of their squared distances from the centroid.
-    """
-    keys = np.round(np.column_stack([shape.equal, shape.tilt]), 11)
-    _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    share = np.bincount(group.ravel(), shape.share)
-    squares = [np.bincount(group.ravel(), shape.share * shape.position[:, k] ** 2) / share for k in (0, 1)]
-    return np.column_stack([share, shape.equal[first], shape.tilt[first], *squares])
+def _nodes(name: str, shape: MergedShape) -> Definitions:
+    """Rows (n, 5) of share, share times x2 and y2, equal, tilt; neighbours have similar pressures."""
+    share = shape.share
+    rows = np.column_stack([share, share * shape.x2, share * shape.y2, shape.equal, shape.tilt])
+    rows = rows[np.lexsort((shape.equal, shape.tilt > 0.0))]
+    texts = ["{" + ", ".join(number(x) for x in row) + "}" for row in rows]
+    return Definitions({f"N_{name}": len(rows)}, {}, {f"{name}[N_{name}][5]": texts})
 
 
 PART = NativePart(_functions, APPROACH, _definitions)

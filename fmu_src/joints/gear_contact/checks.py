@@ -9,12 +9,12 @@ from scipy.integrate import quad
 from jointfmu.interface import stiffness_curve
 from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import default
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 
 from ...checks import deviation
 
 
-def _approach(folder: Path, result: Ramp) -> tuple[str, float]:
+def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
     law = default("gear_contact").values
     assert isinstance(law, GearContact)
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from matplotlib.figure import Figure as Canvas
 
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 
 from ...drawing import BLUE, labels, svg
 from ...report.figure import Figure
@@ -24,7 +24,7 @@ def figures(outcome: Any) -> list[Figure]:
     ]
 
 
-def stiffness(result: Ramp) -> str:
+def stiffness(result: RampResult) -> str:
     """Stiffness and approach of the gear contact over load."""
 
     def draw(canvas: Canvas) -> None:

@@ -1,10 +1,11 @@
+/* Repeats `GearContactSpring.approach` of the package; the laws in it are generated. */
 #include "gear_contact.h"
 
 #include <math.h>
 
 #include "tabulated.h"
 
-static const double NOTHING = 1e-200; /* pressure [Pa] below which no spot touches, as in the package */
+_Static_assert(N_LAW_STATE == 2, "real contact area and its elastic part");
 
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
@@ -17,36 +18,41 @@ bool kind_tabulate(Joint *joint, Text *why)
     return spots_begin(&joint->kind.spots, joint->c, why) && refined(joint, tabulate, APPROACH_STEPS, why);
 }
 
-/* The curve and the law at a load: approach from first touch, stiffness, state; slopes of all in the
- * pressure behind. */
+enum { N_FOUND = 2 + N_LAW_STATE }; /* approach from first touch, stiffness, state */
+
+/* The curve and the law at a pressure, and the slopes of all in it. Below the table of the law, while the
+ * contact closes, and above it the law itself is asked. */
 static bool look_up(const Joint *joint, double pressure, double *x, double *slopes, Text *why)
 {
     const Kind *kind = &joint->kind;
-    double y[3], state[2 * N_LAW_STATE], u, rate;
-    const double delta = curve_inverse(&joint->curve, pressure);
-    curve_at(&joint->curve, delta, 2, y);
+    const Curve *curve = &joint->curve;
+    double y[3], carried;
+    int nearest = 0;
+    const double delta = curve_inverse(curve, pressure, &nearest, &carried);
+    curve_at(curve, delta, 2, y);
     const double compliance = y[1] > 0.0 ? 1.0 / y[1] : 0.0;
-    x[0] = delta - joint->curve.x[0];
+    x[0] = delta - curve->x[0];
     x[1] = y[1];
     slopes[0] = compliance;
     slopes[1] = y[2] * compliance;
-    x[2] = x[3] = slopes[2] = slopes[3] = 0.0;
-    if (!(pressure >= NOTHING))
+    if (delta >= 0.0 && delta < curve->end.x) {
+        const int segment = curve_segment(curve, delta);
+        const double t = (delta - curve->x[segment]) * curve->per[segment];
+        approach_state(&kind->approach, curve, segment, t, x + 2, slopes + 2);
+        for (int q = 0; q < N_LAW_STATE; q++)
+            slopes[2 + q] *= compliance;
         return true;
-    u = approach_guess(&kind->approach, &joint->curve, delta);
-    if (!spots_solve(&kind->spots, joint->c, pressure, &u, &rate, why))
-        return false;
-    law_state[spots_regime(&kind->spots, u)](&u, joint->c, state);
-    for (int i = 0; i < N_LAW_STATE; i++) {
-        x[2 + i] = state[i];
-        slopes[2 + i] = state[N_LAW_STATE + i] / (rate * pressure);
     }
-    return true;
+    for (int q = 0; q < N_LAW_STATE; q++)
+        x[2 + q] = slopes[2 + q] = 0.0;
+    const double u = delta < 0.0 ? kind->approach.first : kind->approach.last;
+    return !(pressure >= NOTHING) ||
+           approach_exact(&kind->spots, joint->c, pressure, u, x + 2, slopes + 2, why);
 }
 
 bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
 {
-    double pressure, x[1 + 4], slopes[4];
+    double pressure, x[1 + N_FOUND], slopes[N_FOUND];
     argument(inputs, joint->c, &pressure);
     x[0] = inputs[0];
     if (!look_up(joint, pressure, &x[1], slopes, why))
@@ -57,16 +63,17 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
 
 void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
 {
-    double pressure, rate, x[2 * (1 + 4)];
+    enum { N = 1 + N_FOUND };
+    double pressure, rate, x[2 * N];
     const double at[2] = {inputs[0], seed[0]};
     Text ignored;
     text_clear(&ignored);
     argument(inputs, joint->c, &pressure);
     argument_seed(at, joint->c, &rate);
     x[0] = inputs[0];
-    x[5] = seed[0];
-    look_up(joint, pressure, &x[1], &x[6], &ignored);
-    for (int i = 6; i < 10; i++)
+    x[N] = seed[0];
+    look_up(joint, pressure, &x[1], &x[N + 1], &ignored);
+    for (int i = N + 1; i < 2 * N; i++)
         x[i] *= rate;
     outputs_seed(x, joint->c, result);
 }

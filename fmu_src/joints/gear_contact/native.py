@@ -8,7 +8,7 @@ from jointfmu.joints.gear_contact import spring
 from jointfmu.joints.model import Model
 from jointfmu.powerlaw import Spots
 
-from ...native.graph import Graph, law_functions, symbols
+from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import APPROACH, NativePart
 
 
@@ -20,6 +20,7 @@ def _functions(g: Graph, model: Model) -> None:
         return [area, spots.total("elastic_area", u) / area]
 
     law_functions(g, joint, ("normal",), state)
+    add_closing(g)
     f, approach, stiffness, area, elastic = symbols("x", 5)
     g.add_with_seed("argument", "inputs -> pressure", [f], [np.maximum(f, 0.0) / joint.A_0])
     out = spring.contact(joint, f, approach, stiffness, area, elastic)

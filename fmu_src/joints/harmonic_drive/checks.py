@@ -10,13 +10,13 @@ from jointfmu.reference import Point
 from ...checks import deviation
 
 
-def _compliance(folder: Path, result: ramp.Ramp) -> tuple[str, float]:
+def _compliance(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
     c = result.columns
     phi = cumulative_simpson(1.0 / c["K_WTS"], x=c["tau"], initial=0.0)
     return "phi_rel against the integral of dT/K_WTS (scipy, Simpson)", deviation(c["phi_rel"], phi)
 
 
-def _spring(folder: Path, result: ramp.Ramp) -> tuple[str, float]:
+def _spring(folder: Path, result: ramp.RampResult) -> tuple[str, float]:
     c = result.columns
     tau = cumulative_simpson(c["K_WTS"], x=c["phi_rel"], initial=0.0)
     return "tau against the integral of K_WTS dphi (scipy, Simpson)", deviation(c["tau"], tau)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from jointfmu.ramp import Ramp
+from jointfmu.ramp import RampResult
 from jointfmu.validation import Row
 
 from ...drawing import BLUE, GREEN, GREY, RED, labels, svg
@@ -34,7 +34,7 @@ def figures(outcome: Any) -> list[Figure]:
     ]
 
 
-def stiffness(result: Ramp, rows: list[Row]) -> str:
+def stiffness(result: RampResult, rows: list[Row]) -> str:
     """K_WTS and its parts over torque, with the published points on the curves."""
 
     def draw(canvas: Canvas) -> None:
@@ -72,7 +72,7 @@ def stiffness(result: Ramp, rows: list[Row]) -> str:
     return svg(draw, (9.6, 4.2))
 
 
-def torque_angle(result: Ramp) -> str:
+def torque_angle(result: RampResult) -> str:
     """Wind-up over torque, both signs."""
 
     def draw(canvas: Canvas) -> None:

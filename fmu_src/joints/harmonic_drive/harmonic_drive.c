@@ -1,3 +1,5 @@
+/* Repeats `stiffness_tables`, `pair_table` and `torque_curve` of the package: the sums and tables that are
+ * made for every parameter set; the laws in them are generated. */
 #include "harmonic_drive.h"
 
 #include <math.h>
@@ -5,8 +7,8 @@
 
 #include "tabulated.h"
 
-static const double SIDE = 1e-9; /* where a regime ends its derivative is taken this far inside, in log-area */
-
+_Static_assert(N_LAW_TABLE == 2 + 2 * BLOCK_FUNCTIONS, "load, normal and tangential stiffness with slopes");
+_Static_assert(MOST_CELLS % 2 == 0 && CURVE_NODES > DRIVE_STEPS, "blocks of two cells; one curve at least");
 static void add_parameter(Text *why, const Joint *joint, const char *name)
 {
     int i = 0;
@@ -82,6 +84,12 @@ static bool tabulate_regimes(Joint *joint, double highest, Text *why)
         const double right = i + 1 < spots->n_ends ? spots->ends[i + 1] : INFINITY;
         double u = left;
         Sample three[3];
+        if (free + blocks > kind->regime_blocks + REGIME_BLOCKS) {
+            text_add(why, "the tables of the stiffness need more than ");
+            text_number(why, REGIME_BLOCKS, 6);
+            text_add(why, " blocks");
+            return false;
+        }
         kind->regimes[i] = (Blocks){.start = low, .cell = step, .n = blocks, .block = free};
         for (int k = 0; k <= 2 * blocks; k++) {
             const double x = k == 2 * blocks ? high : low + k * step;
@@ -170,7 +178,7 @@ static void tabulate_pair(Joint *joint, double low, double high, int steps)
 {
     Kind *kind = &joint->kind;
     const double start = log(low), range = log(high / low);
-    const double pairs = fmin(ceil(steps / PAIR_STEPS * range), PAIR_BLOCKS / 2);
+    const double pairs = fmin(ceil(steps / (double)PAIR_STEPS * range), PAIR_BLOCKS / 2);
     const int blocks = 2 * (int)fmax(pairs, 1.0);
     const double cell = (log(high) - start) / (2 * blocks);
     kind->pair = (Blocks){.start = start, .cell = cell, .n = blocks, .block = kind->pair_blocks};
@@ -237,7 +245,7 @@ static bool windup(Joint *joint, int steps, Text *why)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[N_DRIVE_HEAD], highest[2];
+    double head[5], highest[2];
     if (!spots_begin(&kind->spots, joint->c, why))
         return false;
     drive_head(0, joint->c, head);
@@ -254,9 +262,12 @@ bool kind_tabulate(Joint *joint, Text *why)
  * torque. */
 static void look_up(const Joint *joint, const double *inputs, int order, double *x, double *y)
 {
-    double at;
+    double at, carried;
+    int nearest = 0;
     argument(inputs, joint->c, &at);
-    const double size = fabs(at), phi = ARGUMENT_IS_LOAD ? curve_inverse(&joint->curve, size) : size;
+    const double size = fabs(at);
+    const double phi =
+        ARGUMENT_IS_LOAD ? curve_inverse(&joint->curve, size, &nearest, &carried) : size;
     curve_at(&joint->curve, phi, order, y);
     *x = copysign(phi, at);
     y[0] = copysign(y[0], at);

@@ -5,7 +5,8 @@
 #include "table.h"
 #include "spots.h"
 
-enum { REGIME_BLOCKS = 560, PAIR_BLOCKS = 512 };
+/* Blocks of two cells; every regime may end within one, and round-off may take another. */
+enum { REGIME_BLOCKS = MOST_CELLS / 2 + 2 * N_LAW_ENDS, PAIR_BLOCKS = 2 * MOST_PAIR_STEPS };
 
 typedef struct {
     Spots spots;

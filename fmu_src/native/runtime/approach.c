@@ -1,43 +1,61 @@
+/* Repeats `approach_curve` of the package: the table for every parameter set; the laws in it are generated. */
 #include "approach.h"
 
 #include <math.h>
+#include <string.h>
 
-static const double SIDE = 1e-9; /* where a regime ends its derivative is taken this far inside, in log-area */
+_Static_assert(N_LAW_TABLE == 4, "load and normal stiffness with slopes");
+_Static_assert(CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
-/* How the contact closes: from separation to the point (p, k, dk/d delta) at zero approach, so that the
- * approach does not start at minus infinity. Load p z^3 (a + b z + c z^2) over a length 4 p/k. */
-static bool closing(Approach *approach, Curve *curve, double p, double k, double bend, double u)
+enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, slope of du/dx */
+
+/* A node of the table: the curve and the state beside. */
+typedef struct {
+    Node curve, state[APPROACH_STATES];
+} Point;
+
+/* How the contact closes: from separation to the node at zero approach, so that the approach does not start
+ * at minus infinity. */
+static bool close(Approach *approach, Curve *curve, const Point *end)
 {
-    const double length = 4.0 * p / k, part = 0.5 * (bend * length * length / p) - 6.0;
-    const double a = part, b = 1.0 - 2.0 * part;
     for (int i = 0; i <= CLOSING_STEPS; i++) {
-        const double z = (double)i / CLOSING_STEPS;
-        const Node node = {
-            .x = (z - 1.0) * length,
-            .y = p * z * z * z * (a + b * z + part * z * z),
-            .s = p / length * z * z * (3.0 * a + 4.0 * b * z + 5.0 * part * z * z),
-            .bend = p / (length * length) * z * (6.0 * a + 12.0 * b * z + 20.0 * part * z * z),
-        };
-        approach->u[i] = u;
-        approach->rate[i] = 0.0;
+        const double at[4] = {end->curve.y, end->curve.s, end->curve.bend, (double)i / CLOSING_STEPS};
+        double y[4];
+        closing(at, NULL, y);
+        const Node node = {.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
         if (i == 0)
             curve_piece(curve, node);
         else if (!curve_add(curve, node))
             return false;
+        memset(approach->state[i], 0, sizeof approach->state[i]);
+        for (int q = 0; q < N_LAW_STATE; q++)
+            approach->state[i][q][0] = end->state[q].y;
     }
     return true;
 }
 
-/* `rate` is that of u along the curve. */
-static Node node_at(const Spots *spots, const double *c, double u, double left, double right, double x,
-                    double *rate)
+static Point point_at(const Spots *spots, const double *c, double u, double left, double right, double x)
 {
-    double y[N_LAW_TABLE], side[N_LAW_TABLE];
+    double y[N_LAW_TABLE], side[N_LAW_TABLE], law[STATE_ROWS];
+    const double inside = fmin(fmax(u, left + SIDE), right - SIDE);
     spots_table(spots, c, u, y);
-    spots_table(spots, c, fmin(fmax(u, left + SIDE), right - SIDE), side);
-    const double k = y[2] / spots->area;
-    *rate = y[2] / y[1];
-    return (Node){.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]};
+    if (inside != u)
+        spots_table(spots, c, inside, side);
+    else
+        memcpy(side, y, sizeof side);
+    const double k = y[2] / spots->area, rate = side[2] / side[1]; /* du/dx */
+    Point point = {.curve = {.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]}};
+    law_state[spots_regime(spots, inside)](&inside, c, law);
+    for (int q = 0; q < N_LAW_STATE; q++) {
+        const double slope = law[N_LAW_STATE + q], bend = law[2 * N_LAW_STATE + q];
+        point.state[q] = (Node){
+            .x = x,
+            .y = law[q] + (u - inside) * slope,
+            .s = slope * rate,
+            .bend = (bend * rate + slope * law[STATE_ROWS - 1]) * rate,
+        };
+    }
+    return point;
 }
 
 /* Approach between two log-areas [m]. */
@@ -51,11 +69,40 @@ static double rise(const Spots *spots, const double *c, double u, double half)
     return half * sum;
 }
 
+/* One regime of the stiffness, from the approach x on, where it ends is written; false: the table is full. */
+static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, const double *c, double left,
+                      double right, int steps, double *x)
+{
+    const double pairs = ceil(0.5 * steps * (right - left));
+    if (!(pairs < CURVE_NODES))
+        return false;
+    const int n = 2 * (int)fmax(pairs, 1.0);
+    const double step = (right - left) / n;
+    Point from = point_at(spots, c, left, left, right, *x);
+    if (curve->n == 0) {
+        approach->closed = from.curve.y;
+        if (!close(approach, curve, &from))
+            return false;
+    }
+    curve_piece(curve, from.curve);
+    for (int i = 0; i < n; i++) {
+        const double u = i + 1 == n ? right : left + (i + 1) * step;
+        *x += rise(spots, c, left + i * step, 0.5 * step);
+        const Point to = point_at(spots, c, u, left, right, *x);
+        if (!curve_add(curve, to.curve))
+            return false;
+        for (int q = 0; q < N_LAW_STATE; q++)
+            curve_polynomial(&from.state[q], &to.state[q], approach->state[curve->n - 2][q]);
+        from = to;
+    }
+    return true;
+}
+
 bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, const double *c, int steps,
                        Text *why)
 {
     const double first = spots->onset + log(CLOSING_RATIO);
-    double last = first, slope, ends[N_LAW_ENDS + 2], y[N_LAW_TABLE];
+    double last = first, slope, ends[N_LAW_ENDS + 2], y[N_LAW_TABLE], x = 0.0;
     if (!spots_solve(spots, c, spots->hardness, &last, &slope, why))
         return false;
     if (!(last > first)) {
@@ -67,49 +114,32 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
         text_add(why, " Pa: the surface (D, G) leaves only plastic spots");
         return false;
     }
+    approach->first = first;
+    approach->last = last;
     int pieces = 0;
     ends[0] = first;
     for (int i = 0; i < spots->n_ends; i++)
         if (spots->ends[i] > first && spots->ends[i] < last)
             ends[++pieces] = spots->ends[i];
     ends[++pieces] = last;
-    double x = 0.0;
-    for (int piece = 0; piece < pieces; piece++) {
-        const double left = ends[piece], right = ends[piece + 1];
-        const double pairs = ceil(0.5 * steps * (right - left));
-        if (!(pairs < CURVE_NODES))
+    curve_begin(curve, 0.0);
+    for (int i = 0; i < pieces; i++)
+        if (!add_piece(approach, curve, spots, c, ends[i], ends[i + 1], steps, &x))
             return false;
-        const int n = 2 * (int)fmax(pairs, 1.0);
-        const double step = (right - left) / n;
-        double rate;
-        Node node = node_at(spots, c, left, left, right, x, &rate);
-        if (piece == 0) {
-            curve_begin(curve, 0.0);
-            approach->closed = node.y;
-            if (!closing(approach, curve, node.y, node.s, node.bend, first))
-                return false;
-        }
-        curve_piece(curve, node);
-        approach->rate[curve->n - 1] = rate;
-        for (int i = 0; i < n; i++) {
-            const double u = i + 1 == n ? right : left + (i + 1) * step;
-            x += rise(spots, c, left + i * step, 0.5 * step);
-            node = node_at(spots, c, u, left, right, x, &rate);
-            if (!curve_add(curve, node))
-                return false;
-            approach->u[curve->n - 1] = u;
-            approach->rate[curve->n - 1] = rate;
-        }
-    }
     curve_finish(curve);
     return true;
 }
 
-double approach_guess(const Approach *approach, const Curve *curve, double x)
+bool approach_exact(const Spots *spots, const double *c, double pressure, double u, double *value,
+                    double *slope, Text *why)
 {
-    double t;
-    const int i = curve_segment(curve, x, &t);
-    const double h = curve->x[i + 1] - curve->x[i], rise = approach->u[i + 1] - approach->u[i];
-    const double begin = h * approach->rate[i] - rise, end = h * approach->rate[i + 1] - rise;
-    return approach->u[i] + t * (rise + (1.0 - t) * ((1.0 - t) * begin - t * end));
+    double rate, law[STATE_ROWS];
+    if (!spots_solve(spots, c, pressure, &u, &rate, why))
+        return false;
+    law_state[spots_regime(spots, u)](&u, c, law);
+    for (int q = 0; q < N_LAW_STATE; q++) {
+        value[q] = law[q];
+        slope[q] = law[N_LAW_STATE + q] / (rate * pressure);
+    }
+    return true;
 }

@@ -1,11 +1,9 @@
+/* Repeats `largest_spot` of the package for a single pressure; the law in it is generated. */
 #include "spots.h"
 
 #include <math.h>
 
-/* Log-areas between which the laws are evaluated, and bounds of the slope of the log-load (in m, and 1). */
-static const double LEAST = -600.0, MOST = 300.0, FLATTEST = 0.5, STEEPEST = 2.5;
-/* Relative residual of the load from which one more Newton step reaches round-off. */
-static const double CLOSE = 1e-8;
+_Static_assert(N_LAW_HEAD == 5, "the members of Spots that spots_begin reads");
 
 int spots_regime(const Spots *spots, double u)
 {
@@ -86,7 +84,7 @@ bool spots_solve(const Spots *spots, const double *c, double pressure, double *u
         return false;
     }
     double x = *u, low = -INFINITY, high = INFINITY, y[2] = {0.0, 1.0};
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < MOST_STEPS; k++) {
         load(spots, c, x, y);
         const double rest = target - y[0];
         const double a = rest / (FLATTEST * spots->m), b = rest / STEEPEST;

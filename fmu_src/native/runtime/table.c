@@ -1,3 +1,4 @@
+/* Repeats `Blocks` of table.py in the package. */
 #include "table.h"
 
 void block_through(Block *block, const Sample *first, const Sample *middle, const Sample *last, double cell)

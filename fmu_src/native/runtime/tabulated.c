@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Largest relative interpolation error of load and stiffness that a table may have. */
-static const double MAX_ERROR = 1e-8;
+_Static_assert(N_WARNINGS <= 32, "joint_outside has a bit for each");
 
 size_t joint_size(void)
 {
@@ -62,7 +61,7 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
 
 bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
 {
-    for (int factor = 1; factor <= 16; factor *= 2) {
+    for (int factor = 1; factor <= FINEST; factor *= 2) {
         if (!tabulate(joint, steps * factor, why)) {
             if (why->length > 0)
                 return false;
@@ -78,7 +77,9 @@ bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
     text_number(why, joint->curve.n, 6);
     text_add(why, " nodes has an interpolation error of ");
     text_number(why, joint->curve.error, 2);
-    text_add(why, ", allowed is 1e-08: the law is not smooth enough with these parameters");
+    text_add(why, ", allowed is ");
+    text_number(why, MAX_ERROR, 6);
+    text_add(why, ": the law is not smooth enough with these parameters");
     return false;
 }
 

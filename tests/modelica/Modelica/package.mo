@@ -15,6 +15,7 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
   end Icons;
 
   package Constants
+    constant Real pi = 3.14159265358979323846;
     constant Real small = 1e-60;
     constant Real g_n(unit="m/s2") = 9.80665;
   end Constants;
@@ -34,6 +35,7 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
       type Inertia = Real(quantity="MomentOfInertia", unit="kg.m2");
       type Force = Real(quantity="Force", unit="N");
       type Torque = Real(quantity="Torque", unit="N.m");
+      type Energy = Real(quantity="Energy", unit="J");
       type Power = Real(quantity="Power", unit="W");
       type RotationalSpringConstant = Real(quantity="RotationalSpringConstant", unit="N.m/rad");
       type RotationalDampingConstant = Real(quantity="RotationalDampingConstant", unit="N.m.s/rad");

@@ -2,7 +2,7 @@
 
 from ...asperity.zhao2018 import Zhao2018
 from ..kind import Kind, RoughSurface
-from .spring import BoltedJoint
+from .law import BoltedJoint
 from .variables import MODELS
 
 KIND = Kind(

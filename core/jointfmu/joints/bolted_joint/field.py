@@ -1,6 +1,6 @@
 """How a bolted joint carries its bolts' forces under a pressure that comes as a field."""
 
 from ..clamped import Clamping
-from .spring import pressures, shear_ratio
+from .law import pressures, shear_ratio
 
 FIELD = Clamping(pressures=pressures, shear_ratio=shear_ratio)

@@ -9,7 +9,7 @@ from ...asperity import zhao2018 as zhao
 from ...footprint.bolts import cells, pressure_shape, unit_pressures
 from ...surface import domain_extension
 from ..published import Fit, Published
-from .spring import BoltedJoint, bolt_pattern, pressures, row_forces
+from .law import BoltedJoint, bolt_pattern, pressures, row_forces
 
 
 def p_max(joint: BoltedJoint, preload: float) -> float:

@@ -25,7 +25,8 @@ from ...quantity import flatten
 from ..model import Variable
 from ..reduced import Reduced
 from . import KIND
-from .spring import BoltedJoint, BoltedJointSpring, node_pressure, shear_ratio
+from .law import BoltedJoint, node_pressure, shear_ratio
+from .spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
 
@@ -138,8 +139,9 @@ def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[st
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
     rho = shear_ratio(joint)
-    C = total(works[0]) / total(works[1]) * np.sqrt(joint.mass * K)
-    tangential = mindlin.loss_factor(joint.traction_ratio) * np.sqrt(joint.mass * rho * K)
+    C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
+    eta_t = mindlin.loss_factor(joint.traction_ratio)
+    tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
     approach = 3.0 * compliance[:, :1] + compliance @ integral
     found = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
     if np.all(touching):
@@ -162,16 +164,14 @@ def approach(spring: BoltedJointSpring, loads: Array) -> Array:
     Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
     equal are taken together.
     """
-    joint, shape = spring.joint, spring.shape
-    equal, place = np.unique(np.round(shape.equal, 12), return_inverse=True)
-    shares = np.bincount(place, shape.share)
+    joint, shape = spring.joint, spring.shape.merged(moment=False)
     lowest = 1e-9 * spring.curve.closed * joint.A_0 / joint.n_bolts
     ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
     places, weights = np.polynomial.legendre.leggauss(3)
     half, middle = 0.5 * np.diff(np.log(ends)), 0.5 * np.log(ends[1:] * ends[:-1])
     preload = np.concatenate([ends[:1], np.exp(middle[:, None] + half[:, None] * places).ravel()])
-    node = spring.curve.inverse(node_pressure(joint, equal, 0.0, preload[:, None], 0.0))
-    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shares
+    node = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, preload[:, None], 0.0))
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
     rate = joint.n_bolts * preload / K
     panels = half * (rate[1:].reshape(-1, 3) @ weights)
     integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])

@@ -1,86 +1,26 @@
-"""Bolted joint: a frame under uneven pressure (Zhao 2018), normal, tangential and rotational."""
+"""The exported bolted joint: normal, tangential and rotational, under uneven pressure (Zhao 2018)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ...asperity import mindlin
-from ...asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
 from ...curve import Curve, approach_curve
-from ...footprint.bolts import BoltPattern, pressure_shape
-from ...footprint.shape import NodalField, PressureShape
+from ...footprint.bolts import pressure_shape
+from ...footprint.shape import PressureShape
 from ...interface import largest_spot
-from ...quantity import Interval, Limit, Number, check_limits, group, quantity
+from ...quantity import Number
+from .law import BoltedJoint, pressures, shear_ratio
 
 Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True, kw_only=True)
-class BoltedJoint(Zhao2018):
-    """Parameters of the bolted joint: the interface law, the bolts and how they spread their force."""
-
-    n_bolts: float = quantity("1", "number of bolts", ge=1.0, whole=True)
-    row_bolts: float = quantity(
-        "1", "bolts in each of the two rows that carry the moment", ge=1.0, whole=True
-    )
-    row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
-    pattern: BoltPattern | NodalField = group(
-        "what gives the pressure: the decay around each bolt of a frame, or the points of a field",
-        pattern=BoltPattern,
-        field=NodalField,
-    )
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_limits(self, self.limits())
-
-    def limits(self) -> list[Limit]:
-        """Intervals that other parameters decide."""
-        why = "two rows cannot hold more bolts than the joint has"
-        return [Limit("row_bolts", Interval.of(ge=1.0, le=0.5 * self.n_bolts), why)]
-
-
-def bolt_pattern(joint: BoltedJoint) -> BoltPattern:
-    """The frame of a joint whose pressure is that of a pattern of bolts.
-
-    Raises ValueError if the joint has a nodal field instead.
-    """
-    if isinstance(joint.pattern, BoltPattern):
-        return joint.pattern
-    count = len(joint.pattern.share)
-    raise ValueError(
-        f"the joint has [field], a nodal field of {count} points; expected [pattern], a frame of bolts"
-    )
-
-
-def pressures(joint: BoltedJoint, shape: PressureShape, preload: ArrayLike, moment: ArrayLike) -> Array:
-    """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
-
-    The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
-    y < 0 (Zhao 2018, section 3). Where the sum would be negative the node is open.
-    """
-    force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
-    return np.asarray(node_pressure(joint, shape.equal, shape.tilt, force, bending))
-
-
-def node_pressure(joint: BoltedJoint, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
-    """Pressure [Pa] of a node of the pressure shape."""
-    mean = preload * joint.n_bolts / joint.A_0
-    shift = moment / joint.row_distance / joint.A_0
-    return np.maximum(mean * equal + shift * tilt, 0.0)
-
-
-def row_forces(joint: BoltedJoint, preload: float, moment: float) -> tuple[float, float]:
-    """Bolt forces [N] of the two rows under a moment."""
-    shift = moment / (joint.row_distance * joint.row_bolts)
-    return preload + shift, preload - shift
-
-
-def shear_ratio(joint: BoltedJoint) -> Number:
-    """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
-    return tangential_stiffness(joint, 1.0) / normal_stiffness(joint, 1.0)
+SUMS = (
+    "tightened", "pressure", "stiffness", "bend", "twist", "about_x", "about_y", "plastic", "elastic",
+)  # fmt: skip
+"""Sums over the nodes, times their shares of the area: pressure [Pa] at tightening and now with three
+derivatives in the approach, stiffness [Pa/m] times y^2 and x^2, plastic and elastic work [J]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,12 +72,22 @@ class BoltedJointSpring:
         preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
         """
         start, shape = self.tightened(preload, moment), self.shape
-        tightened = self.curve.derivatives(start, 0)[0]
-        curve = self.curve.derivatives(start - s_rel[2], 3)
+        p, k, bend, twist = self.curve.derivatives(start - s_rel[2], 3)
         x2, y2 = shape.position.T**2
-        each = node_parts(self.joint, x2, y2, s_rel, tightened, curve, self.works(curve[0]))
-        sums = {name: np.sum(shape.share * value) for name, value in each.items()}
-        return motion(self.joint, sums, s_rel, v_rel, np.max(curve[0]))
+        plastic, elastic = self.works(p)
+        each = {
+            "tightened": self.curve.derivatives(start, 0)[0],
+            "pressure": p,
+            "stiffness": k,
+            "bend": bend,
+            "twist": twist,
+            "about_x": k * y2,
+            "about_y": k * x2,
+            "plastic": plastic,
+            "elastic": elastic,
+        }
+        sums = {name: np.sum(shape.share * each[name]) for name in SUMS}
+        return motion(self.joint, sums, s_rel, v_rel, np.max(p))
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -149,39 +99,6 @@ class BoltedJointSpring:
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-def node_parts(
-    joint: BoltedJoint,
-    x2: Number,
-    y2: Number,
-    s_rel: Sequence[Number],
-    tightened: Number,
-    curve: Sequence[Number],
-    works: Sequence[Number],
-) -> dict[str, Number]:
-    """What a node contributes to the joint, per share of the area.
-
-    x2, y2    : [m2] squares of its distances from the centroid
-    s_rel     : [m] relative displacement
-    tightened : [Pa] its pressure at tightening
-    curve     : its pressure [Pa] now and three derivatives in the approach
-    works     : [J] plastic and elastic work at this pressure
-    """
-    x, y, _ = s_rel
-    p, k, bend, twist = curve
-    shear = 0.5 * shear_ratio(joint) * (x * x + y * y)
-    plastic, elastic = works
-    return {
-        "pressure": p,
-        "stiffness": k,
-        "normal": k + shear * twist,
-        "force": p - tightened + shear * bend,
-        "about_x": k * y2,
-        "about_y": k * x2,
-        "plastic": plastic,
-        "elastic": elastic,
-    }
-
-
 def motion(
     joint: BoltedJoint,
     sums: Mapping[str, Number],
@@ -189,25 +106,27 @@ def motion(
     v_rel: Sequence[Number],
     p_max: Number,
 ) -> dict[str, Number]:
-    """What the joint exports, from the sums of its nodes' contributions times share.
+    """What the joint exports, from the SUMS of its nodes.
 
     A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
     plane: Hu 2023, Eq. 45, corrected.
     """
     area, rho = joint.A_0, shear_ratio(joint)
+    shear = 0.5 * rho * (s_rel[0] * s_rel[0] + s_rel[1] * s_rel[1])
     K_n = area * sums["stiffness"]
     K_t = rho * K_n
     eta_n = sums["plastic"] / sums["elastic"]
     eta_t = mindlin.loss_factor(joint.traction_ratio)
-    C_n, C_t = eta_n * np.sqrt(joint.mass * K_n), eta_t * np.sqrt(joint.mass * K_t)
+    C_n = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
+    C_t = mindlin.viscous_equivalent(eta_t, joint.mass, K_t)
     K_rx, K_ry = area * sums["about_x"], area * sums["about_y"]
     return {
         "f_x": 0.0 - K_t * s_rel[0] - C_t * v_rel[0],
         "f_y": 0.0 - K_t * s_rel[1] - C_t * v_rel[1],
-        "f_z": area * sums["force"] - C_n * v_rel[2],
+        "f_z": area * (sums["pressure"] - sums["tightened"] + shear * sums["bend"]) - C_n * v_rel[2],
         "K_xx": K_t,
         "K_yy": K_t,
-        "K_zz": area * sums["normal"],
+        "K_zz": area * (sums["stiffness"] + shear * sums["twist"]),
         "C_xx": C_t,
         "C_yy": C_t,
         "C_zz": C_n,

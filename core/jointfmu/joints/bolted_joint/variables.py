@@ -6,7 +6,8 @@ from typing import Any
 
 from ...quantity import Number
 from ..model import BEYOND, Model, Outside, Ramp, Values, Variable
-from .spring import BoltedJoint, BoltedJointSpring
+from .law import BoltedJoint
+from .spring import BoltedJointSpring
 
 _TIGHT = ("preload", "moment")
 _SHIFT = ("s_rel_x", "s_rel_y", "s_rel_z")

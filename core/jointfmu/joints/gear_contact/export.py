@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
+from . import KIND
 from .spring import GearContact, GearContactSpring
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ EXPORTS = Exports(
     contact=_contact,
     curve=LoadCurve(
         meaning="normal load over approach of the flanks from first touch; without load while apart",
-        heads=(("s_rel", "m"), ("f", "N"), ("K_N", "N/m")),
+        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
         name="force",
         table=_load,
     ),

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...curve import Curve, approach_curve
 from ...export.exports import Exports, LoadCurve
+from . import KIND
 from .spring import GearMesh, pair_curve
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ EXPORTS = Exports(
     contact=_contact,
     curve=LoadCurve(
         meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
-        heads=(("s_rel", "m"), ("f", "N"), ("K", "N/m")),
+        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
         name="force",
         table=_load,
     ),

@@ -2,7 +2,7 @@
 
 from ...asperity.hu2023 import Hu2023
 from ..kind import Kind, RoughSurface
-from .spring import HarmonicDrive
+from .law import HarmonicDrive
 from .variables import MODELS
 
 KIND = Kind(

@@ -3,7 +3,9 @@
 from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
-from .spring import HarmonicDrive, HarmonicDriveSpring
+from . import KIND
+from .law import HarmonicDrive
+from .spring import HarmonicDriveSpring
 
 if TYPE_CHECKING:
     from ...export.tables import Table
@@ -18,7 +20,7 @@ def _torque(drive: HarmonicDrive, _: None, error: float) -> "Table":
 EXPORTS = Exports(
     curve=LoadCurve(
         meaning="torque over wind-up at the output, wave generator locked",
-        heads=(("phi_rel", "rad"), ("tau", "N.m"), ("K_WTS", "N.m/rad")),
+        columns=tuple(KIND.variables[name] for name in ("phi_rel", "tau", "K_WTS")),
         name="torque",
         table=_torque,
     ),

@@ -9,7 +9,7 @@ from ...asperity import kogut_etsion
 from ...interface import at_largest_spot
 from ...surface import hardness_coefficient
 from ..published import Fit, Published
-from .spring import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from .law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 
 
 def K_TS(

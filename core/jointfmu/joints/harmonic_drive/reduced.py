@@ -1,4 +1,4 @@
-"""The harmonic drive for many samples at once: K_WTS and wind-up along a ramp of torque.
+"""Repeats `spring.torque_curve` for many samples at once: K_WTS and wind-up along a torque ramp.
 
 The law is evaluated at a few pressures per sample: HEIGHTS x AROUND points of the lobe, for some peak
 pressures between which log K_TS is a polynomial in the log of the peak.
@@ -17,15 +17,8 @@ from ...batch.samples import columns
 from ...interface import largest_spot
 from ..reduced import Reduced
 from . import KIND
-from .spring import (
-    HarmonicDrive,
-    HarmonicDriveSpring,
-    contact_length,
-    in_series,
-    lobe_point,
-    local,
-    peak_pressure,
-)
+from .law import HarmonicDrive, contact_length, in_series, lobe_point, local, peak_pressure
+from .spring import HarmonicDriveSpring
 
 Array = NDArray[np.float64]
 

@@ -1,7 +1,8 @@
 """Inputs and outputs of the harmonic drive's models."""
 
 from ..model import BEYOND, Model, Outside, Ramp, Variable
-from .spring import HarmonicDrive, HarmonicDriveSpring
+from .law import HarmonicDrive
+from .spring import HarmonicDriveSpring
 
 _CONTACT = (
     Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi at the present torque", 5e3),

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from jointfmu.curve import Curve
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, shear_ratio
+from jointfmu.joints.bolted_joint.law import shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 
 from ....modelica.tables import Array, Table, thinned
 

@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING
 
 from ....export.exports import Exports, LoadCurve
 from ....quantity import quantity
-from ..spring import BoltedJoint, BoltedJointSpring, shear_ratio
+from ...model import Variable
+from .. import KIND
+from ..law import BoltedJoint, shear_ratio
+from ..spring import BoltedJointSpring
 
 if TYPE_CHECKING:
     from ....curve import Curve
@@ -57,6 +60,8 @@ def _pull(joint: BoltedJoint, state: State | None, error: float) -> "Table":
     return pull_table(BoltedJointSpring.of(joint), state.preload, state.moment, error)
 
 
+_VARIABLES = KIND.variables
+_PULL = Variable("pull", "N", "force that holds the joint together")
 EXPORTS = Exports(
     state=State,
     springs=_springs,
@@ -64,7 +69,11 @@ EXPORTS = Exports(
     curve=LoadCurve(
         meaning="force that holds the joint together over its separation from the tightened state; "
         "without damping",
-        heads=(("s_rel_z", "m"), ("pull", "N"), ("K_zz", "N/m")),
+        columns=(
+            _VARIABLES["s_rel_z"],
+            Variable("pull", "N", "force that holds it together"),
+            _VARIABLES["K_zz"],
+        ),
         name="force",
         table=_pull,
     ),

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....export.tables import Table, thinned
+from ..law import pressures
 from ..spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
@@ -25,8 +26,9 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     """
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
-    alike, which = np.unique(start.round(18), return_inverse=True)  # 1e-18 m: round-off of symmetric nodes
-    weight = spring.joint.A_0 * np.bincount(which, spring.shape.share)
+    shape = spring.shape.merged(moment=moment != 0.0)
+    alike = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
+    weight = spring.joint.A_0 * shape.share
 
     def total(separation: Array) -> Array:
         blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))

@@ -8,7 +8,8 @@ from scipy.spatial import KDTree
 from ....export.mesh import Mesh
 from ....export.springs import Springs
 from ....footprint.shape import PressureShape
-from ..spring import BoltedJointSpring, pressures
+from ..law import pressures
+from ..spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
 

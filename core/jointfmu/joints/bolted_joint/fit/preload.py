@@ -24,11 +24,11 @@ from ....curve import approach_curve
 from ....fitting.least_squares import Array, Solution, Unknown, solve
 from ....fitting.outcome import Outcome, Picture, fitted, unknowns
 from ....footprint.bolts import BoltPattern, pressure_shape
-from ....footprint.shape import NodalField
+from ....footprint.shape import MergedShape, NodalField
 from ....interface import stiffness_curve
 from ....parameters import ParameterFile, default
 from ....units import Sizes, factor, sizes
-from ..spring import BoltedJoint, node_pressure, shear_ratio
+from ..law import BoltedJoint, pressures, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -49,22 +49,20 @@ STARTS: Mapping[str, tuple[float, ...]] = {
 
 def joint_stiffness(joint: BoltedJoint, preload: Array, direction: str = "normal") -> Array:
     """K_zz or K_xx (...) [N/m] of the tightened joint at preloads (...) [N]: exactly the exported ones."""
-    share, equal = _shape(joint.pattern)
-    p = np.asarray(node_pressure(joint, equal, 0.0, preload[..., None], 0.0))
+    shape = _shape(joint.pattern)
+    p = pressures(joint, shape, preload, 0.0)
     curve = approach_curve(joint)
     k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
     closing = p < curve.closed  # what the curve continues to zero pressure
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
-    normal = joint.A_0 * np.sum(share * k, axis=-1)
+    normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
     return np.asarray(normal if direction == "normal" else shear_ratio(joint) * normal)
 
 
 @cache
-def _shape(pattern: BoltPattern | NodalField) -> tuple[Array, Array]:
-    """Shares and pressures over mean (n) [1] of the pressure shape, nodes of equal pressure put together."""
-    shape = pressure_shape(pattern)
-    equal, node = np.unique(np.round(shape.equal, 12), return_inverse=True)
-    return np.asarray(np.bincount(node, weights=shape.share), dtype=np.float64), equal
+def _shape(pattern: BoltPattern | NodalField) -> MergedShape:
+    """The pressure shape, nodes of equal pressure without a moment put together."""
+    return pressure_shape(pattern).merged(moment=False)
 
 
 def fit(

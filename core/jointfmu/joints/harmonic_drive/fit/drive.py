@@ -7,7 +7,8 @@ import numpy as np
 
 from ....fitting.least_squares import Array
 from ....parameters import ParameterFile
-from ..spring import HarmonicDrive, torque_curve
+from ..law import HarmonicDrive
+from ..spring import torque_curve
 
 LEVEL = ("K_FTS0", "drive_scale")
 """The two stiffnesses of Eq. 46: scaled together they scale K_WTS."""

@@ -28,6 +28,7 @@ equation
   K_n = JointStiffness.Functions.stiffness(-s_rel[3], data.table);
   K_t = data.shear*K_n;
   eta_n = JointStiffness.Functions.linear(-s_rel[3], data.damping);
+  // repeats mindlin.viscous_equivalent and spring.motion of the package; tests hold both together
   C_n = eta_n*sqrt(mass*max(K_n, 0));
   C_t = data.eta_t*sqrt(mass*max(K_t, 0));
   f[1] = -K_t*s_rel[1] - C_t*v_rel[1];

@@ -28,28 +28,28 @@ def springs(form: str, file: ParameterFile, state: Any, mesh: Mesh | None, placi
 
     Raises ValueError if the joint has no springs, or they do not go with the pairs.
     """
-    found, where = required(file.joint, "springs")(file.values, state, mesh, placing)
+    field, where = required(file.joint, "springs")(file.values, state, mesh, placing)
     units = placing.units
-    sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in found.sums.items())
+    sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.sums.items())
     about = [
         f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
         f"parameters: {file.name} ({file.joint})",
         f"working point: {where}",
         f"units: {units.name}",
-        f"pairs: {len(found.nodes)}, left out because they are open: {found.opened}",
+        f"pairs: {len(field.nodes)}, left out because they are open: {field.opened}",
         f"sums over the pairs, SI: {sums}",
-        f"stiffness multiplied by {found.correction:.9g} to add up to the joint's",
+        f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placing.normal}",
     ]
     if form == "ansys":
-        text = ansys.springs_text(found, placing, [*about, "MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping"])
+        text = ansys.springs_text(field, placing, [*about, "MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping"])
     elif form == "csv":
-        text = columns.springs_csv(found, placing, about)
+        text = columns.springs_csv(field, placing, about)
     else:
         if form == "calculix":
             about.append("no dashpots: CalculiX has none along an axis between coincident nodes")
-        text = keywords.springs_text(found, placing, about, dashpots=form == "abaqus")
-    facts = {"pairs": len(found.nodes), "open": found.opened, "correction": found.correction, **found.sums}
+        text = keywords.springs_text(field, placing, about, dashpots=form == "abaqus")
+    facts = {"pairs": len(field.nodes), "open": field.opened, "correction": field.correction, **field.sums}
     return Written(text, facts)
 
 
@@ -90,7 +90,8 @@ def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float
     Raises ValueError if the joint has no such curve or its working point is missing.
     """
     load: LoadCurve = required(file.joint, "curve")
-    table, heads = load.table(file.values, state, error), load.heads
+    table = load.table(file.values, state, error)
+    heads = [(v.name, v.unit) for v in load.columns]
     about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
     if state is not None:
         about.append(f"working point: {state}")

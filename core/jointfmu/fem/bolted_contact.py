@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fields.contact import ContactField
-from .contact import ContactModel, ContactSolution, Interface, Law
+from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body
 from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
@@ -45,7 +45,7 @@ class BoltedContact:
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
-    def solve(self, law: Law, preload: float, moment: float = 0.0) -> "JointSolution":
+    def solve(self, law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
@@ -99,11 +99,11 @@ class JointSolution:
 
 def midway(bolts: Array) -> Array:
     """Middles (k, 2) [m] of neighbouring bolts: no third one lies in the circle on their connection."""
-    found = []
+    middles = []
     for i in range(len(bolts)):
         for j in range(i):
             middle = 0.5 * (bolts[i] + bolts[j])
             apart = np.hypot(*(bolts - middle).T)
             if np.sum(apart < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
-                found.append(middle)
-    return np.array(found).reshape(-1, 2)
+                middles.append(middle)
+    return np.array(middles).reshape(-1, 2)

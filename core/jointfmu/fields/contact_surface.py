@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..refusal import Refusal
 from .areas import CORNERS, nodal_areas
 from .contact import ContactField
-from .result import Array, NodalResult, Nodes
+from .nodal_result import Array, NodalResult, Nodes
 
 AXES = "xyz"
 FLAT = 1e-3
@@ -50,7 +51,7 @@ class Plane:
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class ContactSurface:
     """Nodes of the contact: places in the result, area (n) [m2], place (n, 2) [m], pressure (n) [Pa]."""
 
     result: NodalResult
@@ -68,7 +69,7 @@ class Surface:
         return ContactField(self.area[kept], self.place[kept], self.pressure[kept])
 
 
-def surface(result: NodalResult, plane: Plane) -> Surface:
+def contact_surface(result: NodalResult, plane: Plane) -> ContactSurface:
     """The contact of a result.
 
     Raises ValueError naming the node: no pressure at all, a node off the plane, two at one place, a
@@ -84,28 +85,28 @@ def surface(result: NodalResult, plane: Plane) -> Surface:
     pressure = result.pressure[index]
     if result.left_out:
         pressure = np.nan_to_num(pressure, nan=0.0)
-    found = Surface(result, index, area[index], inside[index], pressure)
-    _check(found)
-    return found
+    contact = ContactSurface(result, index, area[index], inside[index], pressure)
+    _check(contact)
+    return contact
 
 
-def _check(found: Surface) -> None:
-    p = found.pressure
+def _check(contact: ContactSurface) -> None:
+    p = contact.pressure
     for bad, text in (
         (~np.isfinite(p), "pressure = {p:g} is no finite number"),
         (p < 0.0, "pressure = {p:g} Pa is outside [0, inf)"),
-        (~(found.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
+        (~(contact.area > 0.0), "area = {a:g} m2 is outside (0, inf)"),
     ):
         if np.any(bad):
             i = int(np.argmax(bad))
-            raise ValueError(f"{found.at(i)}: {text.format(p=p[i], a=found.area[i])}")
-    size = float(np.max(np.ptp(found.place, axis=0)))
-    twice = cKDTree(found.place).query_pairs(SAME * size)
+            raise ValueError(f"{contact.at(i)}: {text.format(p=p[i], a=contact.area[i])}")
+    size = float(np.max(np.ptp(contact.place, axis=0)))
+    twice = cKDTree(contact.place).query_pairs(SAME * size)
     if twice:
-        one, other = min(twice)
+        first, second = min(twice)
         raise ValueError(
-            f"{found.at(other)}: is at the same place as {found.result.word} "
-            f"{found.result.names[found.index[one]]}; expected each place once"
+            f"{contact.at(second)}: is at the same place as {contact.result.word} "
+            f"{contact.result.names[contact.index[first]]}; expected each place once"
         )
 
 
@@ -120,9 +121,10 @@ def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
     off = np.abs(height - level) > FLAT * size
     if np.any(off[touched]):
         i = int(touched[np.argmax(off[touched])])
-        raise ValueError(
+        raise Refusal(
             f"{result.at(i)}: lies {abs(height[i] - level):.3g} m off the plane {plane.normal} = "
-            f"{level:.6g} m; expected a plane contact and its normal in --normal"
+            f"{level:.6g} m; expected a plane contact and its normal",
+            "normal",
         )
     allowed = ~off & np.isin(_body(result), _bodies(result, touched, height - level, plane))
     faces = [block[np.all(allowed[block], axis=1)] for block in result.faces]
@@ -150,7 +152,7 @@ def _bodies(result: NodalResult, touched: Nodes, height: Array, plane: Plane) ->
     if plane.side is None:
         return there
     sign = 1.0 if plane.side == "above" else -1.0
-    chosen = [one for one in there if sign * float(np.mean(height[body == one])) > 0.0]
+    chosen = [number for number in there if sign * float(np.mean(height[body == number])) > 0.0]
     if not chosen:
         raise ValueError(f"{result.path}: no body {plane.side} the plane has a pressure")
     return chosen

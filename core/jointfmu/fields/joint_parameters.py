@@ -8,7 +8,7 @@ from ..footprint.shape import PressureShape
 from ..joints import KINDS
 from ..joints.clamped import Clamped, clamping
 from ..parameters import ORIGINS, ParameterFile
-from ..quantity import build, flatten
+from ..quantity import build
 from .contact import Array, ContactField
 from .reduction import Reduction, reduce
 
@@ -25,7 +25,7 @@ def with_field(
     field: ContactField,
     preload: float,
     source: str,
-    kind: str = "derived",
+    origin: str = "derived",
     tilted: ContactField | None = None,
     moment: float | None = None,
 ) -> tuple[ParameterFile, Reduction]:
@@ -37,7 +37,7 @@ def with_field(
               their meaning
     preload : [N] of each bolt, at which the field was computed
     source  : where the field comes from, for the file
-    kind    : of the values, one of parameters.ORIGINS
+    origin  : of the values, one of parameters.ORIGINS
     tilted  : the field at the same nodes under a bending moment too; without it the pressure grows in
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
@@ -47,8 +47,8 @@ def with_field(
     is far from the stated one.
     """
     pressures = clamping(file.joint).pressures
-    if kind not in ORIGINS:
-        raise ValueError(f"kind = {kind!r} is not one of {', '.join(ORIGINS)}")
+    if origin not in ORIGINS:
+        raise ValueError(f"origin = {origin!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     points = reduction.shape
@@ -61,13 +61,13 @@ def with_field(
     }
     given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
     given["A_0"] = float(np.sum(field.area))
-    kept = {n: v for n, v in flatten(file.values).items() if not n.startswith(_REPLACED)}
+    kept = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(
         file,
         values=build(KINDS[file.joint].parameters, kept | given),
         origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
-        | dict.fromkeys(given, kind),
+        | dict.fromkeys(given, origin),
         sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
         | dict.fromkeys(given, text)
         | {"A_0": f"{source}, sum of the nodal areas", "field.tilt": f"{text}; {_rule(tilted, moment)}"},

@@ -12,10 +12,10 @@ from .sensitivity import Sensitivity
 _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6", plots.GREY, "#a65628")
 
 
-def draw(path: Path, bands: Bands, found: Sensitivity | None, load: str) -> None:
+def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -> None:
     """One column per output: bands, and total (line) and first-order (dashed) indices over the load."""
     names = list(bands.quantiles)
-    rows = 1 if found is None or bands.loads.size == 1 else 2
+    rows = 1 if sensitivity is None or bands.loads.size == 1 else 2
     with plots.drawing(path, (4.2 * len(names), 3.6 * rows)) as figure:
         grid = figure.subplots(rows, len(names), squeeze=False)
         for column, name in enumerate(names):
@@ -24,8 +24,8 @@ def draw(path: Path, bands: Bands, found: Sensitivity | None, load: str) -> None
                 _spread(grid[0, column], bands, name, label)
                 continue
             _bands(grid[0, column], bands, name, label, load)
-            if found is not None:
-                _indices(grid[1, column], found, name, load, legend=column == 0)
+            if sensitivity is not None:
+                _indices(grid[1, column], sensitivity, name, load, legend=column == 0)
 
 
 def _bands(axes: Any, bands: Bands, name: str, label: str, load: str) -> None:
@@ -48,14 +48,17 @@ def _spread(axes: Any, bands: Bands, name: str, label: str) -> None:
     axes.legend(fontsize=8)
 
 
-def _indices(axes: Any, found: Sensitivity, name: str, load: str, legend: bool) -> None:
-    one = found.outputs[name]
-    for i, parameter in enumerate(found.names):
+def _indices(axes: Any, sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+    indices = sensitivity.outputs[name]
+    for i, parameter in enumerate(sensitivity.names):
         colour = _COLOURS[i % len(_COLOURS)]
-        low, high = one.total[:, i] - one.total_half[:, i], one.total[:, i] + one.total_half[:, i]
-        axes.fill_between(found.loads, low, high, color=colour, alpha=0.2, linewidth=0)
-        axes.plot(found.loads, one.total[:, i], color=colour, label=parameter)
-        axes.plot(found.loads, one.first[:, i], color=colour, linestyle="--")
+        low, high = (
+            indices.total[:, i] - indices.total_half[:, i],
+            indices.total[:, i] + indices.total_half[:, i],
+        )
+        axes.fill_between(sensitivity.loads, low, high, color=colour, alpha=0.2, linewidth=0)
+        axes.plot(sensitivity.loads, indices.total[:, i], color=colour, label=parameter)
+        axes.plot(sensitivity.loads, indices.first[:, i], color=colour, linestyle="--")
     axes.set(xlabel=load, ylabel=f"Sobol' indices of {name}", xlim=(0.0, None), ylim=(0.0, 1.05))
     if legend:
         axes.plot([], [], color=plots.GREY, label="total")

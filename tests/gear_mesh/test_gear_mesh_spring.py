@@ -4,8 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from laws import RANDOM, decades
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -115,6 +116,29 @@ def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
     assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
     assert spring.curve.error <= MAX_ERROR
     assert np.all(np.diff(spring.curve.load) > 0.0)
+
+
+@settings(max_examples=25)
+@given(law=RANDOM["yu"], teeth=decades(1e-3, 1e6))
+def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
+    """Teeth by their stiffness over that of the flanks where their closing ends."""
+    try:
+        flanks = approach_curve(law)
+    except ValueError as error:
+        assert "plastic" in str(error)  # noqa: PT017
+        return
+    closed = int(np.searchsorted(flanks.displacement, 0.0))
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
+    assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
+    own = {"K_tooth": float(teeth * law.A_0 * k)}
+    spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+    assert spring.curve.error <= MAX_ERROR
+    x = spring.curve.displacement
+    places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
+    load, stiffness = spring.curve.derivatives(places, 1)
+    assert np.all(np.diff(load) > 0.0)
+    assert np.all(stiffness[1:] > 0.0)
+    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_ERROR))
 
 
 def test_hard_teeth_leave_the_contact_alone():

@@ -1,0 +1,1 @@
+"""Gear mesh, for the FMU builder."""

@@ -1,0 +1,15 @@
+/* Gear mesh: load over deflection of a tooth pair, whose rough flanks and bending teeth are in series. */
+#ifndef JOINTFMU_MESH_H
+#define JOINTFMU_MESH_H
+
+#include "approach.h"
+
+typedef struct {
+    Spots spots;
+    Approach approach;
+    Curve flanks;               /* pressure over approach; the pair's table is made of it */
+    double closing;             /* [m] deflection of a pair at which the closing of its contact ends */
+    double energy[CURVE_NODES]; /* [J] of a pair at each node of its table */
+} Kind;
+
+#endif

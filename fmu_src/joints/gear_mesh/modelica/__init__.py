@@ -1,0 +1,34 @@
+"""The mesh in the Modelica library: force and energy of a tooth pair over its deflection."""
+
+from collections.abc import Sequence
+
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring
+from jointfmu.parameters import ParameterFile
+
+from ....modelica.records import Component, Record, WorkingPoint, numbers
+from ....modelica.tables import curve_of, thinned
+from ....modelica.text import identifier, number
+
+
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+    spring = GearMeshSpring.of(file.values)
+    table = thinned(spring.curve)
+    energy = curve_of(table).energy(table.rows[:, 0])
+    values = numbers(_wheels(spring.joint) | {"closing": spring.closing})
+    nodes = "{\n      " + ",\n      ".join(map(number, energy.tolist())) + "}"
+    return [
+        Record(name=identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes})
+    ]
+
+
+def _wheels(mesh: GearMesh) -> dict[str, float]:
+    names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d")
+    return {name: getattr(mesh, name) for name in names}
+
+
+COMPONENT = Component(
+    name="GearMesh",
+    base="GearMesh",
+    records=_records,
+    texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"},
+)

@@ -1,0 +1,34 @@
+"""The gear mesh in C: its functions and the steps of its table."""
+
+import casadi as ca
+import numpy as np
+
+from jointfmu.joints.gear_mesh import spring
+from jointfmu.joints.model import Model
+
+from ...native.graph import Graph, add_closing, law_functions, symbols
+from ...native.part import APPROACH, Definitions, NativePart
+
+
+def _functions(g: Graph, model: Model) -> None:
+    mesh = g.joint
+    law_functions(g, mesh, ("normal",), lambda spots, u: [])
+    add_closing(g)
+    flanks = symbols("flanks", 4)
+    doc = "approach of the flanks, pressure, its two derivatives -> deflection, load, K, dK/ds of a pair"
+    g.add("in_series", doc, flanks, spring.in_series(mesh, *flanks))
+    motion = [ca.SX.sym(v.name) for v in model.inputs]
+    argument = np.abs(spring.deflection(mesh, motion))
+    g.add_with_seed("argument", "inputs -> argument of the curve", motion, [argument])
+    closing, load, stiffness, energy = symbols("pair", 4)
+    out = spring.torques(mesh, motion, load, stiffness, energy, closing)
+    doc = "deflection at which the closing ends, inputs, load, K and energy of a pair -> outputs"
+    x = [closing, *motion, load, stiffness, energy]
+    g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs], fixed=1)
+
+
+def _definitions(g: Graph, model: Model) -> Definitions:
+    return Definitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS})
+
+
+PART = NativePart(_functions, APPROACH, _definitions)

@@ -1,0 +1,164 @@
+within JointStiffness.Components;
+model GearMesh "Mesh of two gear wheels with rough flanks, bending teeth and backlash"
+  parameter JointStiffness.Data.GearMesh data = JointStiffness.Data.Gear_pair_of_Yu_2022_as_spur_wheels() "The wheels"
+    annotation (choicesAllMatching=true);
+  parameter Modelica.Units.SI.Length r_b1(min=Modelica.Constants.small) = data.r_b1 "base radius of wheel 1";
+  parameter Modelica.Units.SI.Length r_b2(min=Modelica.Constants.small) = data.r_b2 "base radius of wheel 2";
+  parameter Real teeth1(min=1) = data.teeth1 "number of teeth of wheel 1";
+  parameter Modelica.Units.SI.Length backlash(min=0) = data.backlash "backlash along the line of action";
+  parameter Real contact_ratio(min=1) = data.contact_ratio "mean number of tooth pairs in contact";
+  parameter Real engagement(min=Modelica.Constants.small, max=1) = data.engagement "time in which a pair takes up its load, over the shorter of the times with and without it";
+  parameter Modelica.Units.SI.TranslationalDampingConstant d(min=0) = data.d "damping along the line of action while the flanks touch";
+  Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Wheel 1"
+    annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
+  Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Wheel 2"
+    annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Modelica.Units.SI.Position along(nominal=1e-4) "Way of both base circles towards each other";
+  Modelica.Units.SI.Velocity v(nominal=0.1) "Its rate";
+  Modelica.Units.SI.Position s_rel(nominal=1e-5) "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside";
+  Real phase "Place in the mesh cycle";
+  Real pairs "tooth pairs in contact at the present phase, once flanks touch";
+  Modelica.Units.SI.Force f(nominal=1e3) "normal force of the mesh, positive on the driving flanks";
+  Modelica.Units.SI.TranslationalSpringConstant K(nominal=1e8) "stiffness df/ds_rel at the present phase of the mesh cycle";
+  Modelica.Units.SI.Energy E(nominal=1e-2) "elastic energy of the mesh";
+  Modelica.Units.SI.Power lossPower "Power dissipated by the damper";
+protected
+  parameter Modelica.Units.SI.Length pitch = 2*Modelica.Constants.pi*r_b1/teeth1 "Base pitch";
+  Modelica.Units.SI.Length size "Absolute value of the deflection";
+  Modelica.Units.SI.Energy pairEnergy "Energy of a tooth pair";
+  Real damping "Part of the damping that acts, 0 to 1";
+  Modelica.Units.SI.Force rolling "Force by the change of the number of pairs, per way of one base circle";
+
+  function energy "Energy of a tooth pair at a deflection"
+    extends Modelica.Icons.Function;
+    input Real x "Deflection, not negative";
+    input Real table[:, 5] "Deflection, force, stiffness, its derivative before and after the node";
+    input Real nodes[:] "Energy at each node";
+    output Real y "Energy";
+  protected
+    Integer i "Row at which the segment begins";
+    Real inside "Deflection, at most the end of the table";
+    Real h "Length of the segment";
+    Real t "Place in the segment, 0 to 1";
+    Real b "First coefficient";
+    Real c "Second coefficient";
+    Real p "What the cubic leaves of the force at the end";
+    Real q "Of the stiffness";
+    Real r "Of its derivative";
+  algorithm
+    inside := min(x, table[size(table, 1), 1]);
+    i := JointStiffness.Functions.segment(inside, table);
+    h := table[i + 1, 1] - table[i, 1];
+    t := (inside - table[i, 1])/h;
+    b := table[i, 3]*h;
+    c := 0.5*table[i, 5]*h^2;
+    p := table[i + 1, 2] - table[i, 2] - b - c;
+    q := table[i + 1, 3]*h - b - 2*c;
+    r := table[i + 1, 4]*h^2 - 2*c;
+    y := nodes[i] + h*t*(table[i, 2] + t*(b/2 + t*(c/3 + t*((10*p - 4*q + 0.5*r)/4
+      + t*((-15*p + 7*q - r)/5 + t*(6*p - 3*q + 0.5*r)/6)))))
+      + (x - inside)*0.5*(JointStiffness.Functions.load(inside, table) + JointStiffness.Functions.load(x, table));
+    annotation (derivative(noDerivative=table, noDerivative=nodes) = power, smoothOrder=3);
+  end energy;
+
+  function power "Time derivative of the energy of a tooth pair"
+    extends Modelica.Icons.Function;
+    input Real x "Deflection, not negative";
+    input Real table[:, 5] "Deflection, force, stiffness, its derivative before and after the node";
+    input Real nodes[:] "Energy at each node";
+    input Real x_t "Time derivative of the deflection";
+    output Real y_t "Time derivative of the energy";
+  algorithm
+    y_t := JointStiffness.Functions.load(x, table)*x_t;
+    annotation (smoothOrder=2);
+  end power;
+
+  function extraPair "How much of the pair that comes and goes is in contact: 0 to 1, even in the phase"
+    extends Modelica.Icons.Function;
+    input Real phase "Place in the mesh cycle";
+    input Real part "Part of the cycle with the pair";
+    input Real width "Part of the cycle in which it takes up its load";
+    output Real one "Of the pair";
+  protected
+    Real away "From the middle of the part with the pair, -0.5 to 0.5";
+  algorithm
+    away := phase - floor(phase + 0.5);
+    one := if width <= 0 then 0 else JointStiffness.Functions.smoothStep(0.5 + (0.5*part - abs(away))/width);
+    annotation (smoothOrder=2);
+  end extraPair;
+
+  function extraPairSlope "Derivative of extraPair with respect to the phase"
+    extends Modelica.Icons.Function;
+    input Real phase "Place in the mesh cycle";
+    input Real part "Part of the cycle with the pair";
+    input Real width "Part of the cycle in which it takes up its load";
+    output Real slope "Derivative";
+  protected
+    Real away "From the middle of the part with the pair, -0.5 to 0.5";
+    Real r "Place in the smooth step, 0 to 1";
+  algorithm
+    away := phase - floor(phase + 0.5);
+    r := if width <= 0 then 0 else min(max(0.5 + (0.5*part - abs(away))/width, 0), 1);
+    slope := if width <= 0 then 0 else (if away < 0 then 30 else -30)*(r*(1 - r))^2/width;
+    annotation (smoothOrder=1);
+  end extraPairSlope;
+
+  parameter Real least = floor(contact_ratio) "Pairs that are always in contact";
+  parameter Real part = contact_ratio - least "Part of the cycle with one pair more";
+  parameter Real width = engagement*min(part, 1 - part) "Part of the cycle in which it takes up its load";
+equation
+  along = r_b1*flange_a.phi + r_b2*flange_b.phi;
+  v = der(along);
+  s_rel = noEvent(if along > 0.5*backlash then along - 0.5*backlash elseif along < -0.5*backlash then along + 0.5*backlash else 0);
+  size = noEvent(if s_rel < 0 then -s_rel else s_rel);
+  phase = 0.5*(r_b1*flange_a.phi - r_b2*flange_b.phi)/pitch;
+  pairs = least + extraPair(phase, part, width);
+  pairEnergy = energy(size, data.table, data.energy);
+  damping = JointStiffness.Functions.smoothStep(size/data.closing);
+  f = pairs*noEvent(if s_rel < 0 then -1 else 1)*JointStiffness.Functions.load(size, data.table) + d*damping*v;
+  rolling = 0.5*extraPairSlope(phase, part, width)*pairEnergy/pitch;
+  K = pairs*JointStiffness.Functions.stiffness(size, data.table);
+  E = pairs*pairEnergy;
+  flange_a.tau = r_b1*(f + rolling);
+  flange_b.tau = r_b2*(f - rolling);
+  lossPower = d*damping*v^2;
+  annotation (
+    defaultComponentName="gearMesh",
+    Icon(graphics={
+      Rectangle(extent={{-100,8},{-46,-8}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.HorizontalCylinder),
+      Rectangle(extent={{46,8},{100,-8}}, lineColor={64,64,64}, fillColor={192,192,192}, fillPattern=FillPattern.HorizontalCylinder),
+      Polygon(points={{-70,-66},{-70,-34},{-40,-34},{-26,40},{-8,40},{6,-34},{70,-34},{70,-66},{-70,-66}}, lineColor={43,58,74}, fillColor={174,189,203}, fillPattern=FillPattern.Solid),
+      Polygon(points={{-70,66},{-70,44},{12,44},{16,-22},{36,-22},{54,44},{70,44},{70,66},{-70,66}}, lineColor={43,58,74}, fillColor={211,222,230}, fillPattern=FillPattern.Solid),
+      Line(points={{-34,-34},{-14,40},{6,40},{18,-34}}, color={209,67,43}, pattern=LinePattern.Dash, thickness=0.5),
+      Text(extent={{-150,115},{150,75}}, textColor={0,0,255}, textString="%name"),
+      Text(extent={{-150,-80},{150,-110}}, textString="r_b2/r_b1=%r_b2/%r_b1")}),
+    Documentation(info="<html>
+<p>The mesh of two gear wheels: rough tooth flanks in contact, teeth that bend, backlash, and tooth pairs that come and go while the wheels turn. Inertias are not inside: put one on each wheel. For the contact of two flanks alone take <code>GearContact</code>.</p>
+<h4>Flanges</h4>
+<p>Both angles are counted so that external wheels roll with <code>r_b1*flange_a.phi + r_b2*flange_b.phi = 0</code>; with both zero the teeth stand in the middle of the backlash. For internal wheels, or angles counted as in <code>Modelica.Mechanics.Rotational.Components.IdealGear</code>, put an <code>IdealGear</code> of ratio -1 on one flange. The housing is ground: it takes the difference of the torques. Inertias are not inside; put one on each wheel.</p>
+<h4>Law</h4>
+<p>x = r<sub>b1</sub> φ<sub>1</sub> + r<sub>b2</sub> φ<sub>2</sub>, &emsp; s<sub>rel</sub> = x − backlash/2 above backlash/2, x + backlash/2 below −backlash/2, 0 between</p>
+<p>ξ = (r<sub>b1</sub> φ<sub>1</sub> − r<sub>b2</sub> φ<sub>2</sub>) / (2 p<sub>b</sub>), &emsp; p<sub>b</sub> = 2π r<sub>b1</sub> / teeth1</p>
+<p>Flanks and teeth of a pair are in series; δ(F) is the law of the flanks:</p>
+<p>s = δ(F) + F / K<sub>tooth</sub>, &emsp; V(s) = ∫<sub>0</sub><sup>s</sup> F(s′) ds′</p>
+<p>δ(F) = ∫<sub>0</sub><sup>F</sup> dF′ / k(F′), &emsp; F = ∫ F(a) n da, &emsp; k = ∫ k(a) n da (Yu 2022, Eqs. 42-79, corrected)</p>
+<p>N(ξ) pairs have this deflection. Of the <code>contact_ratio</code> the whole part is always in contact, one pair more during the rest of every cycle; it comes and goes by a smooth step, the faster the smaller <code>engagement</code>. The torques are the gradient of one potential, so that no cycle creates or destroys energy:</p>
+<p>U = N(ξ) V(|s<sub>rel</sub>|), &emsp; τ<sub>1</sub> = −∂U/∂φ<sub>1</sub> − r<sub>b1</sub> f<sub>d</sub>, &emsp; τ<sub>2</sub> = −∂U/∂φ<sub>2</sub> − r<sub>b2</sub> f<sub>d</sub> (after Oh, Grosh, Barber 2005)</p>
+<p>f = N F(|s<sub>rel</sub>|) sign(s<sub>rel</sub>) + f<sub>d</sub>, &emsp; f<sub>d</sub> = d g(|s<sub>rel</sub>|) (r<sub>b1</sub> w<sub>1</sub> + r<sub>b2</sub> w<sub>2</sub>), &emsp; K = N dF/ds</p>
+<p>with g a smooth step from 0 at first touch to 1 where the closing of the contact ends. No force jumps when flanks meet, none acts inside the backlash.</p>
+<h4>Not in this table</h4>
+<p>The flanks and <code>K_tooth</code> are those of the record <code>data</code>, fixed; radii, backlash, contact ratio, engagement and damping can be changed. The table ends at 65.8 kN per pair; beyond, the last tangent continues without a warning.</p>
+<h4>How far to trust it</h4>
+<ul>
+<li><b>Not validated as a stiffness.</b> No stiffness of this mesh is published, and the paper prints no numbers of its curves. What is compared are the paper's claims on the flanks, with <code>GearContact</code>.</li>
+<li><b>Estimates.</b> <code>A_0</code>, <code>K_tooth</code>, <code>backlash</code>, <code>contact_ratio</code>, <code>engagement</code> and <code>d</code> are not published; the wheels are taken as spur wheels without profile shift. At usual loads <code>K_tooth</code> decides the stiffness, the flanks how the mesh comes into contact.</li>
+<li><b>One stiffness of the teeth.</b> That of a pair varies along the line of action by some ten per cent; here only the number of pairs does. All pairs share the load equally.</li>
+<li><b>One phase for both flanks.</b> When the load changes its side, the real cycle of the back flanks is shifted.</li>
+<li><b>Closing contact.</b> Below 21 kPa on the flanks (2 N per pair with the default parameters) the law has hardly a stiff spot; the curve is continued smoothly to zero and leaves the law.</li>
+<li><b>Range.</b> The table ends where the hardness presses on the whole nominal area of a pair, far above the strength of any tooth.</li>
+<li><b>Not inside:</b> friction of the flanks, lubrication, pitch and profile errors and so no static transmission error of an unloaded mesh, profile corrections, dynamics of the wheel bodies.</li>
+</ul>
+<p>G. Yu, H. Mao, L. Jiang, W. Liu, T. Valerii: <em>Fractal Contact Mechanics Model for the Rough Surface of a Beveloid Gear with Elliptical Asperities.</em> Applied Sciences 12, 4071, 2022. <a href=\"https://doi.org/10.3390/app12084071\">doi:10.3390/app12084071</a></p>
+<p>S. Oh, K. Grosh, J. R. Barber: <em>Energy Conserving Equations of Motion for Gear Systems.</em> Journal of Vibration and Acoustics 127, 208-212, 2005. <a href=\"https://doi.org/10.1115/1.1891815\">doi:10.1115/1.1891815</a></p>
+</html>"));
+end GearMesh;

@@ -1,0 +1,31 @@
+within JointStiffness.Interfaces;
+partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: motion in, torque out (Yu 2022)"
+  extends Modelica.Blocks.Icons.Block;
+  Modelica.Blocks.Interfaces.RealInput phi1(unit="rad") "angle of wheel 1; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"
+    annotation (Placement(transformation(extent={{-140,48},{-100,88}})));
+  Modelica.Blocks.Interfaces.RealInput w1(unit="rad/s") "speed of wheel 1"
+    annotation (Placement(transformation(extent={{-140,2},{-100,42}})));
+  Modelica.Blocks.Interfaces.RealInput phi2(unit="rad") "angle of wheel 2; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"
+    annotation (Placement(transformation(extent={{-140,-42},{-100,-2}})));
+  Modelica.Blocks.Interfaces.RealInput w2(unit="rad/s") "speed of wheel 2"
+    annotation (Placement(transformation(extent={{-140,-88},{-100,-48}})));
+  Modelica.Blocks.Interfaces.RealOutput tau1(unit="N.m") "torque of the mesh on wheel 1"
+    annotation (Placement(transformation(extent={{100,67},{120,87}})));
+  Modelica.Blocks.Interfaces.RealOutput tau2(unit="N.m") "torque of the mesh on wheel 2"
+    annotation (Placement(transformation(extent={{100,41},{120,61}})));
+  Modelica.Blocks.Interfaces.RealOutput s_rel(unit="m") "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside"
+    annotation (Placement(transformation(extent={{100,16},{120,36}})));
+  Modelica.Blocks.Interfaces.RealOutput f(unit="N") "normal force of the mesh, positive on the driving flanks"
+    annotation (Placement(transformation(extent={{100,-10},{120,10}})));
+  Modelica.Blocks.Interfaces.RealOutput K(unit="N/m") "stiffness df/ds_rel at the present phase of the mesh cycle"
+    annotation (Placement(transformation(extent={{100,-36},{120,-16}})));
+  Modelica.Blocks.Interfaces.RealOutput pairs(unit="1") "tooth pairs in contact at the present phase, once flanks touch"
+    annotation (Placement(transformation(extent={{100,-61},{120,-41}})));
+  Modelica.Blocks.Interfaces.RealOutput E(unit="J") "elastic energy of the mesh"
+    annotation (Placement(transformation(extent={{100,-87},{120,-67}})));
+  annotation (
+    Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),
+    Documentation(info="<html>
+<p>Inputs and outputs of the FMU GearMesh: Mesh of two gear wheels with rough flanks and backlash: motion in, torque out (Yu 2022).</p>
+</html>"));
+end GearMesh;
