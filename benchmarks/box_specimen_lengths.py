@@ -87,12 +87,18 @@ def frequencies(
 
 
 def identify(
-    start: Assembly, joint: BoltedJoint, preload: float, measured: Array, refinement: float = REFINEMENT
+    start: Assembly,
+    joint: BoltedJoint,
+    preload: float,
+    measured: Array,
+    refinement: float = REFINEMENT,
+    trials: int = 8,
 ) -> Identification:
     """Least squares over the lengths.
 
     preload  : [N] per bolt, without a moment
     measured : (6) [Hz] frequencies by mode
+    trials   : at most so many lengths are tried, besides those for the difference quotients
     """
     first = lengths_of(start)
 
@@ -101,6 +107,6 @@ def identify(
         found = frequencies(box, joint, [(preload, 0.0)], refinement=refinement, count=measured.size)
         return np.asarray(found[0] / measured - 1.0)
 
-    fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=8)
+    fit = least_squares(error, np.ones(first.size), diff_step=STEP, x_scale=RANGE, ftol=1e-3, max_nfev=trials)
     lengths = dict(zip(LENGTHS, (fit.x * first).tolist(), strict=True))
     return Identification(lengths, np.asarray(fit.fun), np.asarray(fit.jac) * fit.x)

@@ -15,6 +15,21 @@ from hypothesis import settings
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
 settings.load_profile("jointfmu")
 
+SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
+"""Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark as slow what uses a slow fixture; other tests of more than a second or two say it themselves.
+
+    Files with slow tests go first: the others fill up what the processes have left at the end.
+    """
+    for item in items:
+        if not SLOW_FIXTURES.isdisjoint(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.slow)
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
+
 
 def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""

@@ -18,7 +18,10 @@ SPEC = importlib.util.spec_from_file_location("calculix", ROOT / "benchmarks/cal
 calculix = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(calculix)
 
-pytestmark = pytest.mark.skipif(calculix.calculix() is None, reason="needs ccx (calculix-ccx)")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(calculix.calculix() is None, reason="needs ccx (calculix-ccx)"),
+]
 # seven digits are printed, and nine of each spring are written
 PRINTED = 1e-6
 

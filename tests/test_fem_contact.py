@@ -19,6 +19,8 @@ from jointfmu.fem.geometry import Assembly, Plate
 from jointfmu.fem.sparse import Cholesky
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 ROUND_OFF = 1e-9  # of a solution by factorisation: condition number (1e6 here) times 1e-16, and to spare
 STEEL = {"E": 2.1e11, "nu": 0.3, "density": 7850.0}
 PLATE = Plate(length=0.12, width=0.06, thickness=0.012, **STEEL)

@@ -16,6 +16,8 @@ from jointfmu.fem.contact import ContactModel
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.geometry import Assembly
 
+pytestmark = pytest.mark.slow
+
 CORNERS = [7, 4, 1, 5, 6, 2, 0, 3]  # of C3D20 among scikit-fem's
 EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 STIFFNESS = 3e11  # Pa/m

@@ -13,6 +13,8 @@ from jointfmu.fem.convergence import COLUMNS, MeshResult, changes, orders, refin
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, load
 
+pytestmark = pytest.mark.slow
+
 PLATES = """
 schema = 1
 assembly = "bolted"
@@ -62,7 +64,7 @@ def computed(plates) -> tuple[dict, Path]:
     pipe = folder.parent / "stdout.json"
     with pipe.open("w") as stream, pytest.MonkeyPatch.context() as patch:
         patch.setattr("sys.stdout", stream)
-        assert main([*COARSE, str(plates), *given, "--json"]) == 0
+        assert main([*COARSE, str(plates), "--refinement", "0.3", *given, "--json"]) == 0
     return json.loads(pipe.read_text()), folder
 
 

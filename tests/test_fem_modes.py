@@ -12,6 +12,8 @@ from jointfmu.fem.contact import Interface
 from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.modes import modes
 
+pytestmark = pytest.mark.slow
+
 
 @dataclass(frozen=True)
 class Block:

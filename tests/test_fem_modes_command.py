@@ -8,6 +8,8 @@ from test_fem_contact_command import BOLTS, PLATE, PLATES, entries
 
 from jointfmu.cli import main
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def plates(tmp_path_factory):

@@ -54,6 +54,7 @@ def test_a_line_has_its_textbook_covariance():
     np.testing.assert_allclose(found.covariance, expected, rtol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", trips.CASES)
 def test_round_trip(case, tmp_path):
     """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
@@ -84,6 +85,7 @@ def test_loop_is_taken_apart(loops):
     assert facts["noise"][0] == pytest.approx(0.03 * ARCMIN, rel=0.1)
 
 
+@pytest.mark.slow
 def test_torque_before_angle_before_unit(loops, tmp_path):
     """Units and column order are the heading's; other columns are passed over."""
     torque, arcmin = np.loadtxt(loops, delimiter=",", skiprows=1).T
@@ -114,6 +116,7 @@ def test_single_open_loop_has_no_drift():
     assert line.loop_area[0] == pytest.approx(2.0 / 3.0 * 1e-4 * 18.0, rel=0.01)
 
 
+@pytest.mark.slow
 def test_what_is_not_determined_is_said_by_name(loops):
     """drive_scale and pair_scale act only as a product."""
     found = torque_angle.fit(loops, free=[*torque_angle.FREE, "pair_scale"])
@@ -131,6 +134,7 @@ def test_what_is_not_determined_is_said_by_name(loops):
     assert product == pytest.approx(known["drive_scale"], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_small_range_leaves_the_end_open(tmp_path):
     """Up to 2 N m hardly anything of K_FTS0 is seen."""
     torque, angle = trips.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)

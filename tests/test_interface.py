@@ -228,6 +228,7 @@ def test_round_trip(kind, data):
     assert there["pressure"] == there["F"] / law.A_0
 
 
+@pytest.mark.slow
 @each_kind
 @given(data=st.data())
 def test_everything_grows_with_the_pressure(kind, data):
@@ -266,6 +267,7 @@ UNITS = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @each_kind
 @given(data=st.data(), stress=decades(1e-3, 1e3), length=decades(1e-3, 1e3), mass=decades(1e-3, 1e3))
 def test_dimensional_homogeneity(kind, data, stress, length, mass):

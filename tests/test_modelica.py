@@ -30,6 +30,8 @@ from jointfmu.parameters import default, dump
 from jointfmu.partners import ForceProfile, TorqueProfile
 from jointfmu.systems import system
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(__file__).parent.parent
 COMMITTED = REPOSITORY / "models/modelica"
 STAND_IN = Path(__file__).parent / "modelica"

@@ -24,6 +24,8 @@ from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 HOSTS = Path(__file__).parent / "native"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")

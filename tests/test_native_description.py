@@ -348,6 +348,7 @@ def outputs(name: str, inputs: dict[str, float], **parameters: float) -> dict[st
     return {k: float(v) for k, v in model.evaluate(model.spring(file.values), inputs).items()}
 
 
+@pytest.mark.slow
 def test_an_input_that_is_not_listed_has_no_influence(name: str) -> None:
     model = MODELS[name]
     for inputs, other in zip(samples(name, 3), samples(name, 4)[1:], strict=True):
@@ -358,6 +359,7 @@ def test_an_input_that_is_not_listed_has_no_influence(name: str) -> None:
                 assert v.name in knowns or after[output] == before[output], (output, v.name)
 
 
+@pytest.mark.slow
 def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> None:
     checked = 0
     kinds = structure(name, 2, "Output")
@@ -445,6 +447,7 @@ for model in MODELS.values():
 """
 
 
+@pytest.mark.slow
 def test_two_processes_write_the_same_bytes() -> None:
     def digests(seed: str) -> Sequence[str]:
         environment = {k: v for k, v in os.environ.items() if k != "SOURCE_DATE_EPOCH"}

@@ -22,6 +22,8 @@ from fmpy import read_model_description
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 
+pytestmark = pytest.mark.slow
+
 LIBM_TOLERANCE = 1e-12
 """Largest relative difference that another mathematical library may make [1]."""
 POINTS = 200

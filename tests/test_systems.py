@@ -44,6 +44,8 @@ from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorquePr
 from jointfmu.quantity import flatten
 from jointfmu.systems import names, system, systems
 
+pytestmark = pytest.mark.slow
+
 Array = NDArray[np.float64]
 Values = dict[str, float]
 

@@ -78,6 +78,7 @@ def test_instrument_files_keep_axes_and_units(folder, suffix):
         read(f"t.{suffix}", "um")
 
 
+@pytest.mark.slow
 def test_missing_points_and_spikes_are_repaired_and_counted(folder, area, capsys):
     z = area.z.copy()
     rng = np.random.default_rng(0)
@@ -254,6 +255,7 @@ def test_sub_command_may_be_named(folder, capsys):
     assert named == run(capsys, "surface", "--json", "line.csv").out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("suffix", ["png", "svg"])
 def test_plot(folder, capsys, suffix):
     run(capsys, "surface", "line.csv", "--plot", f"p.{suffix}")

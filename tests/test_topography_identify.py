@@ -20,6 +20,8 @@ from jointfmu.topography.results import Roughness
 from jointfmu.topography.spectrum import psd
 from jointfmu.topography.structure import structure
 
+pytestmark = pytest.mark.slow
+
 SIZE, GAMMA = 1e-3, 1.5
 
 

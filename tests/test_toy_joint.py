@@ -15,6 +15,8 @@ from jointfmu_fmu_src.modelica import library
 from jointfmu import cli, joints
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 C = 1e4
 
 

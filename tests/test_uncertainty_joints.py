@@ -17,6 +17,8 @@ from jointfmu.quantity import build, flat_fields, flatten
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.problem import pose
 
+pytestmark = pytest.mark.slow
+
 REDUCED = 1e-4
 """Relative error that the reduced evaluation states (docs/uncertainty.md)."""
 

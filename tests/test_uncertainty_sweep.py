@@ -18,6 +18,8 @@ from jointfmu.uncertainty.problem import pose
 from jointfmu.uncertainty.sweep import plan, sweep
 from jointfmu.uncertainty.worker import Drive
 
+pytestmark = pytest.mark.slow
+
 RAMP = ("--input", "tau", "--to", "5", "--step", "1")
 DRIVE = Drive("tau", 5.0, 1.0)
 GIVEN = {"surface.D": "2.45..2.6", "eccentricity": "normal(5e-6, 5e-6)"}

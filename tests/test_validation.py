@@ -237,6 +237,7 @@ def refitted(monkeypatch, fits):
     monkeypatch.setattr(calibration, "published", lambda kind: replace(published(kind), calibration=fits))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("joint", FITS)
 def test_calibration_reproduces_the_committed_values(joint, monkeypatch):
     """From other values in the file, from other starting values of the fit, with every validation
@@ -280,6 +281,7 @@ def test_a_joint_without_points_is_refused():
     assert "harmonic_drive, bolted_joint" in str(error.value)
 
 
+@pytest.mark.slow
 def test_a_fit_that_cannot_be_met_is_reported(monkeypatch):
     """A pressure between the bolts above the largest one."""
     paper = FITS["bolted_joint"][0]

@@ -17,6 +17,8 @@ pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
 import boundary_element
 import interface_laws
 
+pytestmark = pytest.mark.slow
+
 
 def test_hertz_is_met_and_better_on_a_finer_grid():
     coarse, fine = np.abs(boundary_element.hertz(32)), np.abs(boundary_element.hertz(128))

@@ -185,6 +185,7 @@ def test_mixed_derivative_is_not_lost(spring):
     assert z[0] > 0.01 * K_xx  # N/m: well above the differences' own error
 
 
+@pytest.mark.slow
 @settings(max_examples=8)
 @given(load=loads, corners=st.lists(states, min_size=2, max_size=3))
 def test_closed_cycles_return_their_energy(spring, load, corners):

@@ -12,7 +12,9 @@ from jointfmu.fem.geometry import Plate
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
-COARSE = 0.25
+pytestmark = pytest.mark.slow
+
+COARSE = 0.2
 """Refinement at which a frequency is still within some percent: enough for how it varies."""
 
 
@@ -54,15 +56,18 @@ def test_what_is_no_box_is_refused():
 
 
 def test_identification_finds_the_lengths_of_a_known_box():
-    # frequencies of a box that differs in what they determine best: length and overhang, one mesh for both
+    """Frequencies of a box that differs in what they determine best, length and overhang, are met again.
+
+    One step of the least squares must do it: the slopes of all five lengths decide its direction.
+    """
     lengths = box.lengths_of(box.shipped())
     known = lengths * np.array([1.03, 1.0, 1.0, 1.0, 0.97])
     target = ringing(known.tolist())
     start = ringing(lengths.tolist()) / target - 1.0
     joint = default("bolted_joint").values
-    found = box.identify(box.shipped(), joint, 9e3, target, COARSE)
+    found = box.identify(box.shipped(), joint, 9e3, target, COARSE, trials=2)
     assert np.max(np.abs(start)) > 0.03
-    # what is left is what a new mesh changes at random, some 0.2 % at this refinement
+    # from 6 %: the square of that by curvature, and what a new mesh changes at random, 0.2 % together
     assert np.max(np.abs(found.error)) < 0.005
     assert found.slope.shape == (6, 5)
     assert set(found.deviation) == set(box.LENGTHS)

@@ -23,6 +23,8 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
 
+pytestmark = pytest.mark.slow
+
 FILE = default("bolted_joint")
 JOINT = FILE.values
 PRELOAD = 9e3
@@ -257,6 +259,7 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
 
 def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
     path = tmp_path / "field.csv"
     path.write_text(csvfile.text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]

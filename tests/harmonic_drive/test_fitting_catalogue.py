@@ -13,6 +13,8 @@ from jointfmu.joints.harmonic_drive.fit import catalogue
 from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import load
 
+pytestmark = pytest.mark.slow
+
 SIZE_14 = {"K1": 4700.0, "K2": 6100.0, "K3": 7100.0, "T1": 2.0, "T2": 6.9}
 SHIPPED = Path(str(files("jointfmu_models") / "catalogue" / "size_14_ratio_80.toml"))
 

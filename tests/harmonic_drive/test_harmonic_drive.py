@@ -146,6 +146,7 @@ def test_windup_is_the_integral_of_dT_over_K(it, springs):
         assert stiffness == pytest.approx(float(drive_stiffness(it, high)[0]), rel=MAX_ERROR)
 
 
+@pytest.mark.slow
 @each_drive
 def test_table_follows_the_law_between_its_nodes(it, springs):
     curve = next(spring.curve for spring in springs.values() if spring.joint is it)
