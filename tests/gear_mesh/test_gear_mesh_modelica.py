@@ -9,6 +9,8 @@ from test_modelica import EXACT, move, simulate, top
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, base_pitch
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 SPRING = GearMeshSpring.of(default("gear_mesh").values)
 MESH = SPRING.joint
 
