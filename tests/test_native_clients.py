@@ -1,5 +1,6 @@
 """Native FMUs in clients that are not fmpy: CasADi's import, ecos and libcosim, in processes of their own."""
 
+import itertools
 import json
 from importlib.util import find_spec
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Fmu, run_host, unpack
-from joint_cases import NAMES, TUNED, law, parameters, random_inputs
+from joint_cases import CASES, NAMES, STATE, TUNED, law, parameters, random_inputs
 from natives import VERSIONS, allowed, close, differences, jacobian
 
 from jointfmu.joints import MODELS
@@ -92,8 +93,11 @@ def test_casadi_evaluates_and_differentiates_it(
     instance = Fmu(path, exchange=True).start(changes)
     for state, row in zip(states, found["rows"], strict=True):
         values, J = instance.at(state), np.array(row["jacobian"])
-        exact = jacobian(instance)
-        assert row["jacobian"] == [close([exact[o, i] for i in inputs], ROUND_OFF) for o in outputs]
+        exact, sizes = jacobian(instance), STATE[name] | CASES[name].sizes
+        for (o, i), slope in zip(itertools.product(outputs, inputs), J.ravel(), strict=True):
+            # CasADi scales its seeds; terms that cancel in a slope are as large as the output over the input
+            scale = max(abs(exact[o, i]), abs(values[o] / sizes[i]))
+            assert abs(slope - exact[o, i]) <= ROUND_OFF * scale, (o, i)
         terms = np.array(seed)[:, None] * J
         assert np.all(np.abs(row["adjoint"] - terms.sum(axis=0)) <= ROUND_OFF * np.abs(terms).sum(axis=0))
         if not any(state.values()):

@@ -196,17 +196,15 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -
         if state is not None:
             y = ca.vertcat(*map(ca.SX, state(regime, u)))
             slope = ca.jacobian(y, u)
-            doc = "log-area -> state, its slopes, theirs, slope of du/d approach"
-            rows = [y, slope, ca.jacobian(slope, u), _rate_slope(regime, u)]
+            doc = "log-area -> state, its slopes, theirs, slope of the load's slope less m times it"
+            rows = [y, slope, ca.jacobian(slope, u), _bend_of_load(regime, u)]
             g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
-def _rate_slope(spots: Spots, u: Any) -> Any:
-    """Slope of du/d approach = K/F' in u, without a derivative of the sums."""
+def _bend_of_load(spots: Spots, u: Any) -> Any:
+    """F'' - m F': of the largest spot alone, without a sum over the others."""
     largest = sum(term.spot(u) for term in spots.terms["load"])
-    rise = spots.slope("load", u)
-    bend = spots.m * (rise + spots.weight * ca.jacobian(largest, u))
-    return (spots.slope("normal", u) - spots.total("normal", u) * bend / rise) / rise
+    return spots.m * spots.weight * ca.jacobian(largest, u)
 
 
 def add_closing(g: Graph) -> None:

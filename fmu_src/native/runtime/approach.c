@@ -7,7 +7,7 @@
 _Static_assert(N_LAW_TABLE == 4, "load and normal stiffness with slopes");
 _Static_assert(CLOSING_STEPS % 2 == 0, "the error of a curve is measured on pairs of segments");
 
-enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, slope of du/dx */
+enum { STATE_ROWS = 3 * N_LAW_STATE + 1 }; /* state, its slopes, theirs, F'' - m F' */
 
 /* A node of the table: the curve and the state beside. */
 typedef struct {
@@ -46,13 +46,15 @@ static Point point_at(const Spots *spots, const double *c, double u, double left
     const double k = y[2] / spots->area, rate = side[2] / side[1]; /* du/dx */
     Point point = {.curve = {.x = x, .y = y[0] / spots->area, .s = k, .bend = k * side[3] / side[1]}};
     law_state[spots_regime(spots, inside)](&inside, c, law);
+    const double steepening = spots->m * side[1] + law[STATE_ROWS - 1];       /* F'' */
+    const double turn = (side[3] - side[2] * steepening / side[1]) / side[1]; /* slope of `rate` in u */
     for (int q = 0; q < N_LAW_STATE; q++) {
         const double slope = law[N_LAW_STATE + q], bend = law[2 * N_LAW_STATE + q];
         point.state[q] = (Node){
             .x = x,
             .y = law[q] + (u - inside) * slope,
             .s = slope * rate,
-            .bend = (bend * rate + slope * law[STATE_ROWS - 1]) * rate,
+            .bend = (bend * rate + slope * turn) * rate,
         };
     }
     return point;
