@@ -46,20 +46,20 @@ def _members(model: Model, parameters: ParameterFile, version: str) -> dict[str,
     both = sources(model.name, parameters)
     units = exported(list(both), version)
     own = {path: text for path, text in both.items() if path in units or path.endswith(".h")}
-    found = libraries(model.name, both, units)
+    built = libraries(model.name, both, units)
     icons = terminals_and_icons(model)
     if version == "2":
         top = {
             "modelDescription.xml": fmi2_xml(model, parameters, token(both), units),
             "model.png": icons["icon.png"],
         }
-        binaries = _fmi2_binaries(model.name, found)
+        binaries = _fmi2_binaries(model.name, built)
     else:
         top = {
             "modelDescription.xml": fmi3_xml(model, parameters, token(both)),
             "sources/buildDescription.xml": build_description(model, units),
         }
-        binaries = {f"{p}/{file_name(model.name, p)}": content for p, content in found.items()}
+        binaries = {f"{p}/{file_name(model.name, p)}": content for p, content in built.items()}
     return (
         top
         | _below("binaries", binaries)
@@ -69,13 +69,13 @@ def _members(model: Model, parameters: ParameterFile, version: str) -> dict[str,
     )
 
 
-def _fmi2_binaries(name: str, found: Mapping[str, bytes]) -> dict[str, bytes]:
+def _fmi2_binaries(name: str, built: Mapping[str, bytes]) -> dict[str, bytes]:
     """{path: content} of the binaries with FMI 2.0's names; one file serves every macOS."""
     return {
-        f"win64/{name}.dll": found["x86_64-windows"],
-        f"linux64/{name}.so": found["x86_64-linux"],
-        f"aarch64-linux/{name}.so": found["aarch64-linux"],
-        f"darwin64/{name}.dylib": universal([found["x86_64-darwin"], found["aarch64-darwin"]]),
+        f"win64/{name}.dll": built["x86_64-windows"],
+        f"linux64/{name}.so": built["x86_64-linux"],
+        f"aarch64-linux/{name}.so": built["aarch64-linux"],
+        f"darwin64/{name}.dylib": universal([built["x86_64-darwin"], built["aarch64-darwin"]]),
     }
 
 

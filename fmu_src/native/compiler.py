@@ -65,11 +65,11 @@ def universal(slices: Sequence[bytes]) -> bytes:
     """One macOS file of libraries for several processors; each keeps its signature."""
     page = 1 << 14
     header, body = struct.pack(">II", 0xCAFEBABE, len(slices)), b""
-    for one in slices:
+    for library in slices:
         body += bytes(-len(body) % page)
-        kind, subtype = struct.unpack_from("<II", one, 4)
-        header += struct.pack(">IIIII", kind, subtype, page + len(body), len(one), 14)
-        body += one
+        kind, subtype = struct.unpack_from("<II", library, 4)
+        header += struct.pack(">IIIII", kind, subtype, page + len(body), len(library), 14)
+        body += library
     return header.ljust(page, b"\0") + body
 
 

@@ -109,11 +109,11 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
     for reference, v in enumerate(variables):
         SubElement(nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference) | _value(v))
     structure = SubElement(root, "ModelStructure")
-    found = unknowns(model, "tunable")
+    outputs = unknowns(model, "tunable")
     for tag, rows in (
-        ("Output", [(u, u.knowns) for u in found]),
-        ("ContinuousStateDerivative", [(u, u.knowns) for u in found if u.rate]),
-        ("InitialUnknown", [(u, u.initial) for u in found if not u.state]),
+        ("Output", [(u, u.knowns) for u in outputs]),
+        ("ContinuousStateDerivative", [(u, u.knowns) for u in outputs if u.rate]),
+        ("InitialUnknown", [(u, u.initial) for u in outputs if not u.state]),
     ):
         for unknown, knowns in rows:
             SubElement(structure, tag, {"valueReference": str(unknown.reference)} | dependencies(knowns))

@@ -52,8 +52,8 @@ def native_part(model: Model) -> NativePart:
     module = part(model, "native")
     if module is None:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
-    found: NativePart = module.PART
-    return found
+    native: NativePart = module.PART
+    return native
 
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:

@@ -89,14 +89,14 @@ def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph",
     try:
         theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
         joint = build(model.parameters, {**parameters.flat, **theta})
-        found = Graph(theta, joint, limits(joint))
-        functions(found, model)
-        if found.has_law:
-            _bounds(found, model)
-        found.settle()
+        made = Graph(theta, joint, limits(joint))
+        functions(made, model)
+        if made.has_law:
+            _bounds(made, model)
+        made.settle()
     finally:
         ca.GlobalOptions.setNumpyMode(before)
-    return found
+    return made
 
 
 def symbols(name: str, count: int) -> list[ca.SX]:

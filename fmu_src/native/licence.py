@@ -9,8 +9,8 @@ def licence() -> str:
     Raises ValueError if it is missing.
     """
     try:
-        found = [f for f in files("jointfmu") or () if f.name == "LICENSE"]
-        return found[0].read_text(encoding="utf-8")
+        texts = [f for f in files("jointfmu") or () if f.name == "LICENSE"]
+        return texts[0].read_text(encoding="utf-8")
     except (PackageNotFoundError, IndexError, OSError):
         raise ValueError("LICENSE: missing in the installed package jointfmu; install it again") from None
 

@@ -111,7 +111,7 @@ def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tupl
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
     wrong = problem(name, np.nan, item) or ""
-    found = [
+    messages = [
         ("error", wrong, "A parameter is outside its interval, not a number or infinite."),
         (
             "error",
@@ -129,7 +129,7 @@ def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tupl
             "A call of an FMI function in the wrong state or with wrong arguments.",
         ),
     ]
-    return found + [
+    return messages + [
         ("warning", text, "Logged once until reset; the call succeeds.")
         for text in _warnings(model, spring, rest)
     ]
@@ -139,12 +139,12 @@ def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]
     """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
     inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | _evaluated(model, spring, inputs)
-    found = []
+    warnings = []
     for i, outside in enumerate(model.outside):
         low, high = outside.interval(spring.joint, spring.curve.end, values)
         beyond = 1.1 * high if np.isfinite(high) else low - 0.1 * model.ramp.end
-        found.append(model.warnings(spring, values | {outside.variable: float(beyond)})[i])
-    return found
+        warnings.append(model.warnings(spring, values | {outside.variable: float(beyond)})[i])
+    return warnings
 
 
 def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[str, float]:
@@ -154,8 +154,8 @@ def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[s
 def _panels(model: Model) -> tuple[Panel, ...]:
     """What the plot shows; of a joint that does not say it, the first output over the driven input."""
     own = part(model, "page")
-    found = own.PANELS.get(model.name) if own else None
-    return found or (Panel(model.ramp.input, (model.outputs[0].name,)),)
+    panels = own.PANELS.get(model.name) if own else None
+    return panels or (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
 
 def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:

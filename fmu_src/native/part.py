@@ -94,9 +94,9 @@ class NativePart:
 def _equations(g: Graph, model: Model) -> None:
     names = ("time", *(v.name for v in model.inputs), *(v.name for v in model.outputs[: model.states]))
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
-    found = model.evaluate(g.joint, v)
+    outputs = model.evaluate(g.joint, v)
     doc = "time, inputs, states -> outputs"
-    g.add_with_seed("outputs", doc, list(v.values()), [found[o.name] for o in model.outputs])
+    g.add_with_seed("outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs])
 
 
 EQUATIONS = NativePart(_equations, ("equations",))

@@ -108,7 +108,7 @@ def two_lobes(
     radius      : [m]  mean radius; deformation: [m] radial deformation w
     length, cup : [m]  axial length of the contact and of the cup that tapers the deformation
     """
-    found = list(
+    pieces = list(
         lobe_pieces(
             peak, breaks, mismatch=mismatch, radius=radius, deformation=deformation, length=length, cup=cup
         )
@@ -116,7 +116,7 @@ def two_lobes(
 
     def flat(*parts: Callable[[Piece], Array]) -> Array:
         """Numbers of all nodes (..., n), or vectors of them (..., n, parts)."""
-        rows = [np.concatenate([part(piece) for piece in found], axis=-1) for part in parts]
+        rows = [np.concatenate([part(piece) for piece in pieces], axis=-1) for part in parts]
         shape = (*np.shape(peak), -1)
         return np.stack([row.reshape(shape) for row in rows], axis=-1)
 

@@ -47,5 +47,5 @@ def reduced(kind: Kind) -> Reduced:
     part = kind.part("reduced")
     if part is None:
         raise ValueError(f"joint = {kind.name!r} has no evaluation for many samples at once")
-    found: Reduced = part.REDUCED
-    return found
+    curves: Reduced = part.REDUCED
+    return curves

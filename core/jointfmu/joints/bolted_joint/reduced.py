@@ -94,9 +94,9 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
         return _evaluate(values, loads, factor)
     parts = []
     for i in range(factor.size):
-        one = {k: v[i : i + 1] if isinstance(v, np.ndarray) else v for k, v in values.items()}
-        one |= {name: float(values[name][i]) for name in names}
-        parts.append(_evaluate(one, loads, factor[i : i + 1]))
+        sample = {k: v[i : i + 1] if isinstance(v, np.ndarray) else v for k, v in values.items()}
+        sample |= {name: float(values[name][i]) for name in names}
+        parts.append(_evaluate(sample, loads, factor[i : i + 1]))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -143,19 +143,19 @@ def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[st
     eta_t = mindlin.loss_factor(joint.traction_ratio)
     tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
     approach = 3.0 * compliance[:, :1] + compliance @ integral
-    found = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
+    curves = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
     if np.all(touching):
-        return found
+        return curves
     zero = np.zeros((factor.size, int(np.sum(~touching))))
-    return {name: np.concatenate([zero, value], axis=1) for name, value in found.items()}
+    return {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
 
 
 def exact(joint: BoltedJoint, loads: Array) -> dict[str, Array]:
     """Stiffness, damping and approach (m) of the exported spring at preloads (m) [N]."""
     spring, rest = BoltedJointSpring.of(joint), (0.0, 0.0, 0.0)
     states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
-    found = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
-    return found | {"approach": approach(spring, loads)}
+    curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
+    return curves | {"approach": approach(spring, loads)}
 
 
 def approach(spring: BoltedJointSpring, loads: Array) -> Array:

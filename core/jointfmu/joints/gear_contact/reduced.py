@@ -24,16 +24,16 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
     scale = factor / contact.A_0
     touching = loads > 0.0
     rows, _ = tabulate(contact, scale * np.min(loads[touching]), scale * loads[-1])
-    found = held(rows, np.log(loads[touching]), np.log(scale), np.log(contact.hardness))
+    logs = held(rows, np.log(loads[touching]), np.log(scale), np.log(contact.hardness))
     K, s = np.zeros((2, factor.size, loads.size))
-    K[:, touching], s[:, touching] = contact.A_0 * np.exp(found["k"]), np.exp(found["s"])
+    K[:, touching], s[:, touching] = contact.A_0 * np.exp(logs["k"]), np.exp(logs["s"])
     return {"K_N": K, "s_rel": s}
 
 
 def exact(joint: GearContact, loads: Array) -> dict[str, Array]:
     """K_N and s_rel (m) of the exported spring at forces (m) [N]; no stiffness without force."""
-    found = GearContactSpring.of(joint).approach(loads)
-    return {name: np.where(loads > 0.0, found[name], 0.0) for name in REDUCED.units}
+    state = GearContactSpring.of(joint).approach(loads)
+    return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}
 
 
 REDUCED = Reduced(

@@ -25,5 +25,5 @@ def pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Num
     changing = width > 0.0
     length = np.where(changing, width, 1.0)
     away = phase - np.floor(phase + 0.5)
-    one, slope = rise(0.5 + (0.5 * part - np.abs(away)) / length)
-    return least + np.where(changing, one, 0.0), np.where(changing, -np.sign(away) * slope / length, 0.0)
+    share, slope = rise(0.5 + (0.5 * part - np.abs(away)) / length)
+    return least + np.where(changing, share, 0.0), np.where(changing, -np.sign(away) * slope / length, 0.0)

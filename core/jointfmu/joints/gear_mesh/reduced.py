@@ -64,8 +64,8 @@ def table_end(mesh: GearMesh) -> Any:
 
 def exact(joint: GearMesh, loads: Array) -> dict[str, Array]:
     """K and f (m) of the exported spring at angles (m) [rad]."""
-    found = GearMeshSpring.of(joint).motion(loads, 0.0, held(joint), 0.0)
-    return {name: found[name] for name in REDUCED.units}
+    state = GearMeshSpring.of(joint).motion(loads, 0.0, held(joint), 0.0)
+    return {name: state[name] for name in REDUCED.units}
 
 
 REDUCED = Reduced(

@@ -95,14 +95,14 @@ class HarmonicDrive:
     @property
     def law(self) -> Hu2023:
         """Interface law of the pair; `side1` is the body with the lower yield strength."""
-        one, other = self.flexspline, self.bearing
-        swap = other.sigma_y < one.sigma_y
-        E, nu = where(swap, other.E, one.E), where(swap, other.nu, one.nu)
+        cup, ring = self.flexspline, self.bearing
+        swap = ring.sigma_y < cup.sigma_y
+        E, nu = where(swap, ring.E, cup.E), where(swap, ring.nu, cup.nu)
         return Hu2023(
             surface=self.surface,
             side1=Elastic(E=E, nu=nu),
-            side2=Elastic(E=where(swap, one.E, other.E), nu=where(swap, one.nu, other.nu)),
-            sigma_y=np.minimum(one.sigma_y, other.sigma_y),
+            side2=Elastic(E=where(swap, cup.E, ring.E), nu=where(swap, cup.nu, ring.nu)),
+            sigma_y=np.minimum(cup.sigma_y, ring.sigma_y),
             mu=self.mu,
             traction_ratio=self.traction_ratio,
             shear_traction=self.shear_traction,

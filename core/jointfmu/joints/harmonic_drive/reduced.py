@@ -92,8 +92,8 @@ def _between(deep: HarmonicDrive, peak: Array) -> Array:
 
 def exact(joint: HarmonicDrive, loads: Array) -> dict[str, Array]:
     """K_WTS and phi_rel (m) of the exported spring at torques (m) [N.m]."""
-    found = HarmonicDriveSpring.of(joint).windup(loads)
-    return {name: found[name] for name in REDUCED.units}
+    state = HarmonicDriveSpring.of(joint).windup(loads)
+    return {name: state[name] for name in REDUCED.units}
 
 
 REDUCED = Reduced(

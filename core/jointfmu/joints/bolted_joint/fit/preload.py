@@ -99,11 +99,11 @@ def fit(
     def miss(values: Mapping[str, float]) -> Array:
         return np.log(predict(values) / curve.value)
 
-    found = solve(_best_start(file, names, curve, miss), miss)
-    own = {name: value for name, value in found.values.items() if name != SERIES}
+    solution = solve(_best_start(file, names, curve, miss), miss)
+    own = {name: value for name, value in solution.values.items() if name != SERIES}
     span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.of}"
     result = fitted(file, own, "calibration", Path(path).name, span)
-    stiffness = found.values.get(SERIES, series)
+    stiffness = solution.values.get(SERIES, series)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
     unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
@@ -111,11 +111,11 @@ def fit(
     picture = Picture(
         x=curve.preload / kN,
         y=curve.value * size,
-        misfit=100.0 * np.expm1(-found.residuals),
+        misfit=100.0 * np.expm1(-solution.residuals),
         line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
-    return Outcome(result, found, _facts(curve, found), picture, notes=_notes(names, mass))
+    return Outcome(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,13 +204,13 @@ def _best_start(
     return best
 
 
-def _facts(curve: Measured, found: Solution) -> dict[str, tuple[float, str, str]]:
+def _facts(curve: Measured, solution: Solution) -> dict[str, tuple[float, str, str]]:
     power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),
         "power": (power, "1", f"of the preload with which the {curve.of} grows"),
-        "noise": (found.noise, "1", "relative standard deviation of a point about the fitted law"),
-        "largest_misfit": (float(np.max(np.abs(found.residuals))), "1", "relative"),
+        "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
+        "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
     }
 
 

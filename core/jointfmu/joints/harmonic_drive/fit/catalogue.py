@@ -100,8 +100,8 @@ def fit(
     torque, most = _torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
     file = drive.scaled(file, choices[0], torque, row.angle(torque))
-    found, tight = _solved(row, file, choices, torque)
-    result = fitted(file, found.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
+    solution, tight = _solved(row, file, choices, torque)
+    result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
     result = replace(result, name=f"fitted to {source}")
     miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
     facts = {
@@ -122,7 +122,7 @@ def fit(
         f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
-    return Outcome(result, found, facts, _picture(row, result, torque), notes=[note])
+    return Outcome(result, solution, facts, _picture(row, result, torque), notes=[note])
 
 
 def _torques(row: Row, most: float) -> Array:
@@ -145,18 +145,18 @@ def _solved(
     best = np.inf
     for free, tight in product(choices, TIGHT):
         spread = np.where(kept, tight, LOOSE)
-        found = solve(
+        solution = solve(
             unknowns(file, free, limits),
             lambda values, spread=spread: (angles(values) / target - 1.0) / spread,  # type: ignore[misc]
             noise=1.0,
             tolerance=1e-5,
         )
-        worst = float(np.max(np.abs(found.residuals * spread)[kept]))
+        worst = float(np.max(np.abs(solution.residuals * spread)[kept]))
         if worst <= AIMED:
-            return found, tight
+            return solution, tight
         best = min(best, worst)
         file = file.with_values(
-            {n: v for n, v in found.values.items() if n not in found.at_bound}, "catalogue", "start"
+            {n: v for n, v in solution.values.items() if n not in solution.at_bound}, "catalogue", "start"
         )
     raise RuntimeError(
         f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "

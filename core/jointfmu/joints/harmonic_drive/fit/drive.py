@@ -42,8 +42,8 @@ def resized(start: ParameterFile, rated: float, factor: float, kind: str, source
 def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array) -> ParameterFile:
     """The start with its stiffness brought to that of a curve, by those of LEVEL that are to be fitted."""
     ratio = float(np.sum(windup(start.values, torque) * angle) / np.sum(angle**2))
-    found = {name: getattr(start.values, name) * ratio for name in LEVEL if name in names}
-    return start.with_values(found, "calibration", "start") if len(found) == len(LEVEL) else start
+    level = {name: getattr(start.values, name) * ratio for name in LEVEL if name in names}
+    return start.with_values(level, "calibration", "start") if len(level) == len(LEVEL) else start
 
 
 def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:

@@ -66,18 +66,18 @@ def fit(
         return np.asarray(weight * (line.angle - predicted - offset(predicted)) / size)
 
     angles = model(file, lambda joint: drive.windup(joint, line.torque))
-    found = solve(
+    solution = solve(
         unknowns(file, names, drive.bounds(file)),
         lambda values: miss(angles(values)),
         nuisances=1,
     )
     ends = line.torque[0], line.torque[-1]
     result = fitted(
-        file, found.values, "calibration", table.path.name, f"torque {ends[0]:.4g} to {ends[1]:.4g} N.m"
+        file, solution.values, "calibration", table.path.name, f"torque {ends[0]:.4g} to {ends[1]:.4g} N.m"
     )
-    shift = offset(angles(found.values))
+    shift = offset(angles(solution.values))
     grid = np.linspace(*ends, 400)
-    rest = found.residuals / weight * size
+    rest = solution.residuals / weight * size
     picture = Picture(
         x=line.torque,
         y=(line.angle - shift) / ARCMIN,
@@ -86,7 +86,7 @@ def fit(
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
     return Outcome(
-        result, found, _facts(line, shift, rest, found.noise * size), picture, notes=_notes(line, rest)
+        result, solution, _facts(line, shift, rest, solution.noise * size), picture, notes=_notes(line, rest)
     )
 
 
