@@ -14,6 +14,8 @@ from jointfmu.fem.elasticity import ElasticBody
 from jointfmu.fem.geometry import Assembly, BoxSection, Plate
 from jointfmu.fem.mesh import body_mesh, contact_cells, contact_mesh, plan_of
 
+pytestmark = pytest.mark.slow
+
 MATERIAL = {"E": 1.5e11, "nu": 0.28, "density": 7800.0}
 BOX = BoxSection(
     length=0.24,

@@ -17,6 +17,8 @@ from jointfmu.joints.harmonic_drive.fit import torque_angle
 from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import default, dump, load
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = Path(__file__).resolve().parent.parent / "benchmarks" / "fit_round_trips.py"
 SPEC = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
 trips = importlib.util.module_from_spec(SPEC)
@@ -54,7 +56,6 @@ def test_a_line_has_its_textbook_covariance():
     np.testing.assert_allclose(found.covariance, expected, rtol=1e-3)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", trips.CASES)
 def test_round_trip(case, tmp_path):
     """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
@@ -85,7 +86,6 @@ def test_loop_is_taken_apart(loops):
     assert facts["noise"][0] == pytest.approx(0.03 * ARCMIN, rel=0.1)
 
 
-@pytest.mark.slow
 def test_torque_before_angle_before_unit(loops, tmp_path):
     """Units and column order are the heading's; other columns are passed over."""
     torque, arcmin = np.loadtxt(loops, delimiter=",", skiprows=1).T
@@ -116,7 +116,6 @@ def test_single_open_loop_has_no_drift():
     assert line.loop_area[0] == pytest.approx(2.0 / 3.0 * 1e-4 * 18.0, rel=0.01)
 
 
-@pytest.mark.slow
 def test_what_is_not_determined_is_said_by_name(loops):
     """drive_scale and pair_scale act only as a product."""
     found = torque_angle.fit(loops, free=[*torque_angle.FREE, "pair_scale"])
@@ -134,7 +133,6 @@ def test_what_is_not_determined_is_said_by_name(loops):
     assert product == pytest.approx(known["drive_scale"], rel=1e-4)
 
 
-@pytest.mark.slow
 def test_a_small_range_leaves_the_end_open(tmp_path):
     """Up to 2 N m hardly anything of K_FTS0 is seen."""
     torque, angle = trips.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)

@@ -18,6 +18,8 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive import spring as harmonic_drive
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
 TABLES = (*NUMBERS, *COUNTS)
 EVERY = {

@@ -9,6 +9,8 @@ from jointfmu.quantity import build, flatten
 from jointfmu.uncertainty import propagate
 from jointfmu.uncertainty.problem import pose
 
+pytestmark = pytest.mark.slow
+
 REDUCED = 1e-4
 """Relative error that the reduced evaluation states (docs/uncertainty.md)."""
 STUDIES = {

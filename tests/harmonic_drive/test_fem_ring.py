@@ -26,6 +26,8 @@ from jointfmu.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import contact_length
 from jointfmu.parameters import default
 
+pytestmark = pytest.mark.slow
+
 DRIVE = default("harmonic_drive").values
 CURVE = approach_curve(DRIVE.law)
 COARSE = replace(SIZE_14, elements_per_ball=6)

@@ -31,15 +31,15 @@ typedef struct {
 /* Write, read or count the lowest `n` bytes of a number. */
 static void pass_bytes(Cursor *c, uint64_t *number, unsigned n)
 {
-    uint64_t found = 0;
+    uint64_t word = 0;
     for (unsigned i = 0; i < n; i++) {
         if (c->bytes)
             c->bytes[c->at + i] = (unsigned char)(*number >> 8 * i & 0xFF);
         if (c->from)
-            found |= (uint64_t)c->from[c->at + i] << 8 * i;
+            word |= (uint64_t)c->from[c->at + i] << 8 * i;
     }
     if (c->from)
-        *number = found;
+        *number = word;
     c->at += n;
 }
 
@@ -75,14 +75,14 @@ static const char token[] = MODEL_TOKEN;
 static bool pass_head(Cursor *c, unsigned version)
 {
     char first[sizeof magic] = {0}, owner[sizeof token] = {0};
-    unsigned found = version, length = sizeof token - 1;
+    unsigned stated = version, length = sizeof token - 1;
     memcpy(first, magic, sizeof magic);
     memcpy(owner, token, sizeof token);
     pass_text(c, first, sizeof magic - 1);
-    pass_word(c, &found);
+    pass_word(c, &stated);
     pass_word(c, &length);
     pass_text(c, owner, sizeof token - 1);
-    return strcmp(first, magic) == 0 && found == version && length == sizeof token - 1 &&
+    return strcmp(first, magic) == 0 && stated == version && length == sizeof token - 1 &&
            strcmp(owner, token) == 0;
 }
 
