@@ -3,6 +3,7 @@
 Exit status 0: done; 1: the work failed its check; 2: bad input, one line on standard error.
 """
 
+import os
 import sys
 from collections.abc import Sequence
 from typing import Any
@@ -77,7 +78,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     args = parser().parse_args(argv)
     try:
-        return int(args.run(args))
+        status = int(args.run(args))
+        print(end="", flush=True)
+        return status
     except (ValueError, RuntimeError) as error:
         hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
         print(f"jointfmu {args.command}:", *str(error).splitlines(), *hint, file=sys.stderr)
@@ -86,7 +89,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"jointfmu {args.command}: interrupted", file=sys.stderr)
         return 130
     except BrokenPipeError:
-        sys.stderr.close()
+        # What is still buffered goes nowhere, else the interpreter reports it at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 
 
