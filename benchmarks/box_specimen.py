@@ -101,7 +101,8 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
             axes = figure.subplots()
             axes.plot(PRELOADS / 1e3, found[:, 0], color=plots.BLUE, label="computed field")
             axes.plot(PRELOADS / 1e3, even[:, 0], "--", color=plots.GREY, label="uniform pressure")
-            axes.plot([9, 15], target[:2, 0], "o", color=plots.RED, label="measured")
+            for x, f, role in ((9, target[0, 0], "calibration"), (15, target[1, 0], "prediction")):
+                axes.plot(x, f, **plots.published_mark(role, plots.RED))
             axes.set(xlabel="preload per bolt in kN", ylabel="f1 in Hz")
             axes.legend()
 

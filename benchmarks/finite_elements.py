@@ -27,6 +27,7 @@ from jointfmu.fem.assembly import load
 from jointfmu.fem.bolted_contact import BoltedContact, JointSolution
 from jointfmu.fem.contact import trace
 from jointfmu.fem.geometry import Assembly, BoxSection
+from jointfmu.fem.joint_file import TILT
 from jointfmu.fem.sparse import Cholesky
 from jointfmu.parameters import default
 
@@ -61,12 +62,16 @@ def meshes(assembly: Assembly) -> None:
     for name, one in (("two equal bodies", assembly), ("two different bodies", other)):
         start, cpu = time.perf_counter(), time.process_time()
         joint = BoltedContact.of(one)
-        steps = joint.solve(law(one), PRELOAD).contact.steps
+        solution = joint.solve(law(one), PRELOAD)
+        steps = solution.contact.steps
         seconds, cpu = time.perf_counter() - start, time.process_time() - cpu
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
         unknowns = sum(body.size for body in joint.bodies)
         print(f"{name}, {unknowns} unknowns: {seconds:.1f} s, {cpu:.1f} s of processor time, ", end="")
         print(f"{memory:.2f} GB, {steps} steps of Newton's method", flush=True)
+        start = time.process_time()
+        steps = solution.under(PRELOAD, TILT * one.most_moment(PRELOAD)).contact.steps
+        print(f"with a moment, from there: {time.process_time() - start:.1f} s, {steps} steps", flush=True)
     rows, _ = convergence.study(assembly, law(assembly), PRELOAD, 0.0, convergence.refinements(MESHES))
     for row in rows:
         values = "  ".join(f"{name} {row.values[name]:.6g}" for name in convergence.COLUMNS)

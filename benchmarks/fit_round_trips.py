@@ -9,6 +9,8 @@ import tempfile
 from itertools import pairwise
 from pathlib import Path
 
+import drive_measurements
+import memory_measurements
 import numpy as np
 
 from jointfmu.joints.bolted_joint.fit import preload
@@ -99,7 +101,7 @@ def main():
     """Print the table."""
     print(f"{'measurement':36} within three deviations   middle error of each parameter")
     with tempfile.TemporaryDirectory() as folder:
-        for name, case in CASES.items():
+        for name, case in (CASES | memory_measurements.CASES | drive_measurements.CASES).items():
             found = [errors(case, seed, folder) for seed in track(range(SEEDS), name)]
             hits = sum(all(abs(z) <= 3.0 for _, z in one.values()) for one in found)
             middle = {p: np.median([abs(one[p][0]) for one in found]) for p in found[0]}

@@ -170,9 +170,9 @@ def resolution(factors=(1, 2, 4), loads=(0.01, 0.03, 0.1)):
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def measured():
-    """Measured joints of models/reference/measured_joints.toml."""
-    text = (files("jointfmu_models") / "reference" / "measured_joints.toml").read_text(encoding="utf-8")
+def measured(name="measured_joints"):
+    """Measured joints, or another file of models/reference."""
+    text = (files("jointfmu_models") / "reference" / f"{name}.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
@@ -185,3 +185,9 @@ def measured_stiffness(joint, pressure):
         values = [p**S / R for R in joint["R"] for S in joint["S"]]
     scale = joint["pressure_unit"] / 1e-6
     return np.min(values, axis=0) * scale, np.max(values, axis=0) * scale
+
+
+def measured_middle(joint, pressure):
+    """Stiffness [N/m3] of a measured joint in the middle of its printed ranges."""
+    middle = {name: [float(np.mean(joint[name]))] for name in ("C", "m")}
+    return measured_stiffness(joint | middle, pressure)[0]

@@ -1,7 +1,8 @@
 /* native_fmus LIBRARY 2|3 TOKEN N_INPUTS N_OUTPUTS REPEATS < inputs
  *
- * Times of the calls of an FMU, as a host in C makes them. `inputs` are four sets of ROWS rows of doubles:
- * along a smooth trajectory, along one on which the preload moves too, the same under a moment, and at random.
+ * Times of the calls of an FMU, as a host in C makes them. `inputs` are five sets of ROWS rows of doubles:
+ * along a smooth trajectory, along one in one direction, along one on which the preload moves too, the same under
+ * a moment, and at random.
  * Prints lines "NAME VALUE": seconds, and bytes of memory. */
 #include "host.h"
 
@@ -100,10 +101,11 @@ typedef struct {
     int inputs; /* which set of inputs */
 } Measure;
 
-enum { SMOOTH, TIGHTENING, BENT, SCATTERED, SETS };
+enum { SMOOTH, STRAIGHT, TIGHTENING, BENT, SCATTERED, SETS };
 
 static const Measure measures[] = {
     {"cycle_smooth", set_step_get, NULL, SMOOTH},
+    {"cycle_straight", set_step_get, NULL, STRAIGHT},
     {"cycle_tightening", set_step_get, NULL, TIGHTENING},
     {"cycle_bent", set_step_get, NULL, BENT},
     {"cycle_random", set_step_get, NULL, SCATTERED},
@@ -144,11 +146,11 @@ static void measure_calls(const char *token, Inputs inputs[SETS], int repeats)
 {
     static double times[MEASURES][MOST_REPEATS];
     long calls[MEASURES];
-    Fmu fmu;
-    start(&fmu, token);
     for (int i = 0; i < MEASURES; i++) {
         const Measure *m = &measures[i];
-        seconds(m->loop, &fmu, &inputs[m->inputs], ROWS); /* what an instance keeps for later is made */
+        Fmu fmu;
+        start(&fmu, token);
+        seconds(set_step_get, &fmu, &inputs[m->inputs], ROWS); /* what an instance keeps for later is made */
         calls[i] = 1;
         while (seconds(m->loop, &fmu, &inputs[m->inputs], calls[i]) < LONG_ENOUGH)
             calls[i] *= 2;
@@ -157,10 +159,10 @@ static void measure_calls(const char *token, Inputs inputs[SETS], int repeats)
             const double less = m->less ? seconds(m->less, &fmu, &inputs[m->inputs], calls[i]) : 0.0;
             times[i][r] = (whole - less) / (double)calls[i];
         }
+        fmu_free(&fmu);
     }
     for (int i = 0; i < MEASURES; i++)
         print_median(measures[i].name, times[i], repeats);
-    fmu_free(&fmu);
 }
 
 /* From instantiation to the end of initialization. */

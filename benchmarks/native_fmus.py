@@ -2,8 +2,10 @@
 
 For Linux on x86_64. The libraries are built as for users, the host (native_fmus.c) by the same compiler.
 One cycle sets all inputs, does one step and reads all outputs, with other inputs each time: along a
-smooth trajectory with preload and moment at rest, along one on which the preload moves too, and at random
-over the table. "x PassThrough" is the smooth cycle over that of an FMU that passes two inputs on to two
+smooth trajectory with preload and moment at rest, along one on which the first other input alone moves,
+along one on which the preload moves too, and at random over the table. A joint with memory remembers the
+way: the bolted joint has six degrees of freedom on the smooth trajectory, and one without tilt on the second.
+ "x PassThrough" is the smooth cycle over that of an FMU that passes two inputs on to two
 outputs with the same runtime. "step" is doStep with changed inputs, "no change" with the inputs of the
 step before. "derivative" is one directional derivative of all outputs along all inputs, "start" goes from
 instantiation to the end of initialization. Medians. What is promised stands below with its target.
@@ -40,9 +42,13 @@ WIDE = "PassThrough4x9"
 """As many inputs and outputs as the harmonic drive has."""
 PASS_THROUGH = {"PassThrough": (2, 2), WIDE: (4, 9)}
 """{FMU that passes its inputs on: (inputs, outputs)}."""
+LOOPS = {f"{name}+loop": name for name in ("HarmonicDriveSpring", "HarmonicDriveCompliance")}
+"""The drive with hysteresis: {in the table: FMU}."""
+LOOP = {"hysteresis_loss": 3e-4}
 RANGES = {name: dict(case.span) for name, case in CASES.items()} | {
     name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
 }
+RANGES |= {label: RANGES[name] for label, name in LOOPS.items()}
 """Inputs over the range of the tables."""
 HELD = ("preload", "moment")
 """Inputs that stay as they are along the trajectory: a joint is tightened once."""
@@ -51,6 +57,7 @@ NS, US, KB = (1e9, "ns"), (1e6, "us"), (1e-3, "kB")
 COLUMNS = {
     "cycle_smooth": ("cycle smooth", *NS),
     "ratio": ("x PassThrough", 1.0, ""),
+    "cycle_straight": ("one direction", *NS),
     "cycle_tightening": ("cycle preload", *NS),
     "cycle_bent": ("with moment", *NS),
     "cycle_random": ("cycle random", *NS),
@@ -67,16 +74,24 @@ Times = dict[str, float]
 
 
 def trajectories(name: str) -> dict[str, np.ndarray]:
-    """Inputs (ROWS, n): along a smooth trajectory, with the preload moving as well, the same under a moment
-    that stays, and at random. An oscillation takes some 64 steps."""
+    """Inputs (ROWS, n): along a smooth trajectory, with one of them moving alone, with the preload moving as
+    well, the same under a moment that stays, and at random. An oscillation takes some 64 steps."""
     low, high = np.array(list(RANGES[name].values()), dtype=float).T
     phase = 2.0 * np.pi / 64.0 * np.arange(ROWS)[:, None]
     moving = np.sin(phase * (1.0 + 0.1 * np.arange(low.size)))
     bent, resting = (np.where([v in held for v in RANGES[name]], 0.5, moving) for held in (HELD[1:], HELD))
     smooth, loaded = (0.5 * (low + high) + 0.5 * (high - low) * waves for waves in (resting, bent))
     tightening = np.where([v in HELD[1:] for v in RANGES[name]], 0.0, loaded)
+    first = next(v for v in RANGES[name] if v not in HELD)
+    straight = np.where([v == first for v in RANGES[name]], smooth, 0.5 * (low + high))
     scattered = np.random.default_rng(1).uniform(low, high, (ROWS, low.size))
-    return {"smooth": smooth, "tightening": tightening, "bent": loaded, "random": scattered}
+    return {
+        "smooth": smooth,
+        "straight": straight,
+        "tightening": tightening,
+        "bent": loaded,
+        "random": scattered,
+    }
 
 
 def pass_through(name: str) -> dict[str, str]:
@@ -105,17 +120,26 @@ def pass_through(name: str) -> dict[str, str]:
     }
 
 
+def sources(name: str) -> dict[str, str]:
+    """C sources of an FMU with its default parameters, or of a loop."""
+    file = default(MODELS[LOOPS.get(name, name)].joint)
+    if name in LOOPS:
+        file = file.with_values(LOOP, "user", "benchmark")
+    return generate.sources(LOOPS.get(name, name), file)
+
+
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
     """Name, flavour, library, token and number of outputs of every native FMU and pass-through."""
-    fmus = {name: (model, len(model.outputs)) for name, model in MODELS.items()}
-    for name in (*fmus, *PASS_THROUGH):
-        model, outputs = fmus.get(name, (None, PASS_THROUGH.get(name, (0, 0))[1]))
-        files = generate.sources(name, default(model.joint)) if model else pass_through(name)
+    for name in (*MODELS, *LOOPS, *PASS_THROUGH):
+        model = MODELS.get(LOOPS.get(name, name))
+        outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
+        files = sources(name) if model else pass_through(name)
         for flavour in NATIVE:
             units = generate.exported(list(files), flavour[-1])
             file = folder / flavour / f"{name}.so"
             file.parent.mkdir(exist_ok=True)
-            file.write_bytes(compiler.libraries(name, files, units, [PLATFORM])[PLATFORM])
+            made = compiler.libraries(LOOPS.get(name, name), files, units, [PLATFORM])
+            file.write_bytes(made[PLATFORM])
             yield name, flavour, file, generate.token(files), outputs
 
 
@@ -200,12 +224,12 @@ def measure(folder: Path) -> dict[tuple[str, str], Times]:
 
 def report(times: dict[tuple[str, str], Times]) -> None:
     """Print the table."""
-    print(f"{'FMU':24} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
-    print(" " * 32 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
-    for name in (*MODELS, *PASS_THROUGH):
+    print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
+    print(" " * 36 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
+    for name in (*MODELS, *LOOPS, *PASS_THROUGH):
         for flavour in FLAVOURS:
             if found := times.get((name, flavour)):
-                print(f"{name:24} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
+                print(f"{name:28} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
     print()
     for flavour in NATIVE:
         for name, key, most in targets(times, flavour):
@@ -213,7 +237,7 @@ def report(times: dict[tuple[str, str], Times]) -> None:
             verdict = "met" if value <= most else "MISSED"
             heading = COLUMNS[key][0]
             print(
-                f"{name:24} {flavour:7} {heading:>13} {value * 1e6:9.3f} us of {most * 1e6:7.3f} us {verdict}"
+                f"{name:28} {flavour:7} {heading:>13} {value * 1e6:9.3f} us of {most * 1e6:7.3f} us {verdict}"
             )
 
 
@@ -221,10 +245,12 @@ def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str
     """FMU, what is measured, and the most it may take [s]."""
     drive = 1.5 * times[WIDE, flavour]["cycle_smooth"] + 30e-9
     return [
-        ("BoltedJoint", "cycle_smooth", 1.5e-6),
+        ("BoltedJoint", "cycle_smooth", 6e-6),
+        ("BoltedJoint", "cycle_straight", 2e-6),
         ("BoltedJoint", "cycle_tightening", 15e-6),
         ("GearContact", "cycle_smooth", 150e-9),
         ("HarmonicDriveSpring", "cycle_smooth", drive),
+        *((name, "cycle_smooth", 300e-9) for name in LOOPS),
         *((name, "start", 1.5e-3) for name in MODELS),
     ]
 

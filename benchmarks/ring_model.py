@@ -1,14 +1,14 @@
-"""Ring model of the harmonic drive's contact: checks, fields, and what it says beside the two-lobe field.
+"""Ring model of the harmonic drive's contact: checks, field, and what it says beside the published numbers.
 
 `python benchmarks/ring_model.py [--plot FILE]` prints every number of docs/harmonic_drive_field.md and
-draws both fields; two minutes on one core.
+draws the field; two minutes on one core.
 """
 
 import argparse
 from dataclasses import replace
 
 import numpy as np
-from elastic_ring.data import SIZE_14, tooth_traction
+from elastic_ring.data import SIZE_14, contact_length, tooth_traction
 from elastic_ring.drive import field, section, torsional_stiffness
 from elastic_ring.forms import (
     on_oval,
@@ -17,12 +17,9 @@ from elastic_ring.forms import (
     opposite_forces_in_elements,
 )
 from elastic_ring.ring import Ring
-from scipy.optimize import brentq
 
 from jointfmu import plots
-from jointfmu.footprint.lobes import two_lobes
-from jointfmu.interface import checked_spots
-from jointfmu.joints.harmonic_drive.law import contact_length, footprint, peak_pressure
+from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.progress import track
 from jointfmu.reference import points
@@ -79,15 +76,18 @@ def stiffness(drive, rings, torque):
 
 
 def fields():
-    """Both fields over the torque."""
-    print("field          T  peak MPa  centre deg  load kN  within 35 deg  open part  K_TS unscaled")
+    """The field over the torque, and what the drive's default has instead."""
+    print("rings    T  peak MPa  centre deg  load kN  mean/peak  within 35 deg  open part  K_TS unscaled")
     for T in (0.0, *TORQUES):
         nodes = field(DRIVE, SIZE_14, tooth_traction(DRIVE, SIZE_14, T))[0]
         one = opening(DRIVE, SIZE_14, T)
         turned = np.sum(one.weight * one.pressure * np.exp(2j * one.theta))
-        row(f"ring       {T:5.1f}", one.pressure.max(), 0.5 * np.angle(turned), nodes)
+        row(f"     {T:5.1f}", one.pressure.max(), 0.5 * np.angle(turned), nodes)
+    print("default  T  peak MPa  load kN  K_TS of the paper's figures")
     for T in (0.0, *TORQUES):
-        row(f"two lobes  {T:5.1f}", peak_pressure(DRIVE, T)[0], 0.0, footprint(DRIVE, T))
+        peak, pair = peak_pressure(DRIVE, T)[0], pair_stiffness(DRIVE, T)[0] / DRIVE.drive_scale
+        load = DRIVE.mean_over_peak * peak * DRIVE.A_0
+        print(f"     {T:5.1f} {peak / 1e6:9.2f} {load / 1e3:8.3f} {pair:9.1f}")
 
 
 def row(name, peak, centre, nodes):
@@ -97,7 +97,8 @@ def row(name, peak, centre, nodes):
         np.abs(nodes.position[..., 0]) > DRIVE.radius * np.cos(35 * DEG),
     )
     closed = np.sum(nodes.share[nodes.pressure > 0.0])
-    print(f"{name} {peak / 1e6:9.3f} {centre / DEG:11.1f} {np.sum(load) * DRIVE.A_0 / 1e3:8.3f}", end="")
+    print(f"{name} {peak / 1e6:8.3f} {centre / DEG:11.1f} {np.sum(load) * DRIVE.A_0 / 1e3:8.3f}", end="")
+    print(f" {np.sum(load) / peak:10.3f}", end="")
     print(f" {np.sum(load[near]) / np.sum(load):14.2f} {abs(1 - closed):10.2f}", end="")
     print(f" {torsional_stiffness(DRIVE, nodes):14.3g}")
 
@@ -106,18 +107,17 @@ def forces():
     """What the published peak would need, and the power balance of the tooth load."""
     area, strength = SIZE_14.wall * contact_length(DRIVE), DRIVE.flexspline.sigma_y
     for T in (0.0, 5.0):
-        nodes = footprint(DRIVE, T)
-        lobe = np.sum(nodes.share * nodes.pressure * nodes.position[..., 0]) / DRIVE.radius * DRIVE.A_0 / 2.0
-        print(f"two lobes at {T:g} N.m: one lobe pushes with {lobe / 1e3:.2f} kN", end="")
+        lobe = 0.5 * DRIVE.mean_over_peak * peak_pressure(DRIVE, T)[0] * DRIVE.A_0
+        print(f"default at {T:g} N.m: one lobe pushes with {lobe / 1e3:.2f} kN", end="")
         print(f", hoop stress {lobe / 2 / area / 1e6:.0f} MPa (yield strength {strength / 1e6:.0f} MPa)")
     T, r, w, length = 5.0, DRIVE.radius, DRIVE.radial_deformation, contact_length(DRIVE)
     print(f"teeth at 5 N.m: {T / r:.0f} N along, {T / r * np.tan(SIZE_14.pressure_angle):.0f} N radial")
     print(f"5 N.m by friction {DRIVE.mu:g} alone: normal load {T / DRIVE.mu / r / 1e3:.2f} kN")
     print(f"5 N.m by the oval's slope alone: {T / (4.0 * w * r * length) / 1e6:.1f} MPa on two quarters")
-    even = replace(DRIVE, cup_length=1e3 * DRIVE.cup_length)
+    even = replace(SIZE_14, cup_length=1e3 * SIZE_14.cup_length)
     for centre in (-15.0, 0.0, 15.0):
-        rings = replace(SIZE_14, zone_centre=centre * DEG)
-        part = -opening(even, rings, T).torque * length * DRIVE.ratio / T
+        rings = replace(even, zone_centre=centre * DEG)
+        part = -opening(DRIVE, rings, T).torque * length * DRIVE.ratio / T
         print(
             f"torque at the wave generator over that of the speed ratio, zone at {centre:+g} deg: {part:.2f}"
         )
@@ -132,7 +132,7 @@ def cup():
     Rayleigh's deformation without stretching, w (1 - z/L) cos(2 theta): bending by 3 w/r^2 around and
     twist by 3/2 w/(r L), energy D/2 (bending^2 + 2 (1 - nu) twist^2), one wall throughout.
     """
-    r, L, part = DRIVE.radius, DRIVE.cup_length, contact_length(DRIVE) / DRIVE.cup_length
+    r, L, part = DRIVE.radius, SIZE_14.cup_length, contact_length(DRIVE) / SIZE_14.cup_length
     bending, twist = 9.0 / r**4 * L / 3.0, 2.0 * (1.0 - DRIVE.flexspline.nu) * (1.5 / (r * L)) ** 2 * L
     return (bending + twist) / (bending * (1.0 - (1.0 - part) ** 3))
 
@@ -148,7 +148,7 @@ def uniform(torque):
 def published():
     """Ring model with its own pressures and one scale, beside the published numbers."""
     scale = NOMINAL / stiffness(DRIVE, SIZE_14, 5.0)
-    print(f"published over computed K_TS at 5 N.m: ring {scale:.3g}, two lobes {DRIVE.pair_scale:.3g}")
+    print(f"published over computed K_TS at 5 N.m: {scale:.3g}")
     for T, most, least, change in zip(TORQUES, MAXIMA, MINIMA, CHANGES, strict=True):
         low, best, high = (
             scale * stiffness(replace(DRIVE, radial_deformation=w), SIZE_14, T) for w in (LEAST, BEST, MOST)
@@ -170,63 +170,6 @@ def published():
             "  10 um along the major, minor axis: 3e5 N/m {}, {} %; 7e7 N/m {}, {} %".format(*changes), end=""
         )
         print(f" (published {change:+.2f} %)")
-
-
-def shapes():
-    """Ring's shape under the two-lobe model's peak law, recalibrated to the same six points."""
-    ring = {}
-    for T in TORQUES:
-        nodes = field(DRIVE, SIZE_14, tooth_traction(DRIVE, SIZE_14, T))[0]
-        ring[T] = (nodes, nodes.pressure / opening(DRIVE, SIZE_14, T).pressure.max())
-
-    def from_ring(T, peak):
-        nodes, shape = ring[T]
-        return torsional_stiffness(DRIVE, replace(nodes, pressure=peak * shape))
-
-    print("errors of predictions: K_TS max 3, min 3, min 5 [%]; change by eccentricity 1, 5 N.m [points]")
-    for name, K in (("two lobes", from_lobes), ("ring's shape", from_ring)):
-        print(f"  {name:12} " + "  ".join(f"{x:+.2f}" for x in predicted(K)))
-
-
-def from_lobes(_, peak):
-    """K_TS [N.m/rad] of the two-lobe field with a peak [Pa], without any scale."""
-    law = DRIVE.law
-    spots = checked_spots(law)
-    breaks = spots.total("load", np.array(spots.breaks)) / law.A_0
-    nodes = two_lobes(
-        np.array(peak),
-        breaks,
-        mismatch=DRIVE.mismatch_pressure,
-        radius=DRIVE.radius,
-        deformation=DRIVE.radial_deformation,
-        length=contact_length(DRIVE),
-        cup=DRIVE.cup_length,
-    )
-    return torsional_stiffness(DRIVE, nodes)
-
-
-def predicted(K):
-    """Errors of the five predictions of a field whose stiffness is K(torque, peak)."""
-    scale = NOMINAL / K(5.0, PEAK)
-
-    def peak(T, value):
-        return brentq(lambda p: scale * K(T, p) - value, 1e4, 1e9, rtol=1e-10)
-
-    first, last = peak(1.0, MAXIMA[0]), peak(5.0, MAXIMA[2])
-    growth = np.hypot(TORQUES, DRIVE.torque_smoothing) - DRIVE.torque_smoothing
-    part = (growth[1] - growth[0]) / (growth[2] - growth[0])
-    middle = np.sqrt(first**2 + (last**2 - first**2) * part)
-    off, loss = last - PEAK, first - peak(1.0, MINIMA[0])
-    nominal = middle - off
-    shift = nominal - peak(3.0, scale * K(3.0, nominal) * (1.0 + CHANGES[1] / 100.0))
-    out = [
-        100.0 * (scale * K(3.0, middle) / MAXIMA[1] - 1.0),
-        100.0 * (scale * K(3.0, middle - loss) / MINIMA[1] - 1.0),
-        100.0 * (scale * K(5.0, last - loss) / MINIMA[2] - 1.0),
-    ]
-    for T, top, change in ((1.0, first - off, CHANGES[0]), (5.0, PEAK, CHANGES[2])):
-        out.append(100.0 * (K(T, top - shift) / K(T, top) - 1.0) - change)
-    return out
 
 
 VARIANTS = {
@@ -269,33 +212,27 @@ def variants():
 
 
 def draw(path):
-    """Both fields at the opening over the angle, each on its own scale."""
-    with plots.drawing(path, (7.2, 5.6)) as figure:
-        above, below = figure.subplots(2, 1, sharex=True)
+    """The field at the opening over the angle."""
+    with plots.drawing(path, (7.2, 3.4)) as figure:
+        axes = figure.subplots()
         for T, colour in zip((0.0, 1.0, 5.0), (plots.GREY, plots.BLUE, plots.RED), strict=True):
             one = opening(DRIVE, SIZE_14, T)
             degrees = (one.theta / DEG + 90.0) % 360.0 - 90.0
             order = np.argsort(degrees)
-            above.plot(degrees[order], one.pressure[order] / 1e6, color=colour, label=f"{T:g} N m")
-            even = np.linspace(-90.0, 270.0, 1441)
-            lobe = peak_pressure(DRIVE, T)[0] - DRIVE.mismatch_pressure * np.sin(even * DEG) ** 2
-            below.plot(even, np.maximum(lobe, 0.0) / 1e6, color=colour)
-        above.set(title="ring model: computed, nothing fitted", ylabel="pressure [MPa]")
-        below.set(
-            title="two lobes: calibrated", ylabel="pressure [MPa]", xlabel="angle from the major axis [deg]"
-        )
-        below.set_xticks(range(-90, 271, 45))
-        above.legend()
+            axes.plot(degrees[order], one.pressure[order] / 1e6, color=colour, label=f"{T:g} N m")
+        axes.set(xlabel="angle from the major axis [deg]", ylabel="pressure [MPa]")
+        axes.set_xticks(range(-90, 271, 45))
+        axes.legend()
 
 
 def main():
     """Print everything."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--plot", help="picture of both fields, .png or .svg")
+    parser.add_argument("--plot", help="picture of the field, .png or .svg")
     given = parser.parse_args()
     if given.plot:
         plots.check(given.plot)
-    for part in (checks, fields, forces, published, shapes, variants):
+    for part in (checks, fields, forces, published, variants):
         part()
         print(flush=True)
     if given.plot:

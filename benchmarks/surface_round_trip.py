@@ -72,7 +72,7 @@ def table(title, direction, cases):
             e = np.array([row[method] for row in rows], dtype=float)
             print(
                 f"| {D} | {method} | {e[:, 0].mean():+.3f} | {np.abs(e[:, 0]).max():.3f} "
-                f"| {e[:, 1].mean():.2f} | {e[:, 2].mean():+.2f} | {e[:, 3].mean():.2f} |",
+                f"| {e[:, 1].mean():.2f} | {np.nanmean(e[:, 2]):+.2f} | {e[:, 3].mean():.2f} |",
                 flush=True,
             )
             if method == "best":

@@ -126,6 +126,7 @@ def grids():
 def main(images=False):
     """Print the tables; draw the pictures."""
     validity_laws.joints()
+    validity_laws.levels()
     validity_laws.sizes()
     validity_laws.parameters()
     if images:

@@ -8,9 +8,12 @@ from validity_pictures import GAMMA
 from validity_tables import heading, row
 
 from jointfmu.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.parameters import default
+from jointfmu.roughness import height, level
 from jointfmu.topography.fractal import rms_height
 
 CHOICES = [(area, spot) for area in ("continuity", "printed", "yield") for spot in ("family", "hertz")]
+JUDGED = np.array([0.5e6, 1e6, 2e6, 8e6])
 MEASURED = np.array([0.1e6, 1e6, 2.45e6, 9.8e6])
 
 
@@ -56,6 +59,35 @@ def parameters():
             over_d.append(stiffness(D, G))
         y = compare.exponent((0.9, 1.1), over_g)
         row(name, f"{y:.2f}", f"{2.0 - case.D:.2f}", f"{over_d[1] / over_d[0]:.2g}")
+
+
+def levels():
+    """The choices of `zhao2018`, and the law `roughness`, beside the published R_a, boundary elements of the
+    ratio K_T/K_N, and measured cast iron."""
+    file = default("bolted_joint")
+    h = height(file.roughness)
+    names = [f"{p / 1e6:g} MPa" for p in JUDGED]
+    heading(f"K over p/(0.45 h), h = {1e6 * h:.3g} um", "law", *names, "K_T/K_N", "measured rows within 2")
+    laws = {f"{a} {s}": replace(file.values, critical_area=a, spot_stiffness=s) for a, s in CHOICES}
+    for name, law in {**laws, "roughness": default("bolted_joint", "roughness").values}.items():
+        state = at_pressure(law, JUDGED)
+        k = state["K_N"] / law.A_0
+        row(
+            name,
+            *(f"{ratio:.2g}" for ratio in k / level(JUDGED, h)),
+            f"{state['K_T'][-1] / state['K_N'][-1]:.3f}",
+            _near(k),
+        )
+    nu = file.values.side1.nu
+    print(f"\nMindlin: K_T/K_N = {2.0 * (1.0 - nu) / (2.0 - nu):.3f} without slip")
+
+
+def _near(k):
+    """At how many of the measured rows k is within a factor of 2 of the middle of the printed range."""
+    ends = [compare.measured_stiffness(one, JUDGED) for one in compare.measured()["normal"]]
+    middle = [np.sqrt(low * high) for low, high in ends]
+    off = [(k >= 0.5 * one) & (k <= 2.0 * one) for one in middle]
+    return "/".join(str(count) for count in np.sum(off, axis=0)) + f" of {len(off)}"
 
 
 def joints():

@@ -6,16 +6,20 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from jointfmu.parameters import made_folder
+
 
 @contextmanager
 def workshop(target: Path) -> Iterator[Path]:
     """A temporary folder beside `target`; the file of that name made in it replaces `target` at the end.
 
-    Raises ValueError if the folder cannot be written.
+    Raises ValueError if the folder cannot be written; one that was made for it goes again on a failure.
     """
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=target.parent, prefix=".build-") as folder:
+        with (
+            made_folder(target.parent),
+            tempfile.TemporaryDirectory(dir=target.parent, prefix=".build-") as folder,
+        ):
             yield Path(folder)
             (Path(folder) / target.name).replace(target)
     except OSError as error:

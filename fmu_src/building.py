@@ -9,18 +9,26 @@ from jointfmu.progress import track
 
 from .native.build import build_fmi2, build_fmi3
 from .python.build import build as build_python
+from .xml_parts import VARIABILITIES
 
-FLAVOURS: dict[str, Callable[[str, ParameterFile, Path], Path]] = {
+FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str], Path]] = {
     "fmi2": build_fmi2,
     "fmi3": build_fmi3,
-    "python": build_python,
+    # its parameters are fixed in any case
+    "python": lambda name, parameters, out, _: build_python(name, parameters, out),
 }
 
 
 def build(
-    names: Sequence[str], flavours: Sequence[str], parameters: ParameterFile | None, out: Path
+    names: Sequence[str],
+    flavours: Sequence[str],
+    parameters: ParameterFile | None,
+    out: Path,
+    variability: str = VARIABILITIES[0],
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
+
+    variability : of the parameters of native FMUs, one of VARIABILITIES
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, or a folder
     that cannot be written, before anything is built where that can be known.
@@ -33,9 +41,10 @@ def build(
         names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
     for name in names:
         if parameters:
-            MODELS[name].check_joint(parameters.joint)
+            MODELS[name].of(parameters.joint, parameters.values)
     jobs = [(flavour, name) for flavour in flavours for name in names]
     built = []
     for flavour, name in track(jobs, "build", len(jobs)):
-        built.append(FLAVOURS[flavour](name, parameters or default(MODELS[name].joint), out / flavour))
+        file = parameters or default(MODELS[name].joint)
+        built.append(FLAVOURS[flavour](name, file, out / flavour, variability))
     return built

@@ -34,11 +34,14 @@ class Slave:
             for name in (*start, *inputs, *outputs):
                 if name not in self._refs:
                     raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(self._refs)}")
-            instance = opened.enter_context(slave(folder, description, self.messages))
+            instance = opened.enter_context(slave(folder, description, self.messages, str(path)))
             self._fmu = instance.fmu
             try:
                 instance.begin()
-                self._fmu.setReal([self._refs[n] for n in start], list(start.values()))
+                flags = {n: value for n, value in start.items() if isinstance(value, bool)}
+                numbers = {n: value for n, value in start.items() if n not in flags}
+                self._fmu.setReal([self._refs[n] for n in numbers], list(numbers.values()))
+                self._fmu.setBoolean([self._refs[n] for n in flags], list(flags.values()))
                 self._fmu.exitInitializationMode()
             except FMICallException as error:
                 raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
@@ -100,6 +103,7 @@ def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late
             (force,) = joint.get()
         states[k + 1] = body.get()
         joint.set(*states[k + 1])
+        joint.step(k * step, step)
         if not late:
             (force,) = joint.get()
     return states

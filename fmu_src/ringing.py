@@ -1,7 +1,7 @@
 """What a nonlinear joint does in a system, by running FMUs: resonance over the load, and free decay."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track
-from jointfmu.systems import system, systems
+from jointfmu.systems import System, system, systems
 
 from .joints import part
 from .master import Array, Slave, damping_ratio, motion, peak
@@ -20,6 +20,8 @@ RESONANCE_TOLERANCE = 5e-3
 """Peak of the spectrum against sqrt(K/J) [1]."""
 DAMPING_TOLERANCE = 1e-2
 """Decrement of the free decay against the stated damping [1]."""
+RESOLVED = 1e-10
+"""Least first deflection over that of the working point [1]: round-off is 1e-6 of it."""
 MOST_DAMPED = 0.1
 """Damping ratio [1] up to which there are enough periods to find frequency and decrement."""
 _LEAST_DAMPED = 1e-6
@@ -48,10 +50,15 @@ class Ringing:
     messages: tuple[str, ...]
 
     @property
+    def damped(self) -> bool:
+        """Whether the joint states a damping that the decrement resolves."""
+        return self.stated > _LEAST_DAMPED
+
+    @property
     def misses(self) -> list[str]:
         """What lies outside the tolerances, one line each."""
         pairs = [("frequency", self.frequency, self.expected, RESONANCE_TOLERANCE)]
-        if self.stated > _LEAST_DAMPED:
+        if self.damped:
             pairs.append(("damping", self.damping, self.stated, DAMPING_TOLERANCE))
         return [
             f"load = {self.load:g}: {name} {simulated:.6g}, expected {expected:.6g} within {allowed:g}"
@@ -83,6 +90,14 @@ class Axis(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
 
+class Pull(NamedTuple):
+    """A pull that makes the joint slip: load on the joint and deflection, SI, and what it is."""
+
+    load: float
+    deflection: float
+    doc: str
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
     """How a joint rings with a body on it: RINGING in the joint's file.
@@ -93,11 +108,14 @@ class Body:
     partner : FMU of the body
     loads   : folder of the FMUs -> the loads that show the joint, SI
     start   : load -> {input: value} of the joint's FMU under it
-    rest    : (folder of the FMUs, load) -> working point; ValueError where nothing rings
+    rest    : (folder of the FMUs, load, parameters of the joint's FMU) -> working point; ValueError where
+              nothing rings
     release : force or torque whose deflection is the first one [N or N.m]
     load, deflection : as plots show them
     doc     : how the body is held, for the report
     stiffness : variable of the joint that the body feels
+    pull    : one that makes the joint slip
+    elastic : parameters of the joint without friction, where friction adds to its stiffness at tiny motion
     """
 
     fmu: str
@@ -106,12 +124,14 @@ class Body:
     partner: str
     loads: Callable[[Path], Sequence[float]]
     start: Callable[[float], Mapping[str, float]]
-    rest: Callable[[Path, float], Rest]
+    rest: Callable[[Path, float, Mapping[str, float]], Rest]
     release: float
     load: Axis
     deflection: Axis
     doc: str
     stiffness: str
+    pull: Pull
+    elastic: Mapping[str, float] = field(default_factory=dict)
 
 
 def body_on(joint: str) -> Body:
@@ -126,17 +146,18 @@ def body_on(joint: str) -> Body:
 
 def examples(folder: Path) -> dict[str, list[Ringing]]:
     """The systems whose joint says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
-    return {
-        name: ring(name, folder)
-        for name, example in systems().items()
-        if part(KINDS[example.joint], "ringing")
-    }
+    return {name: ring(name, folder) for name, _ in rings()}
+
+
+def rings() -> list[tuple[str, System]]:
+    """The systems whose joint says how it rings, with their names."""
+    return [item for item in systems().items() if part(KINDS[item[1].joint], "ringing")]
 
 
 def ring(
     name: str, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
-    """The body of a system on its joint, about working points under a load.
+    """The body of a system on its joint without friction, about working points under a load.
 
     folder  : of the FMUs (FMI 2.0) of the joint and of the body
     loads   : SI; None: those that show the joint
@@ -151,17 +172,29 @@ def ring(
     if inertia is None:
         inertia = example.inertia
     key = example.body.rpartition(".")[2]
-    return [_ring_at(body, folder, load, key, inertia) for load in track(loads, "ring", len(loads))]
+    joint = {**example.joint_parameters, **body.elastic}
+    return [_ring_at(body, folder, load, joint, key, inertia) for load in track(loads, "ring", len(loads))]
 
 
-def _ring_at(body: Body, folder: Path, load: float, key: str, inertia: float) -> Ringing:
-    """Free motion about one working point of a body whose inertia is the parameter `key`."""
-    rest, partner = body.rest(folder, load), PARTNERS[body.partner]
+def _ring_at(
+    body: Body, folder: Path, load: float, parameters: Mapping[str, float], key: str, inertia: float
+) -> Ringing:
+    """Free motion about one working point, with parameters of the joint, of a body whose inertia is the
+    parameter `key`."""
+    rest, partner = body.rest(folder, load, parameters), PARTNERS[body.partner]
+    first, least = body.release / rest.stiffness, RESOLVED * abs(rest.position)
+    if not first > least:
+        raise ValueError(
+            f"load = {load:g}: too large, its deflection of {rest.position:g} hides a first one of "
+            f"{first:.3g}; allowed is more than {least:.3g}"
+        )
     states = [v.name for v in partner.outputs[: partner.states]]
-    start = {key: inertia, states[0]: rest.position + body.release / rest.stiffness}
+    start = {key: inertia, states[0]: rest.position + first}
     forces = [v.name for v in partner.inputs]
     with (
-        Slave(folder / f"{body.fmu}.fmu", body.start(load), body.motion, (body.force,)) as joint,
+        Slave(
+            folder / f"{body.fmu}.fmu", {**parameters, **body.start(load)}, body.motion, (body.force,)
+        ) as joint,
         Slave(folder / f"{body.partner}.fmu", start, forces, states) as mass,
     ):
         return _ring(joint, mass, rest, load, inertia)

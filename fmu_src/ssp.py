@@ -17,6 +17,7 @@ from .native.build import build
 from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
+from .xml_parts import VARIABILITIES
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {
@@ -27,11 +28,14 @@ _LOADS = ("torque", "pulse")
 """Groups of a system's file that describe its load."""
 
 
-def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = True) -> list[Path]:
-    """Write the partners as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` and `out/ssp/SYSTEM.ssp`.
+def build_systems(
+    out: Path, parameters: ParameterFile | None, joints: bool = True, variability: str = VARIABILITIES[0]
+) -> list[Path]:
+    """Write `out/ssp/SYSTEM.ssp`, and its partners as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
     parameters : of a joint, instead of its defaults: then only its systems are packed
-    joints     : build the systems' joints too; else they are in `out/fmi2`
+    joints     : build the systems' joints beside the partners; else they are in `out/fmi2`
+    variability : of the parameters, one of VARIABILITIES
 
     The archives hold FMUs of FMI 2.0. Raises what `native.build.build` raises, and ValueError if no
     system has the joint.
@@ -41,17 +45,18 @@ def build_systems(out: Path, parameters: ParameterFile | None, joints: bool = Tr
     if parameters and not names:
         allowed = ", ".join(sorted(set(joint_of.values())))
         raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
-    jobs = [(name, version) for version in "23" for name in PARTNERS]
+    used: dict[str, ParameterFile] = {}
+    for name in names:
+        for fmu in components(structure(name)).values():
+            if fmu in PARTNERS:
+                used[fmu] = partner_parameters(fmu)
+            elif joints:
+                used[fmu] = parameters or default(joint_of[name])
+    jobs = [(fmu, version) for version in "23" for fmu in used]
     built = []
-    for name, version in track(jobs, "build partners", len(jobs)):
-        built.append(build(name, partner_parameters(name), out / f"fmi{version}", version))
-    for name in track(names, "pack systems", len(names)):
-        joint = parameters or default(joint_of[name])
-        if joints:
-            used = [fmu for fmu in components(structure(name)).values() if fmu in MODELS]
-            built += [build(fmu, joint, out / "fmi2", "2") for fmu in used]
-        built.append(pack_system(name, out, joint))
-    return built
+    for fmu, version in track(jobs, "build FMUs of systems", len(jobs)):
+        built.append(build(fmu, used[fmu], out / f"fmi{version}", version, variability))
+    return built + [pack_system(name, out, parameters or default(joint_of[name])) for name in names]
 
 
 def pack_system(name: str, out: Path, joint: ParameterFile) -> Path:
@@ -86,12 +91,14 @@ def components(ssd: bytes) -> dict[str, str]:
 def values(example: System, component: str, fmu: str, joint: ParameterFile) -> dict[str, tuple[Any, str]]:
     """{variable: (value, unit)} of a component: of the joint's file, and of the system's.
 
-    In a system the loads of joints come late, as in every master that steps its FMUs side by side.
+    In a system the loads of joints come late, as in every master that steps its FMUs side by side. Booleans
+    of the joint's file are the start values of its FMU: fmpy takes every Boolean of a parameter set for true.
     """
     if fmu in MODELS:
-        model = MODELS[fmu]
+        model = MODELS[fmu].of(joint.joint, joint.values)
         fields = model.parameter_fields()
-        given = {n: v for n, v in joint.flat.items() if n in fields}
+        file = {n: v for n, v in joint.flat.items() if not isinstance(v, bool)}
+        given = {n: v for n, v in {**file, **example.joint_parameters}.items() if n in fields}
         own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
         inputs = {v.name: v.unit for v in model.inputs}
         return own | {n: (v, inputs[n]) for n, v in example.joint_state.items()}

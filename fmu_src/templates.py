@@ -1,8 +1,12 @@
 """HTML pages from jinja templates."""
 
 from pathlib import Path
+from typing import Any
 
 import jinja2
+
+from jointfmu.asperity.roughness import FEW_SPOTS
+from jointfmu.parameters import ParameterFile
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:
@@ -18,3 +22,8 @@ def template(path: Path, *shared: Path) -> jinja2.Template:
         undefined=jinja2.StrictUndefined,
     )
     return environment.get_template(path.name)
+
+
+def law_terms(parameters: ParameterFile) -> dict[str, Any]:
+    """What the templates of joints ask of the interface law: `rough`, whether it is `roughness`."""
+    return {"rough": parameters.law == "roughness", "few_spots": FEW_SPOTS}

@@ -10,6 +10,9 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
 from jointfmu.units import UNITS, display_unit
 
+VARIABILITIES = ("tunable", "fixed")
+"""What a description may say of all parameters: set during a run too, or before it only."""
+
 
 class Listed(NamedTuple):
     """One variable as a description lists it.

@@ -54,6 +54,7 @@ class Case:
     good           : what is set for an ordinary state, the other inputs zero
     rest           : inputs that are not zero where nothing moves
     base           : parameters with which every other one has its effect
+    also           : further ones, with which outputs depend on inputs that they do not depend on with `base`
     moved          : {parameter: value} where 0.1 % more would not do
     counted        : {parameter: (least, most)} of whole numbers at random
     without_effect : parameters that no output shows
@@ -68,10 +69,11 @@ class Case:
     shown          : {variable: display unit}
     steps          : of the default experiment; None if they are no whole number to the last bit
     flanges        : {terminal: its variables}
-    domain         : of its terminals
+    domain         : or domains of its terminals
     linear         : an output is linear in an input, with a factor that FMI may call constant or tunable
     others         : parameters with which such a constant factor stays
     jumps          : outputs that hold the third derivative of a table, which jumps at its nodes
+    rough          : {output: how far its derivative may be from differences} where it has small steps itself
     """
 
     name: str
@@ -87,6 +89,7 @@ class Case:
     good: Inputs
     rest: Inputs = field(default_factory=dict)
     base: Mapping[str, Any] = field(default_factory=dict)
+    also: Mapping[str, Any] = field(default_factory=dict)
     moved: Mapping[str, float] = field(default_factory=dict)
     counted: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     without_effect: frozenset[str] = frozenset()
@@ -105,6 +108,7 @@ class Case:
     linear: bool = False
     others: Mapping[str, float] = field(default_factory=dict)
     jumps: frozenset[str] = frozenset()
+    rough: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)

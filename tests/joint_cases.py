@@ -1,6 +1,6 @@
 """What the shared tests know of each joint, from tests/KIND/cases.py, and the package behind its FMUs."""
 
-from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -74,7 +74,31 @@ def _tabulated(joint: str, p: Any) -> Any:
     return KINDS[joint].spring(p)
 
 
-def law(name: str, p: Any) -> Callable[[Inputs], dict[str, float]]:
-    """The outputs of the package's joint behind an FMU as a function of the inputs."""
-    outputs, spring = CASES[name].outputs, _tabulated(MODELS[name].joint, p)
-    return lambda v: {k: float(x) for k, x in outputs(spring, v).items()}
+@dataclass(frozen=True)
+class Law:
+    """The joint of the package behind an FMU: outputs as a function of inputs, from rest or a memory."""
+
+    name: str
+    spring: Any
+    memory: Any = None
+
+    def __call__(self, inputs: Inputs) -> dict[str, float]:
+        if self.memory is None:
+            found = CASES[self.name].outputs(self.spring, inputs)
+        else:
+            found = MODELS[self.name].evolve(self.spring, inputs, self.memory)[0]
+        return {k: float(x) for k, x in found.items()}
+
+    def after(self, inputs: Inputs | None = None) -> "Law":
+        """When these inputs (the others zero) were accepted, as at the end of initialization or by a step."""
+        model = MODELS[self.name]
+        if model.evolve is None:
+            return self
+        before = model.rest(self.spring) if self.memory is None else self.memory
+        given = dict.fromkeys((v.name for v in model.inputs), 0.0) | (inputs or {})
+        return replace(self, memory=model.evolve(self.spring, given, before)[1])
+
+
+def law(name: str, p: Any) -> Law:
+    """The package's joint behind an FMU, at rest."""
+    return Law(name, _tabulated(MODELS[name].joint, p))

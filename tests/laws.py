@@ -29,6 +29,7 @@ ZHAO = Zhao2018(
     traction_ratio=0.5,
     A_0=0.045,
     mass=60.0,
+    spot_stiffness="family",  # Eq. 13
 )
 
 # Section 2.3 of Hu 2023; gamma, base radius, smallest spot and yield strength are not published.

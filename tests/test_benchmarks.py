@@ -26,7 +26,7 @@ def test_pressure_inversion(monkeypatch, capsys):
     monkeypatch.setattr(module, "OBVIOUS", 3)
     module.main()  # asserts itself that both ways find the same spots
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[2:]] == ["zhao2018", "hu2023", "yu2022"]
+    assert [line.split()[0] for line in lines[2:]] == ["zhao2018", "hu2023", "yu2022", "roughness"]
     assert all(float(line.split()[-1]) > 0.0 for line in lines[2:])
 
 
@@ -44,11 +44,13 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     table, _, promised = capsys.readouterr().out.partition("\n\n")
     rows = [line.split() for line in table.splitlines()[2:]]
     flavours = [(name, flavour) for name in MODELS for flavour in ("fmi2", "fmi3", "python")]
-    through = [(name, flavour) for name in module.PASS_THROUGH for flavour in ("fmi2", "fmi3")]
-    assert [tuple(row[:2]) for row in rows] == [*flavours, *through]
+    native = [
+        (name, flavour) for name in (*module.LOOPS, *module.PASS_THROUGH) for flavour in ("fmi2", "fmi3")
+    ]
+    assert [tuple(row[:2]) for row in rows] == [*flavours, *native]
     assert all(float(row[2].replace(",", "")) > 0.0 for row in rows)
     assert [row[3] for row in rows if row[0] == "PassThrough"] == ["1.0", "1.0"]
-    assert len(promised.splitlines()) == 2 * (4 + len(MODELS))
+    assert len(promised.splitlines()) == 2 * (5 + len(module.LOOPS) + len(MODELS))
     assert all(" us of " in line for line in promised.splitlines())
 
 

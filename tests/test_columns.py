@@ -74,7 +74,10 @@ def test_cells_in_quotes(tmp_path):
         ("", r"is empty; expected columns load \[N \| kN\], angle \[rad \| deg \| arcmin\]"),
         ("1,2\n3,4", r"the first line is '1, 2'; expected columns load \[N \| kN\], "),
         ("load,angle [deg]\n1,2", r"column 'load' has no unit, expected e.g. load \[N\]"),
-        ("load [lbf]\n1", r"column 'load' has unit 'lbf', allowed are N, kN"),
+        (
+            "load [lbf]\n1",
+            r"column 'load' has unit 'lbf', allowed are N, kN and others that measure the same",
+        ),
         ("load [N],Load [kN]\n1,2", r"column 'load' is given twice, allowed is once"),
         (f"{HEAD}", r"has 0 points, at least 1 are needed"),
         (f"#\n{HEAD}\n1,2\n\n3", r"line 5 has 1 columns, expected 2"),

@@ -18,7 +18,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 from PIL import Image
 
-from jointfmu import cli
+from jointfmu.commands.parser import parser
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -82,6 +82,18 @@ def test_links_between_files_lead_somewhere(path: Path) -> None:
         if parts.fragment:
             assert target.suffix == ".md", link
             assert unquote(parts.fragment) in anchors(target), link
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=shown)
+def test_no_code_shows_the_backslash_of_a_table(path: Path) -> None:
+    """GitHub takes it away from a bar in code, the site shows it."""
+    assert not re.search(r"`[^`\n]*\\\|[^`\n]*`", path.read_text(encoding="utf-8"))
+
+
+def test_the_start_leads_to_fields_and_finite_elements() -> None:
+    table = (DOCS / "index.md").read_text(encoding="utf-8").partition("## Where to go")[2]
+    for page in ("validity.md", "fields.md", "finite_elements.md"):
+        assert f"]({page})" in table
 
 
 def test_pictures_are_small_and_used() -> None:
@@ -291,7 +303,7 @@ def test_commands_parse(path: Path) -> None:
         if not words:
             continue
         if words[0] == "jointfmu":
-            cli.parser().parse_args(words[1:])  # leaves with 2 if it does not parse
+            parser().parse_args(words[1:])  # leaves with 2 if it does not parse
             continue
         assert words[0] in OTHERS, line
         if words[0] == "python" and words[1] != "-m" and path.name != "tutorial.md":
@@ -333,6 +345,10 @@ def test_the_tutorial_ends_in_a_resonance_plot(tutorial: Tutorial) -> None:
     folder, said = tutorial
     for name in ("drive.toml", "fit.png", "ramp.csv", "ring.csv", "ring.png", "dist/ssp/robot_joint.ssp"):
         assert (folder / name).stat().st_size > 0
+    partners = ("RotationalInertia", "TorqueProfile")
+    told = {f"{fmu}.fmu" for fmu in ("HarmonicDriveSpring", "HarmonicDriveCompliance", *partners)}
+    for version in ("fmi2", "fmi3"):
+        assert {path.name for path in (folder / "dist" / version).iterdir()} == told
     header, *rows = (folder / "ramp.csv").read_text().splitlines()
     ramp = dict(zip(header.split(","), map(float, rows[-1].split(",")), strict=True))
     # the catalogue's angle at T2, kept by the fit within 1 %

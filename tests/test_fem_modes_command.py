@@ -59,7 +59,9 @@ def test_text(plates, capsys):
     assert main(["modes", str(plates), "--refinement", "0.5", "--count", "2"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("two plates: 9000 N per bolt")
-    assert [line.split()[0] for line in lines[1:]] == ["mode", "1", "2"]
+    assert [line.split()[0] for line in lines[1:4]] == ["mode", "1", "2"]
+    assert lines[4].startswith("the law's K is ")  # the level beside the specimen's roughness
+    assert len(lines) == 5
 
 
 @pytest.mark.parametrize(

@@ -2,13 +2,14 @@
 
 import importlib.util
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import refused_line
 
-from jointfmu import cli
+from jointfmu import cli, columns
 from jointfmu.fitting.least_squares import Unknown, solve
 from jointfmu.fitting.loop import backbone
 from jointfmu.joints.bolted_joint.fit import preload
@@ -68,6 +69,8 @@ def test_round_trip(case, tmp_path):
 def test_the_script_counts(monkeypatch, capsys):
     monkeypatch.setattr(trips, "SEEDS", 1)
     monkeypatch.setattr(trips, "CASES", {"stiffness over preload": trips.stiffness_fit})
+    monkeypatch.setattr(trips.memory_measurements, "CASES", {})
+    monkeypatch.setattr(trips.drive_measurements, "CASES", {})
     trips.main()
     assert " of 1 " in capsys.readouterr().out.splitlines()[1]
 
@@ -117,19 +120,21 @@ def test_single_open_loop_has_no_drift():
 
 
 def test_what_is_not_determined_is_said_by_name(loops):
-    """drive_scale and pair_scale act only as a product."""
-    found = torque_angle.fit(loops, free=[*torque_angle.FREE, "pair_scale"])
+    """drive_scale and mean_over_peak act only as a product."""
+    found = torque_angle.fit(loops, free=[*torque_angle.FREE, "mean_over_peak"])
     rows = {row["name"]: row["determined"] for row in found.rows()}
     assert rows == {
         "K_FTS0": True,
         "drive_scale": False,
         "zero_torque_pressure": True,
-        "pair_scale": False,
+        "mean_over_peak": False,
     }
-    assert "the data do not determine drive_scale, pair_scale" in found.warnings()
+    assert (
+        "the data do not determine drive_scale, mean_over_peak: other values fit as well" in found.warnings()
+    )
     known = torque_angle.fit(loops).solution.values
-    scale = default("harmonic_drive").values.pair_scale
-    product = found.solution.values["drive_scale"] * found.solution.values["pair_scale"] / scale
+    mean = default("harmonic_drive").values.mean_over_peak
+    product = found.solution.values["drive_scale"] * found.solution.values["mean_over_peak"] / mean
     assert product == pytest.approx(known["drive_scale"], rel=1e-4)
 
 
@@ -173,7 +178,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
 def test_joint_stiffness_is_the_exported_one(direction):
     """Also at 20 N of preload, where most nodes are still closing."""
     joint = default("bolted_joint").values
-    spring = BoltedJointSpring.of(joint)
+    spring = BoltedJointSpring.of_nodes(replace(joint, memory=False))
     loads = np.array([20.0, 2e3, 3e4])
     name = {"normal": "K_zz", "tangential": "K_xx"}[direction]
     exported = [spring.motion(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]
@@ -215,6 +220,16 @@ HEADING = "torque [N.m], angle [rad]"
 GOOD = [f"{T},{T / 5e3}" for T in np.linspace(-5.0, 5.0, 20)]
 FALLING = [f"{T},{-T / 5e3}" for T in np.linspace(-5.0, 5.0, 20)]
 WAVY = [f"{T},{np.sin(T)}" for T in np.linspace(0.0, 6.0, 40)]
+LEADING = [
+    f"{T},{T / 5e3 + way * 1e-4 * (1 - (T / 5) ** 2)}"
+    for way in (1, -1, 1, -1)
+    for T in way * np.linspace(-5.0, 5.0, 40)
+]
+UNITS = [
+    ("Nm", 1.0, "°", 180.0 / np.pi),
+    ("kgf.m", 1.0 / 9.80665, "\u2032", 10800.0 / np.pi),
+    ("N·cm", 100.0, "urad", 1e6),
+]
 BAD = {
     "no text": (b"\xff\xfe\x00\x01", "is no text file"),
     "empty": ("# nothing", "is empty; expected columns torque [N.m"),
@@ -230,6 +245,15 @@ BAD = {
     "constant": ([HEADING, *["2,1"] * 12], "torque is 2 N.m throughout"),
     "reversed": ([HEADING, *FALLING], "reverse the sign of one column"),
     "wavy": ([HEADING, *WAVY], "does not rise with the torque between"),
+    "huge": (
+        [HEADING.replace("rad", "deg"), *[f"{T},{100 * T}" for T in np.linspace(-5, 5, 20)]],
+        "check the units",
+    ),
+    "stiff": (
+        [HEADING.replace("rad", "arcsec"), *[f"{T},{0.1 * T}" for T in np.linspace(-5, 5, 20)]],
+        "1e-05 to",
+    ),
+    "leading": ([HEADING, *LEADING], "the loop creates energy, loop_area = -"),
     "far": ([HEADING, *[f"{T},{T}" for T in range(40)]], "(--rated-torque)"),
 }
 
@@ -243,6 +267,18 @@ def test_bad_torque_angle(case, tmp_path, capsys):
     line = refused_line(capsys, "fit", "torque-angle", path)
     assert str(path) in line
     assert message in line
+
+
+@pytest.mark.parametrize(("force", "times", "turn", "by"), UNITS)
+def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
+    found = []
+    for head, x, y in ((HEADING, 1.0, 1.0), (f"torque [{force}], angle [{turn}]", times, by)):
+        path = tmp_path / "curve.csv"
+        rows = (f"{T * x!r},{(T / 5e3 - T**3 / 1e6) * y!r}" for T in np.linspace(-5.0, 5.0, 30).tolist())
+        path.write_text("\n".join([head, *rows]))
+        found.append(columns.read(path, torque_angle.COLUMNS, 10).columns)
+    for name, column in found[0].items():
+        assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
 
 
 RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]

@@ -5,11 +5,12 @@ import io
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import zipfile
 from collections.abc import Callable
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from dataclasses import replace
 from functools import partial
 from html.parser import HTMLParser
@@ -19,14 +20,15 @@ from shutil import copytree, rmtree
 import pytest
 from conftest import refused_line
 from fmpy import platform_tuple, read_model_description
+from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import build as native_build
-from jointfmu_fmu_src.native import compiler
+from jointfmu_fmu_src.native import compiler, generate
 from jointfmu_fmu_src.partners import PARTNERS
 from pythonfmu import FmuBuilder
 
-from jointfmu import cli, ramp, systems
+from jointfmu import cli, ramp, systems, validation
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, dump
 
@@ -50,6 +52,21 @@ def gear_file(tmp_path: Path) -> Path:
 # What comes out
 
 
+def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -> None:
+    found = {}
+    for said in ("fixed", "tunable"):
+        out = tmp_path / said
+        asked = ["--flavour", "fmi2", "fmi3", "--parameters", said, "--out", str(out)]
+        assert cli.main(["build", "GearContact", *asked]) == 0
+        for version in ("fmi2", "fmi3"):
+            path = out / version / "GearContact.fmu"
+            assert validate_fmu(str(path)) == []
+            variables = read_model_description(str(path)).modelVariables
+            assert {v.variability for v in variables if v.causality == "parameter"} == {said}
+            found[said, version] = ramp.run(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
+    assert len(set(found.values())) == 1
+
+
 def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path, capsys: Capture) -> None:
     out = tmp_path / "out with spaces äö"
     arguments = ["build", "GearContact", "--flavour", "python", "--params", str(gear_file), "--out", str(out)]
@@ -65,7 +82,10 @@ def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path
 def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
     status = cli.main(["build", "BoltedJoint", "--flavour", "python", "--out", str(tmp_path), "--json"])
     assert status == 0
-    assert json.loads(capsys.readouterr().out) == {"built": [str(tmp_path / "python" / "BoltedJoint.fmu")]}
+    found = json.loads(capsys.readouterr().out)
+    assert found["built"] == [str(tmp_path / "python" / "BoltedJoint.fmu")]
+    assert found.keys() == {"built", "joints"}
+    assert found["joints"]["bolted_joint"].keys() == {"level", "warnings"}
 
 
 def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:
@@ -196,6 +216,28 @@ def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None
     assert file.read_text() == "mine"
 
 
+def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def swallowing(*_: object) -> dict[str, str]:
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        return {}
+
+    monkeypatch.setattr(generate, "sources", swallowing)
+    with pytest.raises(KeyboardInterrupt):
+        build(["GearContact"], ["fmi3"], None, tmp_path / "new")
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert everything(tmp_path) == []
+
+
+def test_a_refused_build_leaves_no_folder(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "ziglang", None)
+    line = refused_line(capsys, "build", "GearContact", "--out", tmp_path / "new" / "dist")
+    assert "the package ziglang is missing" in line
+    assert everything(tmp_path) == []
+
+
 def test_a_folder_in_the_place_of_the_fmu_is_refused(tmp_path: Path) -> None:
     place = tmp_path / "python" / "GearContact.fmu"
     place.mkdir(parents=True)
@@ -294,6 +336,9 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
     assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
     assert [name for name in NAMES if name not in page] == []
+    counted = validation.summary(validation.validate())  # the command, the job and the page count alike
+    assert f"compared: {counted}; " in out
+    assert f"<p>{counted}.</p>" in page
 
 
 def test_the_main_job_fails_when_a_check_misses(

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -371,20 +372,66 @@ def broken(kind: str, whole: Path, folder: Path) -> Path:
     elif kind == "other zip":
         with zipfile.ZipFile(path, "w") as file:
             file.writestr("readme.txt", "hello")
+    elif kind in CHANGES:
+        changed(whole, path, CHANGES[kind])
     else:
         without(whole, path, kind)
     return path
 
 
+def changed(source: Path, target: Path, change: Callable[[str, bytes], bytes]) -> Path:
+    """A copy of an FMU with its members changed."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in old.namelist():
+            new.writestr(name, change(name, old.read(name)))
+    return target
+
+
+def description(old: bytes, new: bytes) -> Callable[[str, bytes], bytes]:
+    """A change of the model description alone."""
+    return lambda name, data: re.sub(old, new, data) if name == "modelDescription.xml" else data
+
+
+FMI_1 = b"""
+<fmiModelDescription fmiVersion="1.0" modelName="one" modelIdentifier="one" guid="{1}"
+numberOfContinuousStates="0" numberOfEventIndicators="0"/>"""
+CHANGES = {
+    "corrupt library": lambda name, data: b"\x7fELF" if name.startswith("binaries/") else data,
+    "foreign library": description(b'modelIdentifier="[^"]*"', b'modelIdentifier="other"'),
+    "model exchange": description(b"(?s)<CoSimulation.*?/>", b""),
+    "FMI 1.0": description(rb"(?s)\A.*", FMI_1.strip()),
+}
+REASONS = {
+    "corrupt library": "its library cannot be loaded (binaries",
+    "foreign library": "its library cannot be loaded (Cannot find shared library binaries",
+    "model exchange": "has no co-simulation",
+    "FMI 1.0": "is an FMU of FMI 1.0, allowed are 2.0 and 3.0",
+}
+
+
 @pytest.mark.parametrize(
     "kind",
-    ["missing", "directory", "text", "empty", "half", "damaged", "bad xml", "other zip", "binaries/"],
+    [
+        "missing",
+        "directory",
+        "text",
+        "empty",
+        "half",
+        "damaged",
+        "bad xml",
+        "other zip",
+        "binaries/",
+        *CHANGES,
+    ],
 )
 def test_what_is_no_fmu_is_refused_with_one_line(
     fmus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
 ) -> None:
-    path = broken(kind, fmus / "GearContact.fmu", tmp_path)
-    assert str(path) in refused_line(capsys, "ramp", path, *RAMP)
+    path, here = broken(kind, fmus / "GearContact.fmu", tmp_path), Path.cwd()
+    line = refused_line(capsys, "ramp", path, *RAMP)
+    assert str(path) in line
+    assert REASONS.get(kind, "") in line
+    assert Path.cwd() == here
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,14 @@
 """The C sources of every native FMU: under two compilers, with sanitizers, in and out of order, fuzzed.
 
-The programs in tests/native drive both FMI versions of a joint. Two joints of their own there test the
-runtime alone: `dummy` has everything a joint can have, `passthrough` the least.
+The programs in tests/native drive both FMI versions of a joint. Joints of their own there test the runtime
+alone: `dummy` has everything a joint without memory can have, `passthrough` the least, `slider` a memory.
 """
 
 import math
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Mapping
 from functools import cache
 from graphlib import TopologicalSorter
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import fmpy
+import lief
 import pytest
 from joint_cases import JOINTS
 from jointfmu_fmu_src.native.generate import COMMON, RUNTIME, sources, token
@@ -29,19 +31,34 @@ pytestmark = pytest.mark.slow
 HOSTS = Path(__file__).parent / "native"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
-SANITIZED = ("-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
-COMPILERS = ("gcc", "clang")
+COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
+"""{name: command}; the last one comes with the package, and builds the FMUs."""
+SANITIZERS = {"gcc": "address,undefined", "clang": "address,undefined", "zig": "undefined"}
+"""Zig has no runtime of the address sanitizer."""
+PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
 VERSIONS = ("2", "3")
 FUZZ_CALLS = 1_000_000 // (len(MODELS) * len(COMPILERS) * len(VERSIONS))
 
+ALONE = {"dummy": (2, 3, 4), "passthrough": (2, 2, 1), "slider": (2, 3, 2)}
+"""{joint of tests/native: numbers of inputs, outputs, parameters}."""
 RUNTIME_ALONE = (*COMMON, "joint", "variables", "fmi2", "fmi3")
 C_LIBRARY = {
     "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
     "exp", "expm1", "log", "log1p", "log10", "pow", "sqrt", "cbrt", "hypot", "sin", "cos", "sincos", "tan",
     "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "erf", "fabs", "fmin",
     "fmax", "floor", "ceil", "copysign",
+    "bcmp", "memchr", "exp2",  # clang's for comparisons with memcmp, strchr and powers of two
 }  # fmt: skip
 """All that an FMU may need: no files, no environment, no locale, no time, no way to end the host."""
+
+
+def sanitized(compiler: str) -> tuple[str, ...]:
+    """A compiler's options for its sanitizers."""
+    return ("-O1", "-g", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
+
+
+UNDEFINED = 0
+"""ELF's number of the section that lies in another file."""
 
 
 class Sources(NamedTuple):
@@ -66,7 +83,7 @@ def c_of(name: str) -> Sources:
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
     own = [p for p in RUNTIME.iterdir() if p.stem in RUNTIME_ALONE and p.suffix in (".c", ".h")]
     files = {p.name: p.read_text() for p in [*own, *(HOSTS / name).iterdir()]}
-    return Sources(files, 2, 3 if name == "dummy" else 2, 4 if name == "dummy" else 1)
+    return Sources(files, *ALONE[name])
 
 
 class Builder:
@@ -84,22 +101,27 @@ class Builder:
         for file, text in files.items():
             (folder / file).write_text(text)
         units = [file for file in files if file.endswith(".c")]
-        self.call(folder, compiler, *STRICT, *options, "-isystem", str(FMI_HEADERS), "-c", *units)
+        command = (*COMPILERS[compiler], *STRICT, *options, "-isystem", str(FMI_HEADERS))
+        if compiler == "zig":  # which compiles several files at a time into one only
+            self.call(folder, *command, "-r", *units, "-o", "merged.o")
+            return [folder / "merged.o"]
+        self.call(folder, *command, "-c", *units)
         return [folder / f"{Path(unit).stem}.o" for unit in units]
 
     def _host(self, compiler: str, program: str) -> Path:
         """Object file of a host that has the FMU in it, with sanitizers."""
         out = self.work / f"{compiler}-{program}.o"
         source = str(HOSTS / f"{program}.c")
-        options = (*STRICT, *SANITIZED, "-D_GNU_SOURCE", "-DLINKED", "-isystem", str(FMI_HEADERS))
-        self.call(self.work, compiler, *options, "-c", source, "-o", str(out))
+        options = (*STRICT, *sanitized(compiler), "-D_GNU_SOURCE", "-DLINKED", "-isystem", str(FMI_HEADERS))
+        self.call(self.work, *COMPILERS[compiler], *options, "-c", source, "-o", str(out))
         return out
 
     def _program(self, compiler: str, program: str, name: str) -> Path:
         """A host and a joint in one, with sanitizers."""
-        objects = [self.host(compiler, program), *self.objects(compiler, name, *SANITIZED)]
+        objects = [self.host(compiler, program), *self.objects(compiler, name, *sanitized(compiler))]
         out = self.work / f"{compiler}-{program}-{name}"
-        self.call(self.work, compiler, *SANITIZED, *map(str, objects), "-lm", "-lpthread", "-o", str(out))
+        libraries = ("-lm", "-lpthread", "-o", str(out))
+        self.call(self.work, *COMPILERS[compiler], *sanitized(compiler), *map(str, objects), *libraries)
         return out
 
     @staticmethod
@@ -117,7 +139,7 @@ def builder(tmp_path_factory: pytest.TempPathFactory) -> Builder:
 
 @pytest.fixture(params=COMPILERS)
 def compiler(request: pytest.FixtureRequest) -> str:
-    if shutil.which(request.param) is None:
+    if shutil.which(COMPILERS[request.param][0]) is None:
         pytest.skip(f"{request.param} is not installed")
     return str(request.param)
 
@@ -128,7 +150,7 @@ def sanitizing(compiler: str, builder: Builder) -> str:
     probe = builder.work / f"{compiler}-probe.c"
     if not probe.exists():
         probe.write_text("int main(void) { return 0; }\n")
-    command = [compiler, *SANITIZED, str(probe), "-o", str(probe.with_suffix(""))]
+    command = [*COMPILERS[compiler], *sanitized(compiler), str(probe), "-o", str(probe.with_suffix(""))]
     if subprocess.run(command, capture_output=True).returncode != 0:
         pytest.skip(f"{compiler} is installed without its sanitizers")
     return compiler
@@ -147,13 +169,13 @@ def ramp_points(name: str, count: int = 40) -> str:
     return "\n".join(rows)
 
 
-every_joint = pytest.mark.parametrize("name", [*MODELS, "dummy", "passthrough"])
+every_joint = pytest.mark.parametrize("name", [*MODELS, *ALONE])
 every_version = pytest.mark.parametrize("version", VERSIONS)
 
 
-@pytest.mark.parametrize("name", [*MODELS, *PARTNERS, "dummy", "passthrough"])
+@pytest.mark.parametrize("name", [*MODELS, *PARTNERS, *ALONE])
 def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
-    assert builder.objects(compiler, name, "-O2", "-fPIC")
+    assert builder.objects(compiler, name, *PLAIN)
 
 
 def test_files_use_each_other_in_one_direction() -> None:
@@ -167,20 +189,16 @@ def test_files_use_each_other_in_one_direction() -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
-    if shutil.which("gcc") is None:
-        pytest.skip("gcc is not installed")
-    objects = builder.objects("gcc", name, "-O2", "-fPIC")
-    needed, defined = {}, set()
-    for o in objects:
-        sizes = builder.call(builder.work, "size", "-A", str(o)).splitlines()
-        found = {line.split()[0]: int(line.split()[1]) for line in sizes if line.startswith(".")}
-        assert found.get(".data", 0) == found.get(".bss", 0) == 0, o.name
-        symbols = [line.split()[:2] for line in builder.call(builder.work, "nm", "-P", str(o)).splitlines()]
-        needed[o.name] = {symbol for symbol, kind in symbols if kind == "U"}
-        defined |= {symbol for symbol, kind in symbols if kind != "U"}
-    outside = set().union(*needed.values()) - defined
+    (merged,) = builder.objects("zig", name, *PLAIN, "-target", "x86_64-linux-gnu")
+    binary = lief.parse(str(merged))
+    assert isinstance(binary, lief.ELF.Binary)
+    sizes = {str(section.name): section.size for section in binary.sections}
+    assert sizes.get(".data", 0) == sizes.get(".bss", 0) == 0
+    outside = {str(symbol.name) for symbol in binary.symbols if symbol.name and symbol.shndx == UNDEFINED}
+    assert "calloc" in outside
     assert outside - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= C_LIBRARY
-    assert {file for file, symbols in needed.items() if "calloc" in symbols} == {"instance.o", "snapshot.o"}
+    files = c_of(name).files.items()
+    assert {file for file, text in files if "calloc(" in text} == {"instance.c", "snapshot.c"}
 
 
 @every_joint
@@ -197,6 +215,12 @@ def test_in_order_and_out_of_order(
 def test_behaviour(sanitizing: str, builder: Builder, version: str) -> None:
     run = builder.program(sanitizing, "behaviour", "dummy")
     builder.call(builder.work, str(run), "", version, c_of("dummy").arguments[0])
+
+
+@every_version
+def test_memory(sanitizing: str, builder: Builder, version: str) -> None:
+    run = builder.program(sanitizing, "memory", "slider")
+    builder.call(builder.work, str(run), "", version, c_of("slider").arguments[0])
 
 
 @every_version
@@ -221,7 +245,7 @@ def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> 
 @pytest.mark.parametrize("name", [*MODELS, "RotationalInertia", "TorqueProfile"])
 def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> None:
     run = builder.program(sanitizing, "fuzz", name)
-    seed = 1 + COMPILERS.index(sanitizing)
+    seed = 1 + list(COMPILERS).index(sanitizing)
     counts = builder.call(
         builder.work, str(run), "", version, *c_of(name).arguments, str(seed), str(FUZZ_CALLS)
     )
@@ -233,11 +257,18 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
 @every_version
 def test_a_library_exports_all_and_leaves_nothing_behind(builder: Builder, name: str, version: str) -> None:
     """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth."""
-    if shutil.which("gcc") is None:
-        pytest.skip("gcc is not installed")
     library, host = builder.work / f"{name}.so", builder.work / "lifecycle"
-    objects = map(str, builder.objects("gcc", name, "-O2", "-fPIC"))
-    builder.call(builder.work, "gcc", "-shared", *objects, "-lm", "-o", str(library))
-    options = (*STRICT, "-O1", "-D_GNU_SOURCE", "-isystem", str(FMI_HEADERS), "-ldl", "-lm")
-    builder.call(builder.work, "gcc", str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
+    zig, objects = COMPILERS["zig"], map(str, builder.objects("zig", name, *PLAIN))
+    builder.call(builder.work, *zig, "-shared", *objects, "-lm", "-o", str(library))
+    options = (
+        *STRICT,
+        "-O1",
+        "-fno-sanitize=all",
+        "-D_GNU_SOURCE",
+        "-isystem",
+        str(FMI_HEADERS),
+        "-ldl",
+        "-lm",
+    )
+    builder.call(builder.work, *zig, str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
     builder.call(builder.work, str(host), str(library), version, *c_of(name).arguments)

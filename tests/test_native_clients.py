@@ -43,12 +43,23 @@ def needs(client: str, beside: str = "") -> None:
         pytest.skip(f"needs {client} (in the extra 'test' on Linux x86_64) {beside}")
 
 
-def check(name: str, rows: list[list[float]], states: list[dict[str, float]], changes: Any = None) -> None:
-    """Rows of all outputs at states against the package."""
+def check(
+    name: str,
+    rows: list[list[float]],
+    states: list[dict[str, float]],
+    changes: Any = None,
+    steps: bool = True,
+) -> None:
+    """Rows of all outputs at states against the package.
+
+    steps : the first state is the start, the others are steps; or all are tried after a start without input
+    """
     expected, outputs = law(name, parameters(name, changes)), [v.name for v in MODELS[name].outputs]
+    expected = expected if steps else expected.after()
     assert len(rows) == len(states)
     for row, state in zip(rows, states, strict=True):
         assert dict(zip(outputs, row, strict=True)) == close(expected(state))
+        expected = expected.after(state) if steps else expected
 
 
 # CasADi: model exchange, the outputs as a function of the inputs, with its derivatives
@@ -89,7 +100,7 @@ def test_casadi_evaluates_and_differentiates_it(
     found = run(CASADI, tmp_path, folder, parameters=changes, seed=seed, states=given)
     assert (found["x"], found["u"], found["y"]) == ([], inputs, outputs)
     assert found["structure"] == [[float(i in model.depends(o)) for i in inputs] for o in outputs]
-    check(name, [row["y"] for row in found["rows"]], states, changes)
+    check(name, [row["y"] for row in found["rows"]], states, changes, steps=False)
     instance = Fmu(path, exchange=True).start(changes)
     for state, row in zip(states, found["rows"], strict=True):
         values, J = instance.at(state), np.array(row["jacobian"])

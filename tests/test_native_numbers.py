@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -13,9 +12,9 @@ from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.generate import RUNTIME, sources
 from jointfmu_fmu_src.native.part import COUNTS, NUMBERS
 
-from jointfmu import curve, table
+from jointfmu import curve
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.harmonic_drive import spring as harmonic_drive
+from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow
@@ -23,7 +22,7 @@ pytestmark = pytest.mark.slow
 DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
 TABLES = (*NUMBERS, *COUNTS)
 EVERY = {
-    DRIVE: (*TABLES, *drive_native.NUMBERS, *drive_native.COUNTS),
+    DRIVE: (*TABLES, *drive_native.NUMBERS, (hysteresis, "MOST_CORRECTIONS")),
     GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
 }
 
@@ -60,13 +59,8 @@ def test_runtime_types_none_of_them_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "module", "constant", "size", "expected"),
-    [
-        (DRIVE, table, "MOST_CELLS", "REGIME_BLOCKS", lambda n: n // 2),
-        (DRIVE, harmonic_drive, "MOST_PAIR_STEPS", "PAIR_BLOCKS", lambda n: 2 * n),
-        (DRIVE, curve, "MOST_NODES", "CURVE_NODES", lambda n: n),
-        (BOLTED, curve, "MOST_NODES", "CURVE_NODES", lambda n: n),
-    ],
+    ("name", "module", "constant", "size"),
+    [(DRIVE, curve, "MOST_NODES", "CURVE_NODES"), (BOLTED, curve, "MOST_NODES", "CURVE_NODES")],
 )
 def test_arrays_follow_a_count(
     monkeypatch: pytest.MonkeyPatch,
@@ -75,14 +69,11 @@ def test_arrays_follow_a_count(
     module: ModuleType,
     constant: str,
     size: str,
-    expected: Callable[[int], int],
 ) -> None:
-    """MOST_CELLS cells are half as many blocks; the further ones are those that round up at regimes' ends."""
     count = 2 * getattr(module, constant)
     monkeypatch.setattr(module, constant, count)
     files = c_of(name)
-    least = expected(count)
-    text = f'#include "tabulated.h"\n_Static_assert({size} >= {least} && {size} < {least + 100}, "");\n'
+    text = f'#include "tabulated.h"\n_Static_assert({size} >= {count} && {size} < {count + 100}, "");\n'
     assert compiles(tmp_path, files, text)
     assert not compiles(tmp_path, files, text.replace(">=", "<"))
 
@@ -92,14 +83,6 @@ def test_arrays_follow_a_count(
     [
         (GEAR, "curve.c", curve, "MOST_NODES", 70_000),  # buckets hold a segment's number in 16 bits
         (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
-        (DRIVE, "harmonic_drive.c", table, "MOST_CELLS", 1001),  # a block is two cells
-        (
-            DRIVE,
-            "harmonic_drive.c",
-            curve,
-            "MOST_NODES",
-            100,
-        ),  # fewer than its first steps
     ],
 )
 def test_build_refuses_what_does_not_fit(
@@ -116,3 +99,9 @@ def test_build_refuses_what_does_not_fit(
     monkeypatch.setattr(module, constant, value)
     files = c_of(name)
     assert not compiles(tmp_path, files, files[source])
+
+
+def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(curve, "MOST_NODES", 100)  # fewer than its first steps
+    with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
+        c_of(DRIVE)

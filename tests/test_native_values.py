@@ -19,7 +19,7 @@ from joint_cases import CASES, NAMES, RANGES, STATE, TUNED, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import build as native_build
 from jointfmu_fmu_src.native import compiler
-from natives import VERSIONS, Host, attempt, close, package, settle, slope
+from natives import VERSIONS, Host, attempt, close, near, package, settle, slope
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
@@ -56,30 +56,30 @@ def test_fmpy_simulates_the_default_experiment(native: Path, name: str, version:
     assert found[model.ramp.input] == close(np.maximum(found["time"] - lag, 0.0) * model.ramp.step)
     expected = package(name)
     for row in found:
-        assert {o: row[o] for o in outputs} == close(expected({i: row[i] for i in inputs}))
+        assert {o: row[o] for o in outputs} == near(name, expected({i: row[i] for i in inputs}))
 
 
 def test_all_flavours_and_interfaces_give_the_numbers_of_the_package(
     host: Host, fmu: Host, name: str
 ) -> None:
-    python, expected, r = fmu(name).start(), package(name), MODELS[name].ramp
+    python, expected, r = fmu(name).start(), package(name).after(), MODELS[name].ramp
     natives = [host(name, v, exchange=kind).start() for v in VERSIONS for kind in (False, True)]
     ramp = [dict.fromkeys(RANGES[name], 0.0) | {r.input: x} for x in np.linspace(0.0, r.end, 26)]
     for inputs in (*ramp, *random_inputs(name, 40, seed=21)):
         found, *others = (one.at(inputs) for one in natives)
         assert others == [found] * 3
-        assert found == close(expected(inputs))
-        assert python.at(inputs) == close(found)
+        assert found == near(name, expected(inputs))
+        assert python.at(inputs) == near(name, found)
     assert not [m for one in natives for m in one.messages if m.status]
 
 
 def test_each_input_counts_when_it_moves_alone(host: Host, name: str, version: str) -> None:
-    instance, expected = host(name, version).start(), package(name)
+    instance, expected = host(name, version).start(), package(name).after()
     for moved, value in STATE[name].items():
         for factor in (0.0, 0.5, 1.5):
             instance.at(STATE[name])
             found = instance.at({moved: factor * value})
-            assert found == close(expected(STATE[name] | {moved: factor * value})), moved
+            assert found == near(name, expected(STATE[name] | {moved: factor * value})), moved
 
 
 def varied(name: str, rng: np.random.Generator) -> dict[str, Any]:
@@ -114,16 +114,18 @@ def test_random_parameters_give_the_numbers_or_the_refusal_of_the_package(host: 
             continue
         accepted += 1
         instance.start(changes)
+        expected = expected.after()
         for inputs in random_inputs(name, 4, seed=i):
             assert instance.at(inputs) == close(expected(inputs)), changes
-    assert accepted >= cases // 3
+    assert accepted >= cases // 6
 
 
 def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str, version: str) -> None:
     start, case = flatten(default(MODELS[name].joint).values), CASES[name]
     base = dict(case.base)
-    instance, without = host(name, version).start(base | STATE[name]), set()
-    before = instance.get()
+    instance, without = host(name, version), set()
+    instance.begin()  # while it initializes a joint with memory comes from rest, as in the package
+    before = instance.at(base | STATE[name])
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]
         change = (not value) if isinstance(value, bool) else case.moved.get(parameter, 1.001 * value)
@@ -161,10 +163,11 @@ def test_outputs_are_right_in_initialization_and_after_each_set(
     assert instance.at(second) == close(expected(second))
     instance.fmu.exitInitializationMode()
     assert instance.get() == close(expected(second))
+    expected = expected.after(second)
     assert instance.at(third) == close(expected(third))
     settle(instance)
     assert instance.get() == close(expected(third))
-    if exchange:
+    if exchange:  # without an event's update nothing was accepted
         instance.fmu.enterContinuousTimeMode()
         assert instance.at(first) == close(expected(first))
     instance.fmu.terminate()
@@ -216,8 +219,8 @@ def test_a_simulation_may_start_at_any_time(host: Host, version: str) -> None:
 
 
 def test_input_derivatives_extrapolate_one_step(host: Host, name: str) -> None:
-    instance, other = host(name, "fmi2"), host(name, "fmi2").start()
     rng, start = np.random.default_rng(26), STATE[name]
+    instance, other = host(name, "fmi2"), host(name, "fmi2").start(start)
     slopes = {k: value * float(rng.uniform(-0.1, 0.1)) for k, value in start.items()}
     instance.start(start)
     before = instance.get()
@@ -256,8 +259,10 @@ def test_input_derivatives_that_cannot_be_used_are_refused(host: Host) -> None:
 def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
     host: Host, name: str, version: str, exchange: bool
 ) -> None:
+    """Without memory: a path keeps what it was."""
     instance, fresh = (host(name, version, exchange=exchange) for _ in range(2))
-    before = instance.start(STATE[name]).get()
+    given = STATE[name] | CASES[name].also
+    before = instance.start(given).get()
     start = flatten(default(MODELS[name].joint).values)
     changes: dict[str, Any] = {}
     for parameter, value in TUNED[name].items():
@@ -265,7 +270,7 @@ def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
         changes[parameter] = value
         last, found = instance.get(), instance.at({parameter: value})
         fresh.reset()
-        assert found == fresh.start(changes | STATE[name]).get() != last
+        assert found == fresh.start(changes | given).get() != last
         settle(instance)
         assert instance.get() == found
     assert instance.at({p: start[p] for p in TUNED[name]}) == before
@@ -327,10 +332,11 @@ def test_a_parameter_is_not_set_in_continuous_time(host: Host, version: str) -> 
 
 def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: bool) -> None:
     instance, fresh = (host(name, "fmi3", exchange=exchange) for _ in range(2))
-    instance.start(STATE[name]).fmu.enterConfigurationMode()
+    given = STATE[name] | CASES[name].also
+    instance.start(given).fmu.enterConfigurationMode()
     instance.set(TUNED[name])
     instance.fmu.exitConfigurationMode()
-    assert instance.get() == fresh.start(TUNED[name] | STATE[name]).get()
+    assert instance.get() == fresh.start(TUNED[name] | given).get()
 
 
 # Parameter files
@@ -352,7 +358,7 @@ def test_a_parameter_file_is_baked_in(
     for parameter, value in changes.items():
         if parameter in instance.variables:
             assert json.loads(instance.variables[parameter].start) == value
-    expected = law(name, file.values)
+    expected = law(name, file.values).after(STATE[name])
     for inputs in random_inputs(name, 20, seed=38):
         assert instance.at(inputs) == close(expected(inputs))
     rng, accepted = np.random.default_rng(39), 0
@@ -366,6 +372,7 @@ def test_a_parameter_file_is_baked_in(
             continue
         accepted += 1
         instance.start(tuned)
+        expected = expected.after()
         for inputs in random_inputs(name, 3, seed=i):
             assert instance.at(inputs) == close(expected(inputs))
     assert accepted > 0

@@ -246,7 +246,7 @@ def test_construction_checks_as_well():
             "x",
             "critical_area = 'x' is not one of continuity, printed, yield",
         ),
-        (ZHAO, "spot_stiffness", "x", "spot_stiffness = 'x' is not one of family, hertz"),
+        (ZHAO, "spot_stiffness", "x", "spot_stiffness = 'x' is not one of hertz, family"),
         (ZHAO, "A_0", -1.0, "A_0 = -1 m2 is outside (0, inf)"),
         (ZHAO, "mass", np.nan, "mass = nan kg is outside (0, inf)"),
         (HU, "surface.D", 1.5304, "surface.D = 1.5304 is outside (2, 3)"),

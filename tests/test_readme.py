@@ -65,7 +65,9 @@ def test_commands_run(line, folder, monkeypatch, capsys):
 
 def test_every_kind_of_command_is_shown():
     assert {line.split()[1] for line in commands} == {
+        "new",
         "law",
+        "parameters",
         "build",
         "ramp",
         "validate",
@@ -81,24 +83,57 @@ def test_every_kind_of_command_is_shown():
     }
 
 
-def test_figures_are_those_of_the_comparison():
-    rows = validation.validate()
-    roles = [row.point.role for row in rows]
-    said = re.search(r"(\d+) points are compared: (\d+) calibrate, (\d+) validate", README)
-    assert said is not None
-    assert tuple(map(int, said.groups())) == (
-        len(rows),
-        roles.count("calibration"),
-        roles.count("validation"),
+@pytest.fixture(scope="module")
+def rows():
+    return validation.validate()
+
+
+def predicted(count):
+    """So many predictions, as words."""
+    return "1 is a prediction" if count == 1 else f"{count} are predictions"
+
+
+def test_counts_are_those_of_the_comparison(rows):
+    found = validation.counts(rows)
+    n, lost = found.roles, sum(found.guessed.values()) - sum(found.nearer.values())
+    for said in (
+        f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
+        f"computed from printed ones, and {n['claim']} claims",
+        f"{n['calibration']} were used to calibrate, {n['circular']} are met by construction, "
+        f"{n['constant']} are constants and {n['self-check']} self-checks",
+        f"{n['interpolation']} lie between calibrated points",
+        f"nearer than the law in {lost} of the {n['interpolation']}",
+        f"{predicted(n['prediction'])}: ",
+    ):
+        assert said in README, said
+
+
+def test_errors_are_those_of_the_comparison(rows):
+    between = [row for row in rows if row.point.role == "interpolation"]
+    worst = {
+        unit: max(abs(row.error) for row in between if (row.point.unit == "%") == (unit == "points"))
+        for unit in ("share", "points")
+    }
+    said = re.search(
+        r"K_TS is met within ([\d.]+) %, its change .*? within ([\d.]+) percentage points", README
     )
-    predicted = {row.point.id: abs(row.error) for row in rows if row.point.role == "validation"}
-    stiffness = [e for name, e in predicted.items() if re.fullmatch(r"K_TS\.(max|min)\.\d", name)]
-    changes = [e for name, e in predicted.items() if name.startswith("K_TS.eccentricity")]
-    # printed: 2.5 %, 0.4 percentage points; rounded to the printed digit
-    assert len(stiffness) == 3
-    assert round(100 * max(stiffness), 1) == 2.5
-    assert len(changes) == 2
-    assert round(max(changes), 1) == 0.4
+    assert said is not None
+    assert float(said[1]) == round(100.0 * worst["share"], 1)  # to the printed digit
+    assert float(said[2]) == round(worst["points"], 1)
+
+
+def test_the_first_screen_says_how_far_it_holds(rows):
+    """In the README before its first picture and, in the same words, on the guide's start."""
+    start = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    here, there = (re.search(r"\n(\*\*How far it holds\..*)\n", text) for text in (README, start))
+    assert here is not None
+    assert there is not None
+    assert here.start() < README.index("![")
+    assert re.sub(r"\(.*?\)", "", here[1]) == re.sub(r"\(.*?\)", "", there[1])
+    found = validation.counts(rows)
+    said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
+    assert said in here[1]
+    assert re.search(r"\| \[Validity\]\(validity\.md\)", start.partition("## Where to go")[2])
 
 
 def test_picture_and_links_exist():

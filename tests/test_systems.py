@@ -8,9 +8,10 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from xml.etree.ElementTree import tostring
 
@@ -22,9 +23,9 @@ from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src import ringing, ssp
+from jointfmu_fmu_src import decays, ringing, ssp
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.checks import check_ringing
+from jointfmu_fmu_src.checks import check_decays, check_ringing
 from jointfmu_fmu_src.joints.harmonic_drive.ringing import LOADING
 from jointfmu_fmu_src.master import Slave, motion
 from jointfmu_fmu_src.native.terminals import terminals
@@ -33,15 +34,16 @@ from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
 from scipy.interpolate import CubicSpline
-from test_modelica import simulate, top
+from test_modelica import column_sliders, simulate, sliding, top
 
 from jointfmu import cli
+from jointfmu.fitting import decay
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
 from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
-from jointfmu.quantity import flatten
+from jointfmu.quantity import changed, flatten
 from jointfmu.systems import names, system, systems
 
 pytestmark = pytest.mark.slow
@@ -51,6 +53,9 @@ Values = dict[str, float]
 
 DRIVE = HarmonicDriveSpring.of(default("harmonic_drive").values)
 BOLTED = BoltedJointSpring.of(default("bolted_joint").values)
+ROBOT = HarmonicDriveSpring.of(
+    changed(default("harmonic_drive").values, system("robot_joint").joint_parameters)
+)
 LINK = system("robot_joint").values["link.J"]
 
 
@@ -291,21 +296,28 @@ def test_an_archive_is_complete_and_its_connections_fit(built: Path, name: str) 
         assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} < set(archive.namelist())
 
 
+def stated(text: str) -> float:
+    """A value of a parameter set: a number, or whether it is true."""
+    return float(text == "true") if text in ("true", "false") else float(text)
+
+
 @pytest.mark.parametrize("name", names())
 def test_parameters_come_from_the_files(built: Path, name: str) -> None:
     path, found = str(built / "ssp" / f"{name}.ssp"), system(name)
-    every = {p.name: float(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
+    every = {p.name: stated(p.value) for p in read_ssv(path, f"parameters/{name}.ssv").parameters}
     fmus = ssp.components(ssp.structure(name))
     joint = next(c for c, fmu in fmus.items() if fmu in MODELS)
-    for key, value in flatten(default(found.joint).values).items():
-        if key in MODELS[fmus[joint]].parameter_fields():
+    for key, value in (flatten(default(found.joint).values) | found.joint_parameters).items():
+        if isinstance(value, bool):
+            assert f"{joint}.{key}" not in every  # a start value of the FMU
+        elif key in MODELS[fmus[joint]].parameter_fields():
             assert every[f"{joint}.{key}"] == value
     given = {k: v for k, v in found.values.items() if not k.startswith("experiment.")}
     assert set(given.values()) <= set(every.values())
     for component in fmus:
         own = read_ssv(path, f"parameters/{component}.ssv").parameters
         prefix = f"{component}."
-        assert {prefix + p.name: float(p.value) for p in own} == {
+        assert {prefix + p.name: stated(p.value) for p in own} == {
             k: v for k, v in every.items() if k.startswith(prefix)
         }
 
@@ -332,11 +344,13 @@ def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.Captur
 # Simulators
 
 
-def simulated(built: Path, name: str, step: float, stop: float, **changes: float) -> Any:
+def simulated(
+    built: Path, name: str, step: float, stop: float, changes: Mapping[str, float] = MappingProxyType({})
+) -> Any:
     path = str(built / "ssp" / f"{name}.ssp")
     parameters = read_ssv(path, f"parameters/{name}.ssv")
     for p in parameters.parameters:
-        p.value = changes.get(p.name.replace(".", "_"), p.value)
+        p.value = changes.get(p.name, p.value)
     return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
 
 
@@ -409,14 +423,17 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 
 
 def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:
-    """Rates of motor and link by the package alone."""
+    """Rates of motor, link and the sliders of the drive by the package's midline and sliders alone."""
+    ratio, friction = ROBOT.joint.ratio, x[4:]
     drive = DRIVE.motion(x[0], x[1], x[2], x[3])
+    drive = {"tau1": drive["tau1"] + friction.sum() / ratio, "tau2": drive["tau2"] - friction.sum()}
+    slid = sliding(friction, ROBOT.hysteresis.stiffness, ROBOT.hysteresis.limit, x[3] - x[1] / ratio)
     tau = float(load.outputs({"time": time, "tau_in": 0.0})["tau"])
     motor = RotationalInertia(J=found["motor.J"], m=0.0, l=0.0, lag_a=0.0, lag_b=0.0)
     link = RotationalInertia(J=found["link.J"], m=found["link.m"], l=found["link.l"], lag_a=0.0, lag_b=0.0)
     a1 = motor.outputs({"phi": x[0], "w": x[1], "tau_a": tau, "tau_b": float(drive["tau1"])})["a"]
     a2 = link.outputs({"phi": x[2], "w": x[3], "tau_a": 0.0, "tau_b": float(drive["tau2"])})["a"]
-    return [x[1], float(a1), x[3], float(a2)]
+    return [x[1], float(a1), x[3], float(a2), *slid]
 
 
 def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
@@ -424,8 +441,9 @@ def test_the_robot_joint_converges_to_the_packages_law(built: Path) -> None:
     load = TorqueProfile(
         **{k.removeprefix("torque."): v for k, v in found.items() if k.startswith("torque.")}
     )
+    start = [0.0] * (4 + ROBOT.hysteresis.limit.size)
     exact = solve_ivp(
-        robot, (0.0, stop), [0.0] * 4, "DOP853", rtol=1e-9, atol=1e-12, max_step=0.02, args=(found, load)
+        robot, (0.0, stop), start, "DOP853", rtol=1e-9, atol=1e-12, max_step=0.02, args=(found, load)
     ).y[2, -1]
     steps = (4e-4, 2e-4, 1e-4)
     errors = [abs(simulated(built, "robot_joint", h, stop - 0.5 * h)["link.phi"][-1] - exact) for h in steps]
@@ -442,14 +460,15 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
         ForceProfile(**(defaults | pulse)),
         TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0),
     )
-    preload = found["joint_state.preload"]
+    stiffness, limit = column_sliders(BOLTED, found["joint_state.preload"])
 
     def rates(time: float, x: Array) -> list[float]:
-        force = BOLTED.motion(preload, 0.0, (0.0, 0.0, x[0]), (0.0, 0.0, x[1]))["f_z"]
-        f = load.outputs({"time": time, "f_in": 0.0})["f"]
-        return [x[1], float(mass.outputs({"s": x[0], "v": x[1], "f_a": float(f), "f_b": float(force)})["a"])]
+        f = float(load.outputs({"time": time, "f_in": 0.0})["f"])
+        moved = mass.outputs({"s": x[0], "v": x[1], "f_a": f, "f_b": -x[2:].sum()})
+        return [x[1], float(moved["a"]), *sliding(x[2:], stiffness, limit, x[1])]
 
-    exact = solve_ivp(rates, (0.95e-3, stop), [0.0, 0.0], "DOP853", rtol=1e-8, atol=1e-15).y[0, -1]
+    start = [0.0] * (2 + limit.size)
+    exact = solve_ivp(rates, (0.95e-3, stop), start, "DOP853", rtol=1e-7, atol=1e-12).y[0, -1]
     steps = (2e-6, 1e-6, 5e-7)
     errors = [
         abs(simulated(built, "bolted_column", h, stop - 0.5 * h)["column.s"][-1] - exact) for h in steps
@@ -460,22 +479,22 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "model", "stop", "steps"),
+    ("name", "model", "stop", "steps", "left"),
     [
-        ("robot_joint", "RobotJoint", 1.2, (2e-4, 1e-4)),
-        ("bolted_column", "BoltedColumn", 3e-3, (2e-6, 1e-6)),
+        ("robot_joint", "RobotJoint", 1.2, (2e-4, 1e-4), 5e-4),
+        ("bolted_column", "BoltedColumn", 3e-3, (2e-6, 1e-6), 0.015),
     ],
 )
 def test_the_modelica_example_moves_as_the_archive(
-    built: Path, name: str, model: str, stop: float, steps: tuple[float, float]
+    built: Path, name: str, model: str, stop: float, steps: tuple[float, float], left: float
 ) -> None:
     """rumoca's solver on the Modelica text, fmpy's steps on the FMUs: they meet as h^2, the order of a step.
 
-    What the extrapolation to h = 0 leaves is of fourth order in h, and the dissipation factor that the
-    Modelica table interpolates linearly: measured 1.1e-4 and 1.2e-4.
+    What the extrapolation to h = 0 leaves, is of the layer in which the component's sliders cease to stick
+    (drive, 2.3e-4), and of the number of sliders (bolted joint, 0.9 %).
     """
     rumoca = pytest.importorskip("rumoca")
-    found = simulate(rumoca, top(f"extends JointStiffness.Examples.{model};"), stop, stop / 300)
+    found = simulate(rumoca, top(f"extends JointStiffness.Examples.{model};"), stop, stop / 300, rtol=1e-8)
     times, first = np.unique(found.time, return_index=True)
 
     def deflection(values: Any) -> Array:
@@ -489,10 +508,8 @@ def test_the_modelica_example_moves_as_the_archive(
         end = np.append(0.0, rows["time"] + step)  # fmpy's rows carry the begin of their step
         runs.append(CubicSpline(end, np.append(0.0, deflection(rows)))(times))
     scale = np.max(np.abs(expected))
-    errors = [np.max(np.abs(run - expected)) / scale for run in runs]
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.05)
     limit = (4.0 * runs[1] - runs[0]) / 3.0
-    assert np.max(np.abs(limit - expected)) < 3e-4 * scale
+    assert np.max(np.abs(limit - expected)) < left * scale
 
 
 # The coupling itself: a link on the drive, motor held
@@ -668,20 +685,22 @@ def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make,
 @BOTH
 def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, version: str) -> None:
     """All four FMUs with the connections of the archive under CVode, and the archive's co-simulation
-    extrapolated to a step of zero, which leaves an error of fourth order."""
-    path, stop, early = str(built / "ssp" / "robot_joint.ssp"), 0.12, {"load_pulse_start": 0.01}
+    extrapolated to a step of zero, which leaves an error of fourth order; without friction, whose slip ends
+    the order of both solvers."""
+    path, stop = str(built / "ssp" / "robot_joint.ssp"), 0.12
+    early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
     build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
-    parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters}
+    parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
     fmus = {}
     for name, kind in ssp.components(ssp.structure("robot_joint")).items():
         mine = {n.partition(".")[2]: float(v) for n, v in parameters.items() if n.startswith(f"{name}.")}
-        fmus[name] = make(kind, version, True).start(mine | ({"pulse_start": 0.01} if name == "load" else {}))
+        fmus[name] = make(kind, version, True).start(mine)
     connections = read_ssd(path).system.connections
     wires = [(c.startElement, c.startConnector, c.endElement, c.endConnector) for c in connections]
     wires.sort(key=lambda wire: wire[0] == "drive")  # its outputs follow its inputs at once
     exchange = exchanged(fmus, wires, stop)
     steps = (5e-5, 2.5e-5)
-    rows = [simulated(built, "robot_joint", h, stop - 0.5 * h, **early)[-1] for h in steps]
+    rows = [simulated(built, "robot_joint", h, stop - 0.5 * h, early)[-1] for h in steps]
     for name in ("motor", "link"):
         for k, state in enumerate(("phi", "w")):
             coarse, fine = (row[f"{name}.{state}"] for row in rows)
@@ -694,11 +713,42 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 
 def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None:
     found = ringing.examples(built / "fmi2")
-    assert [c for c in check_ringing(found) if not c.passed] == []
-    for name, most in (("robot_joint", 1.59), ("bolted_column", 2.79)):
+    checks = check_ringing(found)
+    assert [c for c in checks if not c.passed] == []
+    assert len(checks) == 3  # the column has no dashpot
+    for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
         frequencies = [r.frequency for r in found[name]]
         assert frequencies == sorted(frequencies)
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+
+
+def test_decays_follow_the_loops(built: Path) -> None:
+    found = decays.examples(built / "fmi2")
+    assert [c for c in check_decays(found) if not c.passed] == []
+    for (one,) in found.values():
+        assert one.amplitude[0] > 10.0 * one.amplitude[-1]
+        assert one.frequency[0] < 0.95 * one.frequency[-1]
+        assert one.damping[0] > 3.0 * one.damping[-1]
+
+
+def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
+    """The archive as fmpy runs it: the pulse uses half of the friction limit; afterwards frequency and
+    damping follow the amplitude as for the pulled column, whose forces are passed on at once."""
+    rows = simulated(built, "bolted_column", 2e-6, 0.02)
+    limit = BOLTED.joint.mu * 15e3 * BOLTED.joint.n_bolts
+    assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
+    free = rows["time"] > 1.3e-3
+    struck = decay.points(rows["time"][free], rows["column.s"][free])
+    (pulled,) = decays.examples(built / "fmi2")["bolted_column"]
+    order = np.argsort(pulled.amplitude)
+    seen = struck.amplitude > 1.2e-7
+    assert np.count_nonzero(seen) >= 3
+    for mine, other, allowed in (
+        (math.tau * struck.frequency, pulled.frequency, 5e-3),
+        (struck.damping, pulled.damping, 0.1),  # straight lines between the pulled column's windows
+    ):
+        expected = np.interp(struck.amplitude, pulled.amplitude[order], other[order])
+        np.testing.assert_allclose(mine[seen], expected[seen], rtol=allowed)
 
 
 # The list of systems
@@ -786,7 +836,7 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0
-    stiffness = BOLTED.motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_zz"]
+    stiffness = BOLTED.motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
     (row,) = json.loads(capsys.readouterr().out)["rows"]
     assert row["expected_frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau)
 
@@ -800,7 +850,8 @@ def test_ring_prints_the_steps_that_the_guide_quotes(built: Path, capsys: pytest
     (drive, late_drive), (column, late_column) = quoted
     page = (Path(__file__).parent.parent / "docs/tools/index.md").read_text(encoding="utf-8")
     assert f"{drive:.1f} and {late_drive:.2f} ms for the example drive at 5 N m" in page
-    assert f"{column:.3f} and {late_column:.3f} ms for the example column of 100 kg at 15 kN" in page
+    assert f"{column:.3f} ms for the example column of 100 kg at 15 kN" in page
+    assert late_column == 0.0
 
 
 def test_ring_says_where_the_law_ends(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -811,15 +862,62 @@ def test_ring_says_where_the_law_ends(built: Path, capsys: pytest.CaptureFixture
     assert "beyond the tabulated law" in err
 
 
+HYSTERESIS = ["--set", "hysteresis_loss=3.5e-4", "hysteresis_stiffness=3000"]
+
+
+@pytest.mark.parametrize("load", ["0", "2"])
+def test_ring_down_of_a_drive_with_hysteresis(
+    built: Path, tmp_path: Path, load: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Decrement over the amplitude against the energy of loops: 2 %; the step moves the frequency."""
+    picture = tmp_path / "decay.png"
+    arguments = [
+        "--fmus",
+        built / "fmi2",
+        "--amplitude",
+        "1e-4",
+        "--load",
+        load,
+        *HYSTERESIS,
+        "--plot",
+        picture,
+    ]
+    assert cli.main(["ring", "robot_joint", *map(str, arguments), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    amplitude, frequency, loop, damping, stated = (
+        np.array([row[name] for row in rows])
+        for name in ("amplitude", "frequency", "loop_frequency", "damping_ratio", "loop_damping_ratio")
+    )
+    assert np.all(np.diff(amplitude) < 0.0)
+    assert amplitude[0] > 10.0 * amplitude[-1]
+    np.testing.assert_allclose(damping[1:], stated[1:], rtol=0.02)
+    np.testing.assert_allclose(frequency, loop, rtol=5e-3)
+    assert damping[0] > 2.0 * damping[-1]
+    assert frequency[0] < 0.97 * frequency[-1]
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """K_xx at tiny motion."""
+    fmus = str(built / "fmi2")
+    arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
+    assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    stiffness = BOLTED.motion(9e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
+    assert rows[-1]["frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau, rel=5e-3)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (["robot_joint", "--amplitude", "-1"], "amplitude = -1 is outside (0, inf)"),
+        (["robot_joint", *HYSTERESIS], "--set is given without --amplitude"),
         (["robot_joint", "--load", "nan"], "load = nan is outside (-inf, inf)"),
-        (["robot_joint", "--load", "1e300"], "too large, p_max is not finite"),
+        (["robot_joint", "--load", "1e300"], "load = 1e+300: too large, its deflection of "),
         (["robot_joint", "--inertia", "-1"], "inertia = -1 kg.m2 is outside (0, inf)"),
         (
             ["robot_joint", "--inertia", "1e-5"],
-            "damping ratio 1.74 with the inertia 1e-05; allowed is less than 0.1",
+            "damping ratio 1.83 with the inertia 1e-05; allowed is less than 0.1",
         ),
         (["bolted_column", "--load", "0"], "load = 0 N: the joint has no stiffness there"),
         (["bolted_column", "--load", "-5"], "preload = -5 N is outside [0, inf)"),

@@ -1,14 +1,16 @@
 """Reading, repair and the command `jointfmu surface`: what is read, repaired, refused, written."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from conftest import refused_line
 
 from jointfmu import cli
-from jointfmu.parameters import default, load
-from jointfmu.topography import csvfile, synthesis
+from jointfmu.parameters import default, dump, load
+from jointfmu.topography import csvfile, sift, synthesis
 from jointfmu.topography.form import filled, without_form, without_spikes
 from jointfmu.topography.heights import Areal, Profile
 from jointfmu.topography.reading import read
@@ -127,8 +129,10 @@ def test_form_is_removed(area, form, order):
     [
         ("none.csv", None, "none.csv: is no file"),
         ("empty.csv", "", "empty.csv: is no surface: the file is empty"),
-        ("words.csv", "hello\n", "words.csv: is no surface"),
-        ("junk.vk4", "\x00\x01junk", "junk.vk4: is no surface"),
+        ("words.csv", "hello 1 2\n", "words.csv: is no surface: a text of 2 numbers"),
+        ("junk.vk4", "\x00\x01junk", "junk.vk4: is no surface: it does not begin as a .vk4 file"),
+        ("odd.foo", "\x00\x01junk", "odd.foo: is no surface: neither our CSV nor a format"),
+        ("scan.pdf", "%PDF-1.7", "scan.pdf: is no surface: it is a PDF"),
         (
             "bare.csv",
             "0,1\n1,2\n" * 99,
@@ -164,7 +168,7 @@ def test_form_is_removed(area, form, order):
         ("twice.csv", "# profile: x [m], z [m]\n" + "1,2\n" * 200, "x repeats values"),
         (
             "uneven.csv",
-            "# profile: x [m], z [m]\n" + "".join(f"{i**1.1},{i % 7}\n" for i in range(200)),
+            "# profile: x [um], z [um]\n" + "".join(f"{i**1.1},{i % 7}\n" for i in range(200)),
             "spacing of x varies",
         ),
     ],
@@ -187,6 +191,11 @@ def test_what_is_refused_by_name(folder, capsys, name, content, says):
         (["--plot", "x.pdf"], "suffix '.pdf' is no picture, allowed are .png, .svg"),
         (["--gamma", "1"], "gamma = 1 is outside (1, inf)"),
         (["--form", "cone"], "invalid choice: 'cone'"),
+        (["--joint", "bolted_joint", "--out", "x.toml"], "is one side of the contact; state which"),
+        (["--side", "3"], "invalid choice: '3'"),
+        (["line.csv", "--side", "1"], "side = 1 beside two files"),
+        (["--longest-wave", "-1"], "longest wave = -1 m is outside (0, inf)"),
+        (["--longest-wave", "2e-3"], "line.csv: longest wave = 0.002 m is outside [1.95e-05, 0.001]"),
         (["line.csv", "line.csv"], "3 files given"),
         (["area.csv"], "two of the same kind"),
     ],
@@ -264,9 +273,9 @@ def test_plot(folder, capsys, suffix):
 
 
 def test_written_parameters_build(folder, capsys):
-    run(capsys, "surface", "line.csv", "--joint", "gear_contact", "--out", "gear.toml")
+    run(capsys, "surface", "line.csv", "--side", "1", "--joint", "gear_contact", "--out", "gear.toml")
     file = load("gear.toml", "gear_contact")
-    assert file.sources["surface1.D"].startswith("identified from line.csv by ")
+    assert file.sources["surface1.D"].startswith("identified from line.csv (side 1, the other smooth) by ")
     assert file.values.e == default("gear_contact").values.e
     run(capsys, "build", "GearContact", "--flavour", "python", "--params", "gear.toml", "--out", "dist")
     assert (folder / "dist" / "python" / "GearContact.fmu").is_file()
@@ -274,11 +283,11 @@ def test_written_parameters_build(folder, capsys):
 
 def test_params_choose_the_start(folder, capsys):
     run(
-        capsys, "surface", "line.csv", "--joint", "bolted_joint", "--write", "a.toml"
+        capsys, "surface", "line.csv", "--side=1", "--joint", "bolted_joint", "--write", "a.toml"
     )  # the other name of --out
     changed = (folder / "a.toml").read_text().replace("H = { value = 1960000000.0", "H = { value = 2.5e9")
     (folder / "a.toml").write_text(changed)
-    run(capsys, "surface", "area.csv", "--params", "a.toml", "--out", "b.toml")
+    run(capsys, "surface", "area.csv", "--params", "a.toml", "--side", "2", "--out", "b.toml")
     file = load("b.toml", "bolted_joint")
     assert file.values.H == 2.5e9
     assert "area.csv" in file.sources["surface.G"]
@@ -320,6 +329,9 @@ def test_synthesize(folder, capsys, shape, D, G):
         (["--seed", "-1"], "seed = -1 is negative"),
         (["--ridges", "0"], "ridges = 0"),
         (["--out", "s.png"], "suffix '.png', allowed is .csv"),
+        (["--points", "1000000"], "points = 1000000 take 6.4e+04 GB, allowed are 2 GB: at most 5590 points"),
+        (["--shape", "profile", "--points", "100000000"], "at most 10526315 points along a side of shape"),
+        (["--ridges", "100000"], "ridges = 100000, allowed are 1, 2, 3, ... 1000"),
         (["--shape", "cone"], "invalid choice: 'cone'"),
     ],
 )
@@ -327,3 +339,173 @@ def test_synthesize_refuses_by_name(folder, capsys, change, says):
     command = ["--size", "1e-3", "--points", "128", "--D", "2.5", "--G", "1e-9", "--out", "s.csv", *change]
     assert says in refused_line(capsys, "surface", "synthesize", *command)
     assert not (folder / "s.csv").exists()
+
+
+def columns(folder, x, z, decimals, unit="um"):
+    """A profile with rounded x."""
+    rows = "".join(f"{a:.{decimals}f},{b:.6g}\n" for a, b in zip(x, z, strict=True))
+    (folder / "c.csv").write_text(f"# profile: x [{unit}], z [um]\n{rows}")
+    return read("c.csv")
+
+
+@pytest.mark.parametrize("decimals", [1, 4])
+@pytest.mark.parametrize("step", [0.1563, 0.041, 0.5])
+def test_rounded_positions_are_read(folder, step, decimals):
+    """One decimal for steps of 0.16 and 0.04 um, as stylus instruments print: uneven gaps, repeats."""
+    x, z = step * np.arange(1000), np.random.default_rng(0).standard_normal(1000)
+    for order in (slice(None), slice(None, None, -1)):
+        found = columns(folder, x[order], z[order], decimals)
+        assert found.dx == pytest.approx(1e-6 * step, rel=2.0 * 10.0**-decimals / x[-1] + 1e-12)
+        np.testing.assert_allclose(found.z, 1e-6 * z, rtol=1e-5)
+
+
+def test_significant_digits_are_rounding_too(folder):
+    x = 0.1563 * np.arange(1000)
+    rows = "".join(f"{a:.4g},{i % 7}\n" for i, a in enumerate(x))
+    (folder / "s.csv").write_text("# profile: x [um], z [um]\n" + rows)
+    assert read("s.csv").dx == pytest.approx(1.563e-7, rel=1e-3)
+
+
+def test_missing_rows_of_a_profile_are_missing_points(folder):
+    x, z = 0.5 * np.arange(500), np.random.default_rng(0).standard_normal(500)
+    keep = np.ones(500, dtype=bool)
+    keep[[3, 4, 5, 200, 201, 202, 203]] = False
+    found = columns(folder, x[keep], z[keep], 1)
+    assert found.dx == pytest.approx(5e-7)
+    assert np.array_equal(np.isfinite(found.z), keep)
+    np.testing.assert_allclose(found.z[keep], 1e-6 * z[keep], rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("x", "says"),
+    [
+        (np.floor(np.arange(500) ** 1.1), "spacing of x varies"),
+        (np.concatenate([np.arange(250.0), np.arange(250.0)[::-1]]), "x repeats values"),
+        (np.arange(500) + 0.2 * (-1.0) ** (np.arange(500) // 7), "spacing of x varies"),
+    ],
+    ids=["uneven", "there and back", "shaken"],
+)
+def test_what_no_rounding_explains_is_refused(folder, x, says):
+    with pytest.raises(ValueError, match=says):
+        columns(folder, x, np.arange(500) % 7, 3)
+
+
+def test_points_given_twice_are_refused(folder):
+    rows = [f"{i % 70},{i // 70},{i % 11}" for i in range(70 * 70)]
+    (folder / "t.csv").write_text("# points: x [um], y [um], z [um]\n" + "\n".join([*rows, rows[5]]))
+    with pytest.raises(ValueError, match="x and y repeat points"):
+        read("t.csv")
+
+
+@pytest.mark.parametrize(
+    ("unit", "step", "says"),
+    [
+        (
+            "m",
+            0.16,
+            "the field is 163.8 m with lengths in m, scans have 1e-06 to 1 m; were lengths in um meant",
+        ),
+        ("um", 5e-4, "the field is 5.12e-07 m with lengths in um"),
+    ],
+)
+def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
+    x, walk = step * np.arange(1024), np.cumsum(np.random.default_rng(0).standard_normal(1024))
+    rows = "".join(f"{a:.6g} {b:.6g}\n" for a, b in zip(x, walk, strict=True))
+    (folder / "f.txt").write_text(rows)
+    refused = refused_line(capsys, "surface", "f.txt", "--unit", unit)
+    assert says in refused
+    assert refused.endswith("that the size is right (--force)\n")
+    run(capsys, "surface", "f.txt", "--unit", unit, "--force")
+
+
+def test_units_as_instruments_write_them(folder, monkeypatch):
+    """A .sur of UTF-8 is read as Latin-1: µm becomes Âµm."""
+    z = np.random.default_rng(0).standard_normal((70, 70))
+    made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="Âµm")
+    monkeypatch.setattr(SurfaceTopography, "read_topography", lambda path: made)
+    (folder / "t.foo").write_bytes(bytes(1000))
+    assert read("t.foo").dx == pytest.approx(1e-6)
+    made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="furlong")
+    with pytest.raises(ValueError, match=r"t\.foo: its unit 'furlong' is no length that is known"):
+        read("t.foo")
+
+
+@pytest.mark.parametrize("unit", ["um", "µm", "μm"])
+def test_micrometres_in_all_spellings(folder, unit, line):
+    found = columns(folder, np.arange(200), np.arange(200) % 7, 0, unit)
+    assert found.dx == pytest.approx(1e-6)
+
+
+def test_refused_without_slow_imports(folder):
+    """scipy's fits, matplotlib and SurfaceTopography take a second or two to import."""
+    (folder / "a.png").write_bytes(b"\x89PNG" + bytes(100))
+    (folder / "a.sur").write_bytes(bytes(1000))
+    (folder / "a.txt").write_text("1 2\n" * 200)
+    code = (
+        "import sys; from jointfmu import cli; "
+        "assert [cli.main(['surface', f'a.{s}']) for s in ('png', 'sur', 'txt')] == [2, 2, 2]; "
+        "print([m for m in ('scipy.optimize', 'matplotlib', 'SurfaceTopography') if m in sys.modules])"
+    )
+    out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert out.stdout.strip() == "[]"
+
+
+def test_signatures_are_those_of_the_installed_readers():
+    from SurfaceTopography.IO import MagicMatch, readers
+
+    for reader in readers:
+        for place, mark in getattr(reader, "_magic", None) or []:
+            assert sift.signed(bytes(place) + mark), reader
+        if reader.can_read(b"\x00\x01junk" * 100) != MagicMatch.NO:
+            assert not set(reader._file_extensions) & set(sift.SIGNED), reader
+
+
+def test_roughness_and_level_are_printed(folder, capsys, area):
+    out = json.loads(run(capsys, "surface", "area.csv", "--json").out)
+    rough = out["roughness"]
+    flat = without_form(area)
+    assert rough["scans"][0]["Sq"] == pytest.approx(flat.z.std(), rel=1e-5)
+    assert rough["scans"][0]["Sa"] == pytest.approx(np.abs(flat.z).mean(), rel=1e-5)
+    assert rough["longest_wave"] == pytest.approx(1e-3)
+    assert 0.9 * flat.z.std() < rough["h"] <= flat.z.std() * (1.0 + 1e-5)
+    assert rough["stiffness_per_MPa"] == pytest.approx(1e6 / (0.45 * rough["h"]), rel=1e-12)
+    short = json.loads(run(capsys, "surface", "area.csv", "--longest-wave", "2e-4", "--json").out)
+    assert short["roughness"]["h"] < 0.6 * rough["h"]
+    text = run(capsys, "surface", "area.csv").out
+    assert f"Sq = {1e6 * flat.z.std():.4g} um, Sa = {1e6 * np.abs(flat.z).mean():.4g} um, h = " in text
+    assert f"stiffness per area p/(0.45 h) = {1e6 / (0.45 * rough['h']):.3g} N/m3 per MPa" in text
+    assert "Rq = " in run(capsys, "surface", "line.csv").out
+
+
+def test_sides_are_written_where_they_belong(folder, capsys):
+    """The other side of a default joint's own surface is not that of the scan; a given file keeps its own."""
+    start = ["surface", "line.csv", "--joint", "bolted_joint", "--out", "s.toml", "--side"]
+    h = json.loads(run(capsys, "surface", "line.csv", "--json").out)["roughness"]["h"]
+    for side, names in (("1", ["Rq1"]), ("2", ["Rq2"]), ("both", ["Rq1", "Rq2"])):
+        run(capsys, *start, side)
+        assert load("s.toml").roughness == dict.fromkeys(names, h)
+    run(capsys, *start, "2")
+    said = run(capsys, "surface", "area.csv", "--params", "s.toml", "--side", "1", "--out", "t.toml")
+    file = load("t.toml")
+    assert file.roughness["Rq2"] == h
+    assert set(file.roughness) == {"Rq1", "Rq2"}
+    assert "surface.D, surface.G are those of side 1 alone" in said.err
+    together = float(np.hypot(file.roughness["Rq1"], h))
+    assert f"(h = {1e6 * together:.4g} um of both sides)" in said.out
+    run(capsys, "surface", "line.csv", "line.csv", "--params", "s.toml", "--out", "p.toml")
+    assert load("p.toml").roughness == {"Rq1": h, "Rq2": h}
+
+
+def test_a_joint_by_its_roughness_gets_h_and_its_kin(folder, capsys):
+    given = default("bolted_joint", "roughness")
+    (folder / "r.toml").write_text(dump(given))
+    command = ["surface", "line.csv", "--params", "r.toml", "--side", "both", "--longest-wave", "5e-4"]
+    out = json.loads(run(capsys, *command, "--out", "s.toml", "--json").out)
+    file = load("s.toml")
+    assert file.law == "roughness"
+    assert file.roughness == given.roughness
+    assert file.values.h == pytest.approx(out["roughness"]["h"])
+    assert file.values.h == pytest.approx(np.sqrt(2.0) * out["roughness"]["scans"][0]["h"])
+    assert (file.values.longest_wave, file.values.slope) == (5e-4, out["roughness"]["slope"])
+    assert file.values.hurst == pytest.approx(2.0 - 1.42, abs=0.03)
+    assert file.values.H == given.values.H

@@ -1,6 +1,7 @@
 """Made surfaces are identified again; intervals, ranges, pairs and joints are what they claim to be."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -179,30 +180,42 @@ def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
         assert 200.0 < G.decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
     (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
     assert f"spans {best.profile.G.decades:.1f} decades" in text
+    assert "lies at the end of 1 to 2" in found.doubt()
     for joint in KINDS:
+        before = default(joint)
+        after = with_surface(before, found)
+        assert after.values == before.values
+        assert after.roughness["Rq1"] == found.h
         with pytest.raises(ValueError, match=rf"G of smooth is not determined .*: {joint} needs a number"):
-            with_surface(default(joint), found)
+            with_surface(before, found, force=True)
 
 
 def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
     path, written = tmp_path / "smooth.csv", tmp_path / "joint.toml"
-    profile = smooth_profile(512)
+    profile = smooth_profile(256)
     x = np.arange(profile.z.size) * profile.dx
     np.savetxt(path, np.stack([x, profile.z], axis=1), delimiter=",")
     assert cli.main(["surface", str(path), "--unit", "m"]) == 0
     out, err = capsys.readouterr()
     assert "1.02" in out
     assert "not determined" in out
-    assert "surface.G not determined" in out
+    assert "surface.D, surface.G not determined: D = 1.02" in out
     assert "warning: G is not determined" in err
     assert cli.main(["surface", str(path), "--unit", "m", "--json"]) == 0
     said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)  # no NaN, no Infinity
     assert {"value": None, "low": None, "high": None} in [one["profile"]["G"] for one in said["results"]]
     assert said["joints"]["bolted_joint"]["surface.G"] is None
-    to_write = ("--joint", "bolted_joint", "--write", written)
-    refused = refused_line(capsys, "surface", path, "--unit", "m", *to_write)
+    assert said["determined"]["bolted_joint"] is False
+    assert said["not_determined"]["bolted_joint"].startswith("D = 1.02")
+    command = ("surface", path, "--unit", "m", "--joint", "bolted_joint", "--side", "1", "--write", written)
+    refused = refused_line(capsys, *command, "--force")
     assert f"surface.G of {path} is not determined" in refused
     assert not written.exists()
+    assert cli.main([str(word) for word in command]) == 0
+    assert "surface.D, surface.G stay as they were" in capsys.readouterr().err
+    file = load(written)
+    assert file.values == default("bolted_joint").values
+    assert file.roughness == {"Rq1": said["roughness"]["h"]}
 
 
 def test_roughness_leaves_the_floating_point_numbers():
@@ -258,7 +271,8 @@ def test_joint_gets_its_own_dimension(joint, tmp_path):
     for name in values:
         assert again.origins[name] == "user"
         assert again.sources[name].startswith("identified from synthetic surface by ")
-    untouched = set(again.origins) - set(values)
+    assert again.roughness["Rq1"] == found.h
+    untouched = {name for name in again.origins if not name.startswith("roughness.")} - set(values)
     kinds = default(joint).origins
     assert all(again.origins[name] == kinds.get(name, "user") for name in untouched)
 
@@ -276,3 +290,95 @@ def test_spacing_may_differ_along_x_and_y():
     found = identify([oblong])
     for method in ("structure", "psd"):
         assert found.best(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
+
+
+def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
+    """The bound cuts the error off: a clipped D comes after a free one, be it as sure as it likes."""
+    found = identify([gaussian_profile(512, 0.5, 1e-9, 1)])
+    sure = np.diag([1e-12, 1e-12])
+    for H in (0.02, 0.98):
+        clipped = replace(found.results[0].fit, H=H, covariance=sure)
+        results = (replace(found.results[0], fit=clipped), found.results[1])
+        changed = replace(found, results=results)
+        assert changed.best() is found.results[1]
+        assert "(structure) lies at the end of 1 to 2" in changed.doubt()
+    assert found.doubt() is None
+
+
+def test_intervals_apart_leave_the_dimension_open():
+    found = identify([gaussian_profile(512, 0.5, 1e-9, 1)])
+    first, second = found.results
+    D = replace(second.profile.D, low=first.profile.D.high + 0.01, high=first.profile.D.high + 0.1)
+    other = replace(second, profile=replace(second.profile, D=D))
+    apart = replace(found, results=(first, other))
+    assert apart.doubt().startswith("the methods disagree, D = ")
+    before = default("bolted_joint")
+    assert with_surface(before, apart).values == before.values
+    forced = with_surface(before, apart, force=True).values.surface
+    assert apart.best().profile.D.value == forced.D
+    crooked = replace(second, fit=replace(second.fit, deviation=1.0))
+    assert replace(found, results=(first, crooked)).doubt() == "not self-affine (psd)"
+
+
+def spectral_profile(points, power, seed, dx=1e-6):
+    """A Gaussian profile of a power spectral density, cut out of a periodic one four times as long."""
+    f = np.fft.rfftfreq(4 * points, dx)[1:]
+    noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(4 * points))
+    noise[0] = 0.0
+    noise[1:] *= np.sqrt(power(f))
+    z = np.fft.irfft(noise)[:points]
+    return Profile(z=z * 1e-6 / z.std(), dx=dx, name="made")
+
+
+def running(f):
+    """Local Hurst exponent from 0 at 100 um to 1 at 10 um, evenly in ln(frequency)."""
+    x, decade = np.log(f / 1e4) / np.log(10.0), np.log(10.0)
+    return np.exp(-2.0 * decade * np.where(x < 0.0, 0.0, np.where(x < 1.0, 0.5 * x**2, x - 0.5))) / f
+
+
+@pytest.mark.parametrize("seed", [50, 51])
+@pytest.mark.parametrize(
+    "power", [running, lambda f: (1.0 + (3e-5 * f) ** 2) ** -2.0], ids=["running", "rolling"]
+)
+def test_a_slope_that_runs_through_its_interval_is_not_self_affine(power, seed):
+    found = identify([spectral_profile(4096, power, seed)])
+    assert found.doubt() is not None
+
+
+@pytest.mark.parametrize("H", [0.3, 0.5, 0.8])
+def test_a_self_affine_profile_is_determined(H):
+    for seed in range(3):
+        assert identify([gaussian_profile(4096, H, 1e-9, seed)]).doubt() is None
+
+
+def test_both_sides_alike_are_a_pair_of_one_power():
+    line = gaussian_profile(1024, 0.5, 1e-9, 1)
+    one, both = identify([line]), identify([line], side="both")
+    assert both.h == pytest.approx(np.sqrt(2.0) * one.h, rel=1e-12)
+    assert both.slope == pytest.approx(np.sqrt(2.0) * one.slope, rel=1e-12)
+    for single, pair in zip(one.results, both.results, strict=True):
+        assert pytest.approx(single.fit.H, abs=1e-4) == pair.fit.H
+        # twice the power: the level of ln Phi rises by ln 2
+        assert pair.fit.level - single.fit.level == pytest.approx(np.log(2.0), abs=1e-4)
+        # one surface known once: no surer than alone
+        assert pair.fit.covariance[0, 0] == pytest.approx(single.fit.covariance[0, 0], rel=1e-3)
+    with pytest.raises(ValueError, match="side = both beside two files"):
+        identify([line, line], side="both")
+
+
+@pytest.mark.parametrize("shape", ["along x", "binary", "sine", "steps"])
+def test_maps_without_any_chance_do_not_crash(shape):
+    """What instruments' own example files have: ridges, steps, quantised heights."""
+    x, y = np.meshgrid(np.arange(64), np.arange(80))
+    z = {
+        "along x": np.sin(y / 3.0) + 0.0 * x,
+        "binary": ((x // 2 + y // 2) % 2).astype(float),
+        "sine": np.sin(2.0 * np.pi * x / 16.0) * np.sin(2.0 * np.pi * y / 20.0),
+        "steps": np.round(x / 20.0) + np.round(y / 20.0),
+    }[shape]
+    found = identify([Areal(z=1e-6 * z, dx=1e-6, dy=1e-6, name=shape)])
+    assert (found.doubt() is None) == (shape == "steps")  # their spectrum is a power law
+    assert 0.0 < found.h < 2e-6
+    assert with_surface(default("gear_contact"), found).roughness == {"Rq1": found.h} | {
+        name: value for name, value in default("gear_contact").roughness.items() if name != "Rq1"
+    }

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -79,6 +80,75 @@ def test_killed_and_resumed(fmu, tmp_path, capsys):
     )
 
 
+def state(pid):
+    """Whether a process runs, is gone, or is dead and not yet waited for."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return "gone"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.parametrize("moment", ["workers start", "runs"])
+def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
+    """Sent to all processes, as a terminal does: 130, one line, no worker left."""
+    out = tmp_path / "out"
+    arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "2", "--out", str(out)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "jointfmu", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    tasks, runs = Path(f"/proc/{process.pid}/task"), out / journal.RUNS
+
+    def children():
+        return [int(pid) for task in tasks.iterdir() for pid in (task / "children").read_text().split()]
+
+    def reached():
+        if moment == "runs":
+            return runs.exists() and runs.read_bytes().count(b"\n") >= 5
+        return len(children()) > 1  # beside multiprocessing's own helper
+
+    deadline = time.monotonic() + 60.0
+    while not reached():
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.005)
+    workers = children()
+    os.killpg(process.pid, signal.SIGINT)
+    printed = process.communicate(timeout=5.0)
+    assert process.returncode == 130
+    assert printed == (
+        "",
+        f"jointfmu sweep: interrupted; finished runs are kept in {out}, the same command resumes\n",
+    )
+    while any(state(pid) not in ("gone", "Z") for pid in workers):
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    before = indices(out)
+    assert cli.main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["now"] == 64 - len(before)
+    assert sorted(indices(out)) == list(range(64))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes there share no stream")
+def test_a_worker_that_dies_as_it_starts_prints_nothing():
+    code = (
+        "import subprocess, sys\n"
+        "from jointfmu.uncertainty.cluster import _mute\n"
+        "child = [sys.executable, '-c', '1/0']\n"
+        "with _mute():\n"
+        "    subprocess.run(child)\n"
+        "    print('own', file=sys.stderr)\n"
+        "print('after', file=sys.stderr)\n"
+        "subprocess.run([*child[:2], 'import sys; sys.stderr.write(str(1))'])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "own\nafter\n1"
+
+
 def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
     """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
     given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
@@ -113,10 +183,15 @@ def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, nativ
     task = pose(default(joint), given, to, 7)
     for entry in journal.entries(tmp_path):
         values = {**task.values, **entry["parameters"]}
-        found = task.reduced.evaluate(values, task.loads, np.ones((1, 1)))
+        found = task.reduced.evaluate(task.parameters, values, task.loads, np.ones((1, 1)))
         for output in set(found) & set(entry["columns"]):
             fmu_values = np.array(entry["columns"][output])
-            assert found[output][0, 1:] == pytest.approx(fmu_values[1:], rel=1e-4)  # as stated
+            patches = name == "BoltedJoint" and output.endswith(
+                "_xx"
+            )  # C_xx and K_xx: shear on 24 of the nodes
+            assert found[output][0, 1:] == pytest.approx(
+                fmu_values[1:], rel=5e-3 if patches else 1e-4
+            )  # as stated
 
 
 def test_every_run_fails(fmu, cluster, tmp_path, capsys):
@@ -155,7 +230,7 @@ def test_bands_of_the_runs(fmu, cluster, tmp_path):
     journal.claim(tmp_path, record)
     sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
     head, *rows = (tmp_path / journal.BANDS).read_text().splitlines()
-    column = head.split(",").index("K_WTS 50 %")
+    column = head.split(",").index("K_WTS 50 % [N.m/rad]")
     good = [entry["columns"]["K_WTS"] for entry in journal.entries(tmp_path) if "columns" in entry]
     median = [float(row.split(",")[column]) for row in rows]
     assert median == pytest.approx(np.median(good, axis=0), rel=1e-15)
@@ -200,5 +275,6 @@ def test_refused_folders_and_schedulers(fmu, tmp_path, capsys):
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "thesis.tex").write_text("x")
     assert "holds something else than a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
-    line = refused_line(capsys, *arguments, tmp_path / "new", "--scheduler", "nowhere")
+    line = refused_line(capsys, *arguments, tmp_path / "new" / "one", "--scheduler", "nowhere")
     assert "scheduler = nowhere: cannot be reached" in line
+    assert not (tmp_path / "new").exists()

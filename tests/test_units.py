@@ -116,7 +116,39 @@ def test_sizes_are_of_one_kind():
 
 
 @pytest.mark.parametrize(
-    "unit", ["in", "mmm", "kkg", "", "N/", "N/m/s", "N m", "m-2", "11", "m²", "kmin", "u"]
+    ("written", "ours"),
+    [
+        ("Nm", "N.m"),
+        ("N·m", "N.m"),
+        ("N*m", "N.m"),
+        ("kNm", "kN.m"),
+        ("mNm", "mN.m"),
+        ("Nmm", "N.mm"),
+        ("Ncm/arcmin", "N.cm/arcmin"),
+        ("Nm/rad", "N.m/rad"),
+        ("mm²", "mm2"),
+        ("N/mm^2", "MPa"),
+        ("N/m³", "N/m3"),
+        ("kg·m²", "kg.m2"),
+        ("°", "deg"),
+        ("degrees", "deg"),
+        ("\u2032", "arcmin"),
+        ("µrad", "urad"),
+        ("kgfm", "kgf.m"),
+        ("min", "min"),
+    ],
+)
+def test_units_as_people_write_them(written, ours):
+    assert (size(written), base(written)) == (size(ours), base(ours))
+
+
+def test_kilogram_force():
+    assert size("kgf.m") == constants.g
+    assert size("kgf.m/arcmin") == pytest.approx(constants.g / constants.arcmin, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "unit", ["in", "mmm", "kkg", "", "N/", "N/m/s", "N m", "m-2", "11", "kmin", "u", "Nx"]
 )
 def test_what_is_no_unit_is_refused_by_name(unit):
     with pytest.raises(ValueError, match=f"unit '{unit}'"):

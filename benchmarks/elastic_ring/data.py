@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive, contact_length
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive
 from jointfmu.quantity import check, quantity
 
 Array = NDArray[np.float64]
@@ -20,6 +20,7 @@ class Rings:
 
     wall: float = quantity("m", "thickness of the flexspline under its teeth, these smeared", gt=0.0)
     race: float = quantity("m", "thickness of the bearing's outer ring", gt=0.0)
+    cup_length: float = quantity("m", "length over which the radial deformation tapers to zero", gt=0.0)
     balls: int = quantity("1", "number of balls", ge=3.0, whole=True)
     ball_diameter: float = quantity("m", "diameter of a ball", gt=0.0)
     first_ball: float = quantity("1", "angle of a ball from the major axis")
@@ -38,6 +39,7 @@ class Rings:
 SIZE_14 = Rings(
     wall=0.4e-3 * 1.67 ** (1.0 / 3.0),
     race=1.0e-3,
+    cup_length=0.02,
     balls=23,
     ball_diameter=2.5e-3,
     first_ball=0.0,
@@ -51,6 +53,11 @@ SIZE_14 = Rings(
 )
 """Estimates for a drive of size 14; none is published for the CD-14-100 but the factor 1.67^(1/3) of the
 wall under the teeth (Hu 2023, section 2.3). docs/harmonic_drive_field.md says where each comes from."""
+
+
+def contact_length(drive: HarmonicDrive) -> float:
+    """Length [m] of the contact along the drive's axis."""
+    return drive.A_0 / (2.0 * np.pi * drive.radius)
 
 
 def tooth_traction(drive: HarmonicDrive, rings: Rings, torque: float) -> Traction:

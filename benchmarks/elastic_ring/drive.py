@@ -19,16 +19,18 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from jointfmu.curve import Curve, approach_curve
-from jointfmu.footprint.lobes import HEIGHT_WEIGHTS, HEIGHTS
 from jointfmu.footprint.nodes import Footprint
 from jointfmu.interface import at_pressure
-from jointfmu.joints.harmonic_drive.law import HarmonicDrive, contact_length, lobe_point
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
-from .data import Rings, Traction, ball_stiffness
+from .data import Rings, Traction, ball_stiffness, contact_length
 from .ring import Circle, Ring
 
 Array = NDArray[np.float64]
+_ALONG = np.polynomial.legendre.leggauss(6)
+HEIGHTS, HEIGHT_WEIGHTS = 0.5 * (1.0 + _ALONG[0]), 0.5 * _ALONG[1]
+"""Sections along the contact from 0 to 1 and their weights [1]."""
 _PRESSED = 5e-6
 """Overlap [m] of the balls from which Newton's method starts; a tenth of it between the rings."""
 
@@ -58,12 +60,12 @@ def section(
 
     Raises ValueError if the height is not on the cup, RuntimeError if the equilibrium is not found.
     """
-    if not 0.0 <= height < drive.cup_length:
+    if not 0.0 <= height < rings.cup_length:
         raise ValueError(
-            f"height = {height:g} m is outside [0, {drive.cup_length:g}): distance from the opening"
+            f"height = {height:g} m is outside [0, {rings.cup_length:g}): distance from the opening"
         )
     circle = _circle(drive.radius, rings.balls * rings.elements_per_ball)
-    w = drive.radial_deformation * (1.0 - height / drive.cup_length)
+    w = drive.radial_deformation * (1.0 - height / rings.cup_length)
     cam = _Cam(w, drive.eccentricity, rings.eccentric_angle)
     flexspline = Ring.of(drive.flexspline.E, drive.flexspline.nu, rings.wall)
     bearing = Ring.of(drive.bearing.E, drive.bearing.nu, rings.race)
@@ -105,27 +107,38 @@ def field(drive: HarmonicDrive, rings: Rings, traction: Traction) -> tuple[Footp
     curve = approach_curve(drive.law)
     z = HEIGHTS * contact_length(drive)
     sections = [section(drive, rings, height, traction, curve) for height in z.tolist()]
-    return footprint(drive, sections, z, HEIGHT_WEIGHTS), sections
+    return footprint(drive, rings, sections, z, HEIGHT_WEIGHTS), sections
 
 
-def footprint(drive: HarmonicDrive, sections: list[Section], z: Array, axial: Array) -> Footprint:
+def footprint(
+    drive: HarmonicDrive, rings: Rings, sections: list[Section], z: Array, axial: Array
+) -> Footprint:
     """Nodes (n) of sections at heights z (k) [m] that stand for parts `axial` (k) [1] of the length."""
     theta = np.stack([s.theta for s in sections])
     height = np.broadcast_to(z[:, None], theta.shape)
-    # a lobe whose edge is a quarter away: t is theta; the sign of x does not matter to a twist
-    point = lobe_point(drive, np.sin(theta), np.cos(theta), height, drive.mismatch_pressure)
+    position, normal = oval(drive, rings, theta, height)
     share = axial[:, None] * np.stack([s.weight for s in sections]) / (2.0 * np.pi * drive.radius)
-    normal_z = np.broadcast_to(point.normal_z, theta.shape)
     return Footprint(
         share=share.ravel(),
-        position=np.stack([point.x, point.y, height], axis=-1).reshape(-1, 3),
-        normal=np.stack([point.normal_x, point.normal_y, normal_z], axis=-1).reshape(-1, 3),
+        position=position.reshape(-1, 3),
+        normal=normal.reshape(-1, 3),
         pressure=np.stack([s.pressure for s in sections]).ravel(),
     )
 
 
+def oval(drive: HarmonicDrive, rings: Rings, theta: Array, height: Array) -> tuple[Array, Array]:
+    """Positions [m] and unit normals (..., 3) on the elliptical cone, at angles and heights (...) [m]."""
+    w = drive.radial_deformation * (1.0 - height / rings.cup_length)
+    a, b = drive.radius + w, drive.radius - w
+    slope = drive.radial_deformation / rings.cup_length * np.cos(2.0 * theta)
+    flat = 1.0 / np.hypot(1.0, slope)
+    across = flat / np.hypot(b * np.cos(theta), a * np.sin(theta))
+    position = np.stack([a * np.cos(theta), b * np.sin(theta), height], axis=-1)
+    return position, np.stack([across * b * np.cos(theta), across * a * np.sin(theta), slope * flat], axis=-1)
+
+
 def torsional_stiffness(drive: HarmonicDrive, nodes: Footprint) -> float:
-    """K_TS [N.m/rad] of nodes by Eq. 45, corrected, without the calibrated `pair_scale`."""
+    """K_TS [N.m/rad] of nodes by Eq. 45 and the law, both corrected, without any scale."""
     state = at_pressure(drive.law, nodes.pressure)
     return float(nodes.rotation(state["K_N"], state["K_T"], (0.0, 0.0, 1.0)))
 

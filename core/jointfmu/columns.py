@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from .units import Sizes
+from .units import Sizes, measured
 
 Array = NDArray[np.float64]
 Column: TypeAlias = NDArray[Any]
@@ -74,6 +74,15 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
     return Columns(path, columns, numbers)
 
 
+def names(path: str | Path) -> list[str]:
+    """Names of a file's columns, in lower case; none if it is empty. Raises ValueError as `read`."""
+    lines = content(Path(path))
+    if not lines:
+        return []
+    heads = (_HEADING.match(cell) for cell in cells(lines[0][1], separator(lines[0][1])))
+    return [match["name"].lower() for match in heads if match]
+
+
 def content(path: Path) -> list[tuple[int, str]]:
     """Numbers and texts of a file's lines, without comments and empty ones.
 
@@ -129,9 +138,13 @@ def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[
             raise ValueError(
                 f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
             )
-        if match["unit"] not in spec[name]:
-            raise ValueError(f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed}")
-        places[name] = place, spec[name][match["unit"]]
+        try:
+            places[name] = place, measured(match["unit"], spec[name])
+        except ValueError:
+            raise ValueError(
+                f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed} and others that "
+                "measure the same"
+            ) from None
     if not places:
         shown = ", ".join(cell.strip() for cell in head)[:80]
         raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")

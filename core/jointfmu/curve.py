@@ -8,6 +8,7 @@ the energy its exact integral.
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import factorial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -85,20 +86,21 @@ class Curve:
         nodes = self.displacement
         i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
         inside = np.clip(x, nodes[0], nodes[-1])
-        h = nodes[i + 1] - nodes[i]
-        t = (inside - nodes[i]) / h
-        out, a = [], self._coefficients[:, i]
-        for n in range(order + 1):
-            value = a[-1]
-            for coefficient in a[-2::-1]:
-                value = value * t + coefficient
-            out.append(value / h**n)
-            a = a[1:] * np.arange(1.0, a.shape[0]).reshape(-1, *([1] * x.ndim))
-        if order == 0:
-            out[0] = out[0] + (x - inside) * self.derivatives(inside, 1)[1]
-            return out
-        out[0] = out[0] + (x - inside) * out[1]
+        first = nodes[i]
+        h = nodes[i + 1] - first
+        t = (inside - first) / h
+        top, *rest = self._coefficients[::-1]
+        out = [top[i], *(np.zeros(x.shape) for _ in range(order))]
+        for coefficient in rest:  # Horner's scheme for the value and its derivatives over their factorials
+            for n in range(order, 0, -1):
+                out[n] = out[n] * t + out[n - 1]
+            out[0] = out[0] * t + coefficient[i]
+        out = [value * (factorial(n) / h**n) for n, value in enumerate(out)]
         beyond = x != inside
+        if not np.any(beyond):
+            return out
+        slope = out[1] if order else self.derivatives(inside, 1)[1]
+        out[0] = out[0] + (x - inside) * slope
         return out[:2] + [np.where(beyond, 0.0, value) for value in out[2:]]
 
     def energy(self, x: ArrayLike) -> Array:
@@ -202,18 +204,24 @@ def closing(p: Number, k: Number, bend: Number, z: Number) -> tuple[Number, Numb
     While nearly all spots are plastic the laws give a stiffness that vanishes at a finite pressure,
     so that the approach, the integral of dp/k, would start at minus infinity. Below the point where
     the largest spot is CLOSING_RATIO times the largest plastic one the pressure is therefore
-    continued to zero by `p z^3 (a + b z + c z^2)` over a length 4 p/k, twice continuously
-    differentiable at both ends. Returned are displacement from that point, load, stiffness and its
-    derivative at z from 0 to 1.
+    continued to zero by `p z^3 (a + b z + c z^2)` over a length n p/k, twice continuously
+    differentiable at both ends. n is 4 unless k grows with less than the power 0.75 of p, where so long a
+    closing would begin with a negative load: then the longest that does not. Returned are displacement from
+    that point, load, stiffness and its derivative at z from 0 to 1.
     """
-    length = 4.0 * p / k
-    curvature = bend * length**2 / p  # 16 times d ln k/d ln p
-    c = 0.5 * curvature - 6.0
-    a, b = c, 1.0 - 2.0 * c
+    reach = closing_reach(p, k, bend)
+    length = reach * p / k
+    c = 0.5 * bend * length**2 / p - 3.0 * reach + 6.0
+    a, b = 4.0 - reach + c, reach - 3.0 - 2.0 * c
     load = p * z**3 * (a + b * z + c * z**2)
     stiffness = p / length * z**2 * (3.0 * a + 4.0 * b * z + 5.0 * c * z**2)
     slope = p / length**2 * z * (6.0 * a + 12.0 * b * z + 20.0 * c * z**2)
     return (z - 1.0) * length, load, stiffness, slope
+
+
+def closing_reach(p: Number, k: Number, bend: Number) -> Number:
+    """Length of the closing over p/k [1], see `closing`."""
+    return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * bend * p / k**2, 4.0)))
 
 
 def approach_curve(law: Law) -> Curve:

@@ -151,7 +151,8 @@ def evaluate(law: Law, u: Number) -> dict[str, Number]:
     state = law.state(np.where(empty, LEAST, u))
     zero = np.where(empty, 0.0, 1.0)
     state = {name: value if name in RATIOS else zero * value for name, value in state.items()}
-    spot = law.spots().reference * np.exp(u)
+    spots = law.spots()
+    spot = spots.reference * np.exp(u) if spots.sized else np.nan * u
     return {"largest_spot": spot, "pressure": state["F"] / law.A_0, **state}
 
 
@@ -167,6 +168,8 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     """
     a = np.asarray(area, dtype=np.float64)
     spots = checked_spots(law)
+    if not spots.sized:
+        raise ValueError("the law knows no largest spot; expected a pressure")
     bad = ~(np.isfinite(a) & (a > 0.0))
     if np.any(bad):
         raise ValueError(f"largest spot = {a[bad].flat[0]:g} m2 is outside (0, inf): area of a spot")
@@ -188,3 +191,35 @@ def stiffness_curve(law: Law, pressure: ArrayLike, name: str = "normal") -> tupl
     u = largest_spot(law, pressure)
     k = spots.total(name, u) / law.A_0
     return k, spots.slope(name, u) / spots.slope("load", u)
+
+
+def beyond(law: Law, pressure: float) -> list[str]:
+    """What a law no longer means at a nominal pressure [Pa], one line each with its limit; mostly nothing.
+
+    Above the hardness of the softer body the contact yields as a whole; a real area beyond the nominal one
+    says that the spots have run into each other. The numbers there are extrapolations.
+    """
+    found = []
+    hardness = float(law.hardness)
+    if pressure > hardness:
+        found.append(
+            f"a pressure of {pressure:.4g} Pa is above the hardness of the softer body, {hardness:.4g} Pa, "
+            "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
+        )
+    limit = _full_contact(law, pressure)
+    if limit is not None:
+        found.append(
+            f"a pressure of {pressure:.4g} Pa gives a real area beyond the nominal one, {law.A_0:.4g} m2, "
+            f"which the interface law reaches at {limit:.3g} Pa"
+        )
+    return found
+
+
+def _full_contact(law: Law, pressure: float) -> float | None:
+    """Pressure [Pa] at which the real area is A_0; None if it is less at the given one."""
+    with np.errstate(over="ignore"):
+        if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:
+            return None
+        below = np.geomspace(1e-6 * pressure, pressure, 400)
+        area = at_pressure(law, below)["A_r"]
+    return float(np.exp(np.interp(np.log(law.A_0), np.log(area), np.log(below))))

@@ -1,23 +1,27 @@
 """TOML files <-> parameter sets: the only reader and writer of models/*.toml.
 
-A file is `schema = 1`, `joint = KIND`, `name = ...` and one entry per parameter,
+A file is `schema = 1`, `joint = KIND`, `law = LAW` (absent: the joint's first one), `name = ...` and one
+entry per parameter,
 
     [surface]
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
 `kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
 A section `[inputs]` of the same form gives start values of the joint's inputs; others start at zero.
+A section `[roughness]` states what is known of the surfaces, see `roughness`; no law reads it.
 """
 
 import json
 import os
 import tempfile
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import Field, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from . import roughness
 from .joints import KINDS
 from .quantity import build, changed, flat_fields, flatten, problem, quantity
 
@@ -29,6 +33,8 @@ _PER_LINE = 5
 """Numbers of a list on a line."""
 _INPUTS = "inputs."
 """Prefix of the names of start values."""
+_ROUGHNESS = "roughness."
+"""Prefix of the names of roughnesses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +43,10 @@ class ParameterFile:
 
     joint   : a key of joints.KINDS
     name    : of this parameter set
-    values  : the parameter set, an instance of KINDS[joint].parameters
-    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`
+    values  : the parameter set, an instance of a value of KINDS[joint].laws
+    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME`
     inputs  : {input: start value in its SI unit}, where it is given
+    roughness : {name: height [m]} of the surfaces, where it is known: names of `roughness.DECLARED`
     flat    : {structured name: value} of `values`, opened once
     """
 
@@ -49,10 +56,16 @@ class ParameterFile:
     origins: Mapping[str, str]
     sources: Mapping[str, str]
     inputs: Mapping[str, float] = field(default_factory=dict)
+    roughness: Mapping[str, float] = field(default_factory=dict)
     flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "flat", flatten(self.values))
+
+    @property
+    def law(self) -> str:
+        """Name of its interface law."""
+        return KINDS[self.joint].law(self.values)
 
     def start(self, name: str) -> float:
         """Start value of an input, in its SI unit: zero unless it is given."""
@@ -67,13 +80,32 @@ class ParameterFile:
             sources={**self.sources, **dict.fromkeys(changes, source)},
         )
 
+    def with_roughness(self, stated: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
+        """The same file with heights [m] of the surfaces; what spoke of the same side is replaced.
+
+        Raises ValueError as `roughness.check`.
+        """
+        heights = roughness.check(stated, _ROUGHNESS)
+        gone = {other for name in heights for other in roughness.excluded(name)}
+        texts = {_ROUGHNESS + name for name in gone}
+        names = [_ROUGHNESS + name for name in heights]
+        origins = {name: kind for name, kind in self.origins.items() if name not in texts}
+        sources = {name: text for name, text in self.sources.items() if name not in texts}
+        return replace(
+            self,
+            roughness={name: value for name, value in self.roughness.items() if name not in gone} | heights,
+            origins=origins | dict.fromkeys(names, origin),
+            sources=sources | dict.fromkeys(names, source),
+        )
+
 
 def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     """Read and check a parameter file.
 
     Raises ValueError with one line that names the file, the entry, its value and what is allowed:
     a missing or broken file, another joint's file, an unknown or missing name, a foreign unit, a
-    value of the wrong type or outside its interval; the same for the start values of inputs.
+    value of the wrong type or outside its interval, one that contradicts another; the same for the start
+    values of inputs.
     """
     path = Path(path)
     document = read_document(path, "a parameter file")
@@ -82,15 +114,24 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
         raise ValueError(f"{path}: joint = {stated!r}, allowed are {', '.join(KINDS)}")
     if joint is not None and stated != joint:
         raise ValueError(f"{path}: joint = {stated!r}, expected a parameter file of a {joint!r}")
-    body = {k: v for k, v in document.items() if k not in ("schema", "joint", "name")}
-    cls = KINDS[stated].parameters
-    values, origins, sources = entries(path, dict(flat_fields(cls)) | _input_fields(stated), body)
-    given = {name: values.pop(name) for name in list(values) if name.startswith(_INPUTS)}
+    laws = KINDS[stated].laws
+    law = document.get("law", next(iter(laws)))
+    if not isinstance(law, str) or law not in laws:
+        raise ValueError(f"{path}: law = {law!r}, allowed are {', '.join(laws)}")
+    body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
+    cls = laws[law]
+    declared = dict(flat_fields(cls)) | _input_fields(stated) | _roughness_fields()
+    values, origins, sources = entries(path, declared, body)
+    given, surfaces = _section(values, _INPUTS), _section(values, _ROUGHNESS)
     try:
-        inputs, parameters = _start_values(stated, given), build(cls, values)
+        inputs, heights = _start_values(stated, given), roughness.check(surfaces, _ROUGHNESS)
+        parameters = build(cls, values)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
-    return ParameterFile(stated, str(document.get("name", path.stem)), parameters, origins, sources, inputs)
+    for text in KINDS[stated].contradictions(parameters):
+        raise ValueError(f"{path}: {text}")
+    name = str(document.get("name", path.stem))
+    return ParameterFile(stated, name, parameters, origins, sources, inputs, heights)
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:
@@ -157,30 +198,45 @@ def _input_fields(joint: str) -> dict[str, Field[Any]]:
     return {_INPUTS + v.name: quantity(v.unit, v.doc, ge=v.low) for v in inputs}
 
 
+def _roughness_fields() -> dict[str, Field[Any]]:
+    """Fields of the roughnesses, named as in a parameter file."""
+    return {_ROUGHNESS + name: item for name, item in roughness.DECLARED.items()}
+
+
+def _section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
+    """What stands in a section, taken out of values by structured name: {name in the section: value}."""
+    return {n.removeprefix(prefix): values.pop(n) for n in list(values) if n.startswith(prefix)}
+
+
 def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
-    """{input: start value} of values by structured name.
+    """{input: start value}, checked.
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
     declared = _input_fields(joint)
-    problems = [f"unknown name {name!r}" for name in given if name not in declared]
+    named = {_INPUTS + name: value for name, value in given.items()}
+    problems = [f"unknown name {name!r}" for name in named if name not in declared]
     if problems:
         problems.append(f"allowed are {', '.join(declared)}")
-    texts = (problem(name, value, declared[name]) for name, value in given.items() if name in declared)
+    texts = (problem(name, value, declared[name]) for name, value in named.items() if name in declared)
     problems += [text for text in texts if text]
     if problems:
         raise ValueError("; ".join(problems))
-    return {name.removeprefix(_INPUTS): float(value) for name, value in given.items()}
+    return {name: float(value) for name, value in given.items()}
 
 
 def dump(parameters: ParameterFile) -> str:
-    """The parameter set, with the start values of inputs, as the text of a parameter file."""
-    declared = dict(flat_fields(type(parameters.values)))
+    """The parameter set, with roughnesses and the start values of inputs, as the text of a parameter file."""
+    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields()
     values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
+    values += [(_ROUGHNESS + name, value) for name, value in parameters.roughness.items()]
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
         values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]
-    lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"', f"name = {_quoted(parameters.name)}"]
+    lines = [f"schema = {SCHEMA}", f'joint = "{parameters.joint}"']
+    if parameters.joint in KINDS:  # else a partner of a joint
+        lines.append(f'law = "{parameters.law}"')
+    lines.append(f"name = {_quoted(parameters.name)}")
     section = ""
     for name, value in values:
         head, _, leaf = name.rpartition(".")
@@ -209,9 +265,9 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def default(joint: str) -> ParameterFile:
-    """The default parameter set of a joint, shipped with the package."""
-    return load(KINDS[joint].default_file(), joint)
+def default(joint: str, law: str | None = None) -> ParameterFile:
+    """The default parameter set of a joint, shipped with the package; with its first law, or another."""
+    return load(KINDS[joint].default_file(law), joint)
 
 
 def parse_setting(text: str) -> tuple[str, Any]:
@@ -254,6 +310,26 @@ def write_bytes(path: str | Path, data: bytes) -> None:
         raise _unwritable(path, error) from None
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextmanager
+def made_folder(path: Path) -> Iterator[None]:
+    """A folder, made with those above it where need be; what was made goes again, if empty, on a failure.
+
+    Raises ValueError naming the path if it cannot be made.
+    """
+    new = [folder for folder in (path, *path.parents) if not folder.exists()]
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):  # the first that is not empty ends it
+            for folder in new:
+                folder.rmdir()
+        raise
 
 
 def check_writable(path: str | Path) -> None:

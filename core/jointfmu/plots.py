@@ -6,7 +6,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .parameters import check_writable, write_bytes
+from .reference import ROLES
+from .units import UNITS, display_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +29,12 @@ STYLE: Any = {
     "grid.color": "#e4e4e4",
     "axes.axisbelow": True,
     "legend.frameon": False,
+}
+_MARKERS = {
+    "calibration": {"marker": "o", "mfc": "white"},
+    "circular": {"marker": "x"},
+    "interpolation": {"marker": "D", "mfc": "white"},
+    "prediction": {"marker": "o"},
 }
 RESOLUTION = 150
 """Dots per inch of a PNG."""
@@ -43,6 +54,18 @@ def check(path: str | Path) -> None:
         raise ValueError(
             "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
         ) from None
+
+
+def published_mark(role: str, colour: str = "black") -> dict[str, Any]:
+    """How a published number of a role is drawn, and its legend; filled points are predictions alone."""
+    shape = _MARKERS.get(role, {"marker": "+"})
+    return {"linestyle": "none", "color": colour, "ms": 5, "label": f"published, {ROLES[role]}"} | shape
+
+
+def shown(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
+    """The display unit in which values read best, and the factor to it."""
+    name = display_unit(unit, float(np.max(np.abs(values))))
+    return name, UNITS[unit].display[name]
 
 
 @contextmanager

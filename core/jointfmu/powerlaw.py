@@ -153,12 +153,16 @@ class Spots:
     m         : [1]  exponent of the size distribution
     weight    : [1]  its prefactor w
     terms     : {quantity: regimes}; `load` [N] is always there
+    onset     : [1]  log-area where the stiffness begins, of a law without plastic spots
+    sized     : whether u is the log-area of a largest spot, and not just a measure of the load
     """
 
     reference: Number
     m: Number
     weight: Number
     terms: Mapping[str, tuple[Term, ...]]
+    onset: Number = None
+    sized: bool = True
 
     def total(self, name: str, u: Number) -> Number:
         """Sum over all spots, the largest of which has log-area `u`."""
@@ -172,6 +176,8 @@ class Spots:
     @property
     def stiff_onset(self) -> Number:
         """Log-area [1] up to which every spot is plastic, so that the stiffness is zero."""
+        if self.onset is not None:
+            return self.onset
         return reduce(np.minimum, (term.lower for term in self.terms["normal"]))
 
     @property
@@ -182,7 +188,8 @@ class Spots:
     @property
     def ends(self) -> list[Number]:
         """The same as numbers or symbols, unsorted, with repetitions."""
-        return [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
+        own = [end for term in self.terms["normal"] for end in (term.lower, term.upper) if end is not None]
+        return own if self.onset is None else [*own, self.onset]
 
     def log_total(self, name: str, u: Number) -> tuple[Number, Number]:
         """`ln Q` and its derivative in `u` (one pass, for the inversion)."""

@@ -1,5 +1,6 @@
 """Load ramps: any of the FMUs driven through fmpy from zero, every output read at every point."""
 
+import os
 import shutil
 import sys
 import zipfile
@@ -8,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,43 +71,75 @@ def run(
 
     Raises
     ------
-    ValueError   : the path is no FMU, a name is unknown, a value is impossible, or the FMU refuses a
-        value (the message is the FMU's own)
+    ValueError   : the path is no FMU that can be driven (`unpacked`, `slave`), a name is unknown, a value
+        is impossible, or the FMU refuses a value (the message is the FMU's own)
     RuntimeError : the FMU does not instantiate
     """
-    points = steps(to, step)
+    return along(fmu, input_name, steps(to, step), settings)
+
+
+def along(
+    fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, Any] | None = None
+) -> RampResult:
+    """Drive one input along points (n), one step of one second each; all else stays. Raises as `run`."""
     with unpacked(fmu) as (folder, description):
         return _drive(folder, description, input_name, points, dict(settings or {}), str(fmu))
+
+
+def units(fmu: str | Path) -> dict[str, str]:
+    """{variable: its unit} of an FMU; ValueError as `unpacked`."""
+    with unpacked(fmu) as (_, description):
+        return {v.name: v.unit or "1" for v in description.modelVariables}
 
 
 @contextmanager
 def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
     """Folder and fmpy model description of an FMU, removed afterwards.
 
-    Raises ValueError if there is no such file or it is no FMU.
+    Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
+    version of FMI, not for co-simulation, or for other platforms.
     """
-    from fmpy import extract, platform, read_model_description, supported_platforms
+    from fmpy import extract, read_model_description
 
     path = Path(fmu)
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file; expected an FMU")
     try:
-        description = read_model_description(str(path), validate=False)
-        folder = extract(str(path))
+        version = _fmi_version(path)
+        if known := version.startswith(("2.", "3.")):
+            description = read_model_description(str(path), validate=False)
+            folder = extract(str(path))
     except (zipfile.BadZipFile, KeyError, OSError) as error:
         raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
     except Exception as error:  # fmpy raises bare Exception for a broken description
         raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
-    if platform not in (built_for := supported_platforms(str(path))):
-        shutil.rmtree(folder, ignore_errors=True)
-        raise ValueError(f"{path}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
+    if not known:
+        raise ValueError(f"{path}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
     try:
+        _check_interface(description, path)
         _check_python_flavour(Path(folder) / "resources", path)
         yield folder, description
     finally:
         while (resources := str(Path(folder) / "resources")) in sys.path:
             sys.path.remove(resources)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _fmi_version(path: Path) -> str:
+    """The version of FMI, before fmpy reads the rest: it stumbles over what FMI 1.0 leaves out."""
+    with zipfile.ZipFile(path) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    return root.get("fmiVersion", "none")
+
+
+def _check_interface(description: Any, source: Path) -> None:
+    """Refuse what cannot be driven: no co-simulation, no binary for this platform."""
+    from fmpy import platform, supported_platforms
+
+    if description.coSimulation is None:
+        raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
+    if platform not in (built_for := supported_platforms(str(source))):
+        raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
 
 
 def _check_python_flavour(resources: Path, source: Path) -> None:
@@ -140,7 +174,7 @@ def _drive(
             raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []
-    with slave(folder, md, messages) as fmu:
+    with slave(folder, md, messages, source) as fmu:
         try:
             fmu.begin()
             for name, value in settings.items():
@@ -162,25 +196,31 @@ def _drive(
 
 
 @contextmanager
-def slave(folder: str, md: Any, messages: list[str]) -> Iterator[Any]:
+def slave(folder: str, md: Any, messages: list[str], source: str) -> Iterator[Any]:
     """An instantiated co-simulation slave; what it logs is appended to `messages`.
 
-    Raises RuntimeError with the logged reason if it does not instantiate.
+    Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
+    RuntimeError if it does not instantiate.
     """
     from . import host
 
     flavour = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
-    fmu = flavour(
-        guid=md.guid,
-        unzipDirectory=folder,
-        modelIdentifier=md.coSimulation.modelIdentifier,
-        instanceName="ramp",
-    )
+    before = Path.cwd()
+    try:
+        fmu = flavour(
+            guid=md.guid,
+            unzipDirectory=folder,
+            modelIdentifier=md.coSimulation.modelIdentifier,
+            instanceName="ramp",
+        )
+    except Exception as error:  # fmpy raises bare Exception, ctypes its own
+        os.chdir(before)  # where fmpy has left it
+        reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
+        raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
     try:
         fmu.start(lambda text: messages.append(" ".join(text.decode("utf-8", "replace").split())))
     except Exception as error:  # fmpy raises bare Exception
-        reason = messages[-1] if messages else str(error)
-        raise RuntimeError(f"{md.modelName}: {reason}") from None
+        raise RuntimeError(f"{source}: {messages[-1] if messages else error}") from None
     try:
         yield fmu
     finally:

@@ -1,14 +1,68 @@
 """Published numbers: models/reference/*.toml."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import Any
 
-ROLES = ("calibration", "validation")
+import numpy as np
+
+ROLES = {
+    "calibration": "used for calibration",
+    "circular": "met by construction",
+    "constant": "constant of the paper, computed again",
+    "self-check": "computed by hand from the paper",
+    "interpolation": "between calibrated points",
+    "prediction": "predicted",
+    "claim": "claim of the text",
+}
+"""What a published point shows, in plain words. A calibrated or circular one proves nothing."""
+PROVES_NOTHING = ("calibration", "circular")
+GUESSED = ("interpolation", "prediction")
+"""Roles that stand beside a trivial guess."""
 CALIBRATION_TOLERANCE = 1e-6
 """Relative miss of a calibration point [1]: the fits are exact, this leaves room for rounding."""
+
+_RULES = {"constant": 1, "power law": 2, "offset": 3, "proportion": 3, "growth": 3}
+"""Points that a trivial guess is taken from, by rule."""
+_POWERS = ("power law", "growth")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Guess:
+    """The least-effort guess of a number from calibrated ones a, b, c.
+
+    rule : `constant` a; `power law` through a and b; `offset` a + b - c; `proportion` a b/c;
+        `growth` from a with the power that leads from b to c
+    points : ids of a, b, c; one that does not calibrate stands with its own guess
+    over : argument (key of `where`) that a power runs over, else empty
+    """
+
+    rule: str
+    points: Sequence[str]
+    over: str = ""
+
+    def __post_init__(self) -> None:
+        if self.rule not in _RULES:
+            raise ValueError(f"guess: rule = {self.rule!r}, allowed are {', '.join(_RULES)}")
+        if len(self.points) != _RULES[self.rule]:
+            raise ValueError(f"guess: {len(self.points)} points, a {self.rule} takes {_RULES[self.rule]}")
+        if bool(self.over) != (self.rule in _POWERS):
+            raise ValueError(
+                f"guess: over = {self.over!r}, a {self.rule} takes {'a name' if not self.over else 'none'}"
+            )
+
+    def __str__(self) -> str:
+        names = list(self.points)
+        if self.rule == "power law":
+            return f"power law over {self.over} through {names[0]}, {names[1]}"
+        if self.rule == "growth":
+            return f"{names[0]}, with the power of {self.over} from {names[1]} to {names[2]}"
+        if self.rule == "constant":
+            return f"as {names[0]}"
+        signs = ("+", "-") if self.rule == "offset" else ("*", "/")
+        return f"{names[0]} {signs[0]} {names[1]} {signs[1]} {names[2]}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -17,9 +71,11 @@ class Point:
 
     quantity, where : what is computed and its arguments (SI)
     value : number in `unit`, or the truth of a claim
-    role  : `calibration` fixes unpublished parameters, `validation` is predicted
+    printed : whether the paper prints the number, or says the claim; else it was computed from printed ones
+    role  : one of ROLES
     tolerance : relative; absolute in `unit` where `absolute`
-    prediction : whether a joint's behaviour is predicted, rather than a constant or a claim checked
+    basis : where the tolerance comes from
+    guess : the trivial guess that an interpolation or a prediction has to beat
     text : what the paper's text claims, where its own equations give the opposite
     """
 
@@ -31,20 +87,60 @@ class Point:
     value: float | bool
     unit: str
     place: str
+    printed: bool
     role: str
     tolerance: float = CALIBRATION_TOLERANCE
     absolute: bool = False
     basis: str = field(default="fitted")
-    prediction: bool = False
+    guess: Guess | None = None
     text: bool | None = None
 
     def __post_init__(self) -> None:
+        where = f"{self.paper}: {self.id}"
         if self.role not in ROLES:
-            raise ValueError(f"{self.paper}: {self.id}: role = {self.role!r}, allowed are {', '.join(ROLES)}")
+            raise ValueError(f"{where}: role = {self.role!r}, allowed are {', '.join(ROLES)}")
+        if (self.role == "claim") != isinstance(self.value, bool):
+            raise ValueError(f"{where}: value = {self.value!r}, a claim is true or false, others numbers")
+        if self.guess and self.role not in GUESSED:
+            raise ValueError(f"{where}: role = {self.role!r} has a guess, allowed are {', '.join(GUESSED)}")
 
 
 def points(paper: str) -> list[Point]:
     """All points of a paper, in the order of its file."""
     text = (files("jointfmu_models") / "reference" / f"{paper}.toml").read_text(encoding="utf-8")
     document = tomllib.loads(text)
-    return [Point(paper=paper, joint=document["joint"], **entry) for entry in document["point"]]
+    return [_point(paper, document["joint"], entry) for entry in document["point"]]
+
+
+def _point(paper: str, joint: str, entry: dict[str, Any]) -> Point:
+    guess = {"guess": Guess(**entry["guess"])} if "guess" in entry else {}
+    return Point(paper=paper, joint=joint, **(entry | guess))
+
+
+def guesses(published: Sequence[Point]) -> dict[str, float]:
+    """The trivial guesses of one paper's points, by id; from the calibration points and nothing else.
+
+    Raises ValueError if a guess names a point that neither calibrates nor has a guess of its own.
+    """
+    known = {p.id: p for p in published}
+
+    def value(name: str, asking: tuple[str, ...]) -> float:
+        point = known.get(name)
+        if point is not None and point.role == "calibration":
+            return float(point.value)
+        if point is None or point.guess is None or name in asking:
+            raise ValueError(f"{asking[-1]}: guess from {name!r}, allowed are calibration points and guesses")
+        return guess(point, point.guess, (*asking, name))
+
+    def guess(point: Point, how: Guess, asking: tuple[str, ...]) -> float:
+        a, *more = (value(name, asking) for name in how.points)
+        if how.rule in _POWERS:
+            x, x_a, *others = (p.where[how.over] for p in (point, *(known[name] for name in how.points)))
+            (y, z), (x_y, x_z) = (a, *more)[-2:], (x_a, *others)[-2:]
+            power = np.log(z / y) / np.log(x_z / x_y)
+            return float(a * (x / x_a) ** power)
+        if how.rule == "offset":
+            return a + more[0] - more[1]
+        return a * more[0] / more[1] if how.rule == "proportion" else a
+
+    return {p.id: guess(p, p.guess, (p.id,)) for p in published if p.guess}

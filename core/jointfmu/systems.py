@@ -10,7 +10,7 @@ from .parameters import ORIGINS
 from .units import UNITS
 
 SCHEMA = 1
-_STATE = "joint_state."
+_PARAMETERS, _STATE = "joint_parameters.", "joint_state."
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,15 @@ class System:
     def load_unit(self) -> str:
         """Unit of the load."""
         return KINDS[self.joint].variables[self.load].unit
+
+    @property
+    def joint_parameters(self) -> dict[str, float]:
+        """{parameter of the joint: value} that differ from its parameter file, SI."""
+        return {
+            name.removeprefix(_PARAMETERS): value
+            for name, value in self.values.items()
+            if name.startswith(_PARAMETERS)
+        }
 
     @property
     def joint_state(self) -> dict[str, float]:
@@ -93,7 +102,9 @@ def system(name: str) -> System:
                 raise ValueError(
                     f"{path}: {label}: expected a unit of {', '.join(UNITS)}, a kind and a source"
                 )
-            values[label], units[label] = float(entry["value"]), entry["unit"]
+            value = entry["value"]
+            values[label] = value if isinstance(value, bool) else float(value)
+            units[label] = entry["unit"]
             sources[label] = entry["source"]
     for key, allowed in (("body", values), ("load", KINDS[document["joint"]].variables)):
         if document.get(key) not in allowed:

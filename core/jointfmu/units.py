@@ -1,7 +1,8 @@
 """The one table of units: what each measures, how large it is, and in which unit people read it.
 
 A unit is written as FMI and Modelica write it: symbols with exponents, joined by dots, after a slash what
-divides, `N.m.s/rad`. Sizes are exact fractions of the symbols' and rounded once.
+divides, `N.m.s/rad`. What is read may be written as people do: `Nm`, `N*m`, `N·m`, `mm²`, `N/mm^2`, `°`.
+Sizes are exact fractions of the symbols' and rounded once.
 """
 
 import re
@@ -24,6 +25,7 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "rad": (1, {"rad": 1}),
     "Hz": (1, {"s": -1}),
     "N": (1, _FORCE),
+    "kgf": (Fraction("9.80665"), _FORCE),
     "Pa": (1, {"kg": 1, "m": -1, "s": -2}),
     "J": (1, {"kg": 1, "m": 2, "s": -2}),
     "t": (1000, {"kg": 1}),
@@ -34,10 +36,23 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "rev": (Fraction(tau), {"rad": 1}),
 }
 """Sizes in SI and exponents of the SI base units; the radian counts as one."""
-_PREFIXES = {"G": 9, "M": 6, "k": 3, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
+_PREFIXES = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": -6, "n": -9}
 """Powers of ten, before _PREFIXED; both Unicode signs for micro."""
 _PREFIXED = ("m", "s", "rad", "Hz", "N", "Pa", "J")
 _FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
+
+
+_WRITTEN = (
+    (re.compile(r"[·⋅*]"), "."),
+    (re.compile(r"\^(?=\d)"), ""),
+    (re.compile("²"), "2"),
+    (re.compile("³"), "3"),
+    (re.compile(r"°|\bdegrees?\b"), "deg"),
+    (re.compile("\u2032"), "arcmin"),
+    (re.compile("\u2033"), "arcsec"),
+    (re.compile(r"(?<![^\W_])([kmuµμ]?N|kgf)(?=[mcuµμ]?m(?![^\W_]))"), r"\1."),
+)
+"""Other ways of writing, and ours; the last one is a force and a length without a dot."""
 
 
 class Unit(NamedTuple):
@@ -73,6 +88,14 @@ def sizes(unit: str, *others: str) -> Sizes:
     return {name: factor(name, unit) for name in (unit, *others)}
 
 
+def measured(unit: str, allowed: Sizes) -> float:
+    """The size of a unit in the first of `allowed`, whichever unit of the same quantity it is.
+
+    Raises ValueError if the unit is unknown or measures something else.
+    """
+    return allowed[unit] if unit in allowed else factor(unit, next(iter(allowed)))
+
+
 def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
     """A unit with other symbols in the place of some: `N/m3` with m as mm is `N/mm3`."""
     return _FACTOR.sub(lambda match: symbols.get(match[1], match[1]) + match[2], unit)
@@ -82,7 +105,10 @@ def rewritten(unit: str, symbols: Mapping[str, str]) -> str:
 def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size and exponents of a unit."""
     whole, exponents = Fraction(1), dict[str, int]()
-    above, slash, below = unit.partition("/")
+    plain = unit
+    for other, ours in _WRITTEN:
+        plain = other.sub(ours, plain)
+    above, slash, below = plain.partition("/")
     for sign, part in ((1, above), (-1, below if slash else "1")):
         for text in part.split("."):
             if not (match := _FACTOR.fullmatch(text)):

@@ -18,7 +18,7 @@ from jointfmu.systems import System, systems
 from ..folders import asset
 from ..joints import folder as joint_folder
 from ..joints import part
-from ..templates import template
+from ..templates import law_terms, template
 from .blocks import interface, wrapper
 from .records import Component, Record, WorkingPoint
 from .tables import TOLERANCE
@@ -43,9 +43,10 @@ Points = Mapping[str, Sequence[WorkingPoint]]
 
 @dataclass(frozen=True, slots=True)
 class _Joint:
-    """A joint in the library: its form, its records by working point, and its templates."""
+    """A joint in the library: its parameters, its form, its records by working point, and its templates."""
 
     kind: Kind
+    file: ParameterFile
     component: Component
     records: Mapping[WorkingPoint, Record]
     templates: Environment
@@ -105,7 +106,7 @@ def _joint(
     own = file if file and file.joint == kind.name else default(kind.name)
     wanted = points or component.points
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
-    return _Joint(kind, component, records, environment(joint_folder(kind) / "modelica"))
+    return _Joint(kind, own, component, records, environment(joint_folder(kind) / "modelica"))
 
 
 def _order(names: Mapping[str, Any]) -> str:
@@ -126,7 +127,7 @@ def _components(joints: Sequence[_Joint]) -> dict[str, str]:
             joint.component.texts(joint.record),
             meta=_meanings(joint.kind),
             docs={v.name: v.doc for v in model.outputs},
-            html=_documentation(model),
+            html=_documentation(model, joint.file),
             record=joint.record.name,
         )
     return classes
@@ -156,6 +157,7 @@ def _examples(joints: Sequence[_Joint]) -> dict[str, str]:
             state = tuple(system.joint_state.get(label, 0.0) for label in joint.kind.working_point)
             classes[name] = joint.templates.get_template(f"Examples/{name}.mo").render(
                 v={label: number(value) for label, value in system.values.items()},
+                own=joint.component.of_system(joint.file, system),
                 sources=_sources(system),
                 record=joint.records.get(state, joint.record).name,
             )
@@ -163,18 +165,22 @@ def _examples(joints: Sequence[_Joint]) -> dict[str, str]:
 
 
 def _meanings(kind: Kind) -> dict[str, str]:
+    """Meanings of the parameters of all its laws."""
     return {
         name: text(item.metadata["doc"])
-        for name, item in flat_fields(kind.parameters)
+        for parameters in kind.laws.values()
+        for name, item in flat_fields(parameters)
         if "doc" in item.metadata
     }
 
 
-def _documentation(model: Model) -> dict[str, str]:
+def _documentation(model: Model, file: ParameterFile) -> dict[str, str]:
     """Parts of the FMU's documentation page, as text of a Modelica annotation."""
-    page = template(asset(model, "page.html"), Path(__file__).parent)
+    here = Path(__file__).parent
+    page = template(asset(model, "page.html"), here, here.parent / "native")
     names = ("what", "law", "trust", "paper")
-    return {name: text(page.render(model=model, fmu=False, part=name).strip()) for name in names}
+    terms = {"model": model, "fmu": False, **law_terms(file)}
+    return {name: text(page.render(terms, part=name).strip()) for name in names}
 
 
 def _sources(system: System) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jointfmu.parameters import ParameterFile
+from jointfmu.systems import System
 
 from .tables import TOLERANCE, Table
 from .text import matrix, number, text
@@ -61,6 +62,7 @@ class Component:
     points  : working points of the records unless others are asked for
     records : (parameters, working points) -> a record for each, the first the component's own
     texts   : first record -> {name: text}
+    of_system : (parameters, system) -> {name: text} that an example's template gets as `own`
     note    : HTML for the description of all components
     """
 
@@ -70,6 +72,7 @@ class Component:
     records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[Record]]
     texts: Callable[[Record], Mapping[str, str]]
     note: str = ""
+    of_system: Callable[[ParameterFile, System], Mapping[str, str]] = lambda file, system: {}
 
 
 def numbers(values: Mapping[str, float]) -> dict[str, str]:

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 
 def number(value: float) -> str:
-    """A number, to 15 digits."""
+    """A number, to 15 digits, or a Boolean."""
+    if isinstance(value, bool):
+        return str(value).lower()
     return f"{value + 0.0:.15g}"
 
 

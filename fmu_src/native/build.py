@@ -9,54 +9,60 @@ from jointfmu.parameters import ParameterFile
 
 from ..archive import pack, workshop
 from ..partners import PARTNERS
+from ..xml_parts import VARIABILITIES
 from .compiler import file_name, libraries, universal
 
 
-def build_fmi2(name: str, parameters: ParameterFile, out: Path) -> Path:
+def build_fmi2(name: str, parameters: ParameterFile, out: Path, variability: str) -> Path:
     """Write `out/name.fmu` of FMI 2.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "2")
+    return build(name, parameters, out, "2", variability)
 
 
-def build_fmi3(name: str, parameters: ParameterFile, out: Path) -> Path:
+def build_fmi3(name: str, parameters: ParameterFile, out: Path, variability: str) -> Path:
     """Write `out/name.fmu` of FMI 3.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "3")
+    return build(name, parameters, out, "3", variability)
 
 
-def build(name: str, parameters: ParameterFile, out: Path, version: str) -> Path:
+def build(
+    name: str, parameters: ParameterFile, out: Path, version: str, variability: str = VARIABILITIES[0]
+) -> Path:
     """Write `out/name.fmu`; an existing file is replaced in one go. Equal content gives an equal file.
+
+    variability : of the parameters, one of VARIABILITIES
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
     """
-    model = (MODELS | PARTNERS)[name]
-    model.check_joint(parameters.joint)
+    model = (MODELS | PARTNERS)[name].of(parameters.joint, parameters.values)
     target = out / f"{name}.fmu"
     with workshop(target) as work:
-        pack(_members(model, parameters, version), work / target.name)
+        pack(_members(model, parameters, version, variability), work / target.name)
     return target
 
 
-def _members(model: Model, parameters: ParameterFile, version: str) -> dict[str, bytes]:
+def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
     """{path: content} of an FMU."""
     from .description import build_description, fmi2_xml, fmi3_xml
     from .generate import exported, sources, token
+    from .interrupt import interrupt_after
     from .page import documentation
     from .terminals import terminals_and_icons
 
-    both = sources(model.name, parameters)
+    with interrupt_after():
+        both = sources(model.name, parameters)
     units = exported(list(both), version)
     own = {path: text for path, text in both.items() if path in units or path.endswith(".h")}
     built = libraries(model.name, both, units)
     icons = terminals_and_icons(model)
     if version == "2":
         top = {
-            "modelDescription.xml": fmi2_xml(model, parameters, token(both), units),
+            "modelDescription.xml": fmi2_xml(model, parameters, token(both), units, variability),
             "model.png": icons["icon.png"],
         }
         binaries = _fmi2_binaries(model.name, built)
     else:
         top = {
-            "modelDescription.xml": fmi3_xml(model, parameters, token(both)),
+            "modelDescription.xml": fmi3_xml(model, parameters, token(both), variability),
             "sources/buildDescription.xml": build_description(model, units),
         }
         binaries = {f"{p}/{file_name(model.name, p)}": content for p, content in built.items()}

@@ -24,8 +24,8 @@ TARGETS = {
 """FMI's names of the platforms, and zig's with the oldest glibc or macOS."""
 
 _OPTIONS = (
-    "-std=c11", "-O2", "-ffp-contract=off", "-fno-sanitize=undefined", "-fvisibility=hidden",
-    "-DNDEBUG", "-shared", "-s",
+    "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
+    "-fvisibility=hidden", "-DNDEBUG", "-shared", "-s",
 )  # fmt: skip
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Parts of the C runtime that belongs to Windows 10 and newer."""

@@ -72,13 +72,21 @@ _FMI3_INTERFACES = {
 }
 
 
-def fmi2_xml(model: Model, parameters: ParameterFile, token: str, sources: Sequence[str]) -> bytes:
-    """modelDescription.xml of FMI 2.0; `sources` are the C files to compile, in `sources/`."""
+def fmi2_xml(
+    model: Model, parameters: ParameterFile, token: str, sources: Sequence[str], variability: str = "tunable"
+) -> bytes:
+    """modelDescription.xml of FMI 2.0; `sources` are the C files to compile, in `sources/`.
+
+    variability : of the parameters, one of VARIABILITIES
+    """
     variables = listed(model, parameters)
     root = _root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
-        files = SubElement(SubElement(root, kind, {"modelIdentifier": model.name} | flags), "SourceFiles")
+        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        if model.rest and kind == "ModelExchange":
+            interface.set("completedIntegratorStepNotNeeded", "false")
+        files = SubElement(interface, "SourceFiles")
         for name in sources:
             SubElement(files, "File", name=name)
     root.append(unit_definitions(variables))
@@ -88,18 +96,20 @@ def fmi2_xml(model: Model, parameters: ParameterFile, token: str, sources: Seque
     _log_categories_and_experiment(root, model)
     nodes = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables, start=1):
-        node = SubElement(nodes, "ScalarVariable", _heading(v, reference))
+        node = SubElement(nodes, "ScalarVariable", _heading(v, reference, variability))
         SubElement(node, "Boolean" if v.boolean else "Real", _value(v))
-    root.append(fmi2_structure(model, "tunable"))
+    root.append(fmi2_structure(model, variability))
     return serialized(root)
 
 
-def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
-    """modelDescription.xml of FMI 3.0."""
+def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: str = "tunable") -> bytes:
+    """modelDescription.xml of FMI 3.0; see `fmi2_xml`."""
     variables = [_TIME, *listed(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
-        SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        if model.rest and kind == "ModelExchange":
+            interface.set("needsCompletedIntegratorStep", "true")
     root.append(unit_definitions(variables))
     types = SubElement(root, "TypeDefinitions")
     for quantity, attributes in _types(variables).items():
@@ -107,9 +117,11 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str) -> bytes:
     _log_categories_and_experiment(root, model)
     nodes = SubElement(root, "ModelVariables")
     for reference, v in enumerate(variables):
-        SubElement(nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference) | _value(v))
+        SubElement(
+            nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference, variability) | _value(v)
+        )
     structure = SubElement(root, "ModelStructure")
-    outputs = unknowns(model, "tunable")
+    outputs = unknowns(model, variability)
     for tag, rows in (
         ("Output", [(u, u.knowns) for u in outputs]),
         ("ContinuousStateDerivative", [(u, u.knowns) for u in outputs if u.rate]),
@@ -180,9 +192,9 @@ def _log_categories_and_experiment(root: Element, model: Model) -> None:
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=stop, stepSize=step)
 
 
-def _heading(v: Listed, reference: int) -> dict[str, str]:
-    """What FMI says of a variable of any type."""
-    variability = "tunable" if v.causality == "parameter" else "continuous"
+def _heading(v: Listed, reference: int, parameters: str) -> dict[str, str]:
+    """What FMI says of a variable of any type; `parameters` is their variability."""
+    variability = parameters if v.causality == "parameter" else "continuous"
     heading = {"name": v.name, "valueReference": str(reference), "description": v.doc}
     heading |= {"causality": v.causality, "variability": variability}
     if v.causality in ("parameter", "output"):

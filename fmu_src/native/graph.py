@@ -69,20 +69,18 @@ class Graph:
         self.functions = settled
 
     @property
-    def has_law(self) -> bool:
-        """Whether there is an interface law, and so a table and its ends."""
-        return any(f.name == "law_head" for f in self.functions)
-
-    @property
     def c(self) -> ca.SX:
         """The constants' symbols."""
         return ca.vertcat(*self.theta.values(), *self.symbols)
 
 
-def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph", Model], None]) -> Graph:
+def graph(
+    model: Model, parameters: ParameterFile, functions: Callable[["Graph", Model], None], tabulated: bool
+) -> Graph:
     """All functions of an FMU; parameters that it does not expose have their value.
 
     functions : adds those of the joint
+    tabulated : whether it has a curve, and so ends
     """
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
@@ -91,7 +89,7 @@ def graph(model: Model, parameters: ParameterFile, functions: Callable[["Graph",
         joint = build(model.parameters, {**parameters.flat, **theta})
         made = Graph(theta, joint, limits(joint))
         functions(made, model)
-        if made.has_law:
+        if tabulated:
             _bounds(made, model)
         made.settle()
     finally:

@@ -15,7 +15,7 @@ _SHORT = 60
 
 def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     """Texts of law.h and law.c."""
-    return _law(g, model, part) if g.has_law else _equations(g)
+    return _tabulated(g, model, part) if part.tabulated else _equations(g)
 
 
 def _equations(g: Graph) -> tuple[str, str]:
@@ -52,8 +52,8 @@ def _functions(g: Graph) -> dict[str, str]:
     return texts
 
 
-def _law(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
-    """law.h and law.c."""
+def _tabulated(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
+    """law.h and law.c of a joint with a curve, perhaps with an interface law to invert."""
     count = {f.name: len(f.y) for f in g.functions}
     regimes = sum(name.startswith("law_load_") for name in count)
     state = count.get("law_state_0", 0)
@@ -61,14 +61,18 @@ def _law(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
         "N_CONSTANTS": len(g.theta) + len(g.constants),
         "N_LIMITS": len(g.limits),
         "N_WARNINGS": len(model.outside),
-        "N_LAW_HEAD": count["law_head"],
-        "N_LAW_ENDS": count["law_ends"],
-        "N_LAW_SWITCHES": regimes - 1,
-        "N_LAW_TABLE": count["law_table_0"],
-        "N_LAW_STATE": state // 3,
     }
+    if regimes:
+        names |= {
+            "N_LAW_HEAD": count["law_head"],
+            "N_LAW_ENDS": count["law_ends"],
+            "N_LAW_SWITCHES": regimes - 1,
+            "N_LAW_TABLE": count["law_table_0"],
+            "N_LAW_STATE": state // 3,
+        }
     given = shared_definitions(part.shared) | part.definitions(g, model)
-    series = ["law_load", "law_table", *(["law_state"] if state else [])]
+    series = ["law_load", "law_table"] if regimes else []
+    series += ["law_state"] if state else []
     variables = [v.name for v in (*model.inputs, *model.outputs)]
     watched = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
     bodies, prototypes, inline = [], [], []
@@ -110,7 +114,7 @@ def _law(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
         "",
         "/* y = name(x); c are the constants: the parameters, then what law_constants computes of them. */",
         *(f"void {name}(const double *x, const double *c, double *y);" for name in prototypes),
-        "typedef void Law(const double *x, const double *c, double *y);",
+        *(["typedef void Law(const double *x, const double *c, double *y);"] if series else []),
         *(f"extern Law *const {name}[N_LAW_SWITCHES + 1];" for name in series),
         "",
         HELPERS,

@@ -1,6 +1,7 @@
 """The folder documentation: one page about the joint, its connection, law, limits and parameters."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,7 +17,7 @@ from jointfmu.units import UNITS, display_unit
 
 from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..folders import asset, part
-from ..templates import template
+from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
 from .terminals import terminals
@@ -77,7 +78,9 @@ def _page(model: Model, parameters: ParameterFile) -> str:
     rows = _rows(parameters)
     return _template(model).render(
         model=model,
+        spring=spring,
         fmu=True,
+        **law_terms(parameters),
         file=parameters,
         version=__version__,
         inputs=[v for v in variables if v.causality == "input"],
@@ -87,6 +90,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         terminals=terminals(model),
         messages=_messages(model, spring, rest),
         figure=_figure(model, spring, rest),
+        drawings=_drawings(model, spring),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 
@@ -180,5 +184,20 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
             if len(names) > 1:
                 axes.legend()
 
+    return _picture(draw, "ramp")
+
+
+def _drawings(model: Model, spring: Any) -> dict[str, str]:
+    """Further ones: DRAWINGS, {FMU: {name: (spring, end of the ramp) -> what draws}}, of the joint."""
+    own = part(model, "page")
+    named = getattr(own, "DRAWINGS", {}).get(model.name, {})
+    return {name: _picture(drawing(spring, model.ramp.end), name) for name, drawing in named.items()}
+
+
+def _picture(draw: Callable[[Figure], None], name: str) -> str:
+    """As SVG, whose ids are those that it needs itself, with its name in front."""
     picture = short(svg(draw, (9.6, 3.8), {"svg.fonttype": "none"}))
+    needed = set(re.findall(r"#([\w.-]+)", picture))
+    picture = re.sub(r' id="([^"]*)"', lambda i: f' id="{name}-{i[1]}"' if i[1] in needed else "", picture)
+    picture = re.sub(r'(href="#|url\(#)', rf"\g<1>{name}-", picture)
     return picture.replace("font-family: 'DejaVu Sans'; ", "")  # the page names the font once

@@ -13,10 +13,14 @@ from jointfmu.joints.model import Model
 from .c_text import number
 from .graph import Graph
 
-TABLES = ("tabulated", "curve", "spots")
-"""Shared C of every joint that tabulates its law."""
+CURVE = ("tabulated", "curve")
+"""Shared C of every joint that has a curve."""
+TABLES = (*CURVE, "spots")
+"""The same of a joint that inverts its interface law."""
 APPROACH = (*TABLES, "approach")
 """The same with the curve of pressure over approach."""
+ENERGY = (*APPROACH, "energy")
+"""The same with the energy of the joint's curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +93,11 @@ class NativePart:
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
     definitions: Callable[[Graph, Model], Definitions] = nothing
+
+    @property
+    def tabulated(self) -> bool:
+        """Whether the joint has a curve."""
+        return "tabulated" in self.shared
 
 
 def _equations(g: Graph, model: Model) -> None:

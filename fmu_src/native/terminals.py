@@ -48,6 +48,16 @@ def axis(axis: str, y: float) -> Terminal:
     return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
 
 
+def turn(axis: str, y: float) -> Terminal:
+    """Flange of a joint that takes the small turn of its two sides against each other about an axis."""
+    members = {
+        "phi": (f"theta_{axis}", "signal"),
+        "w": (f"omega_{axis}", "signal"),
+        "tau": (f"m_{axis}", "outflow"),
+    }
+    return Terminal(f"flange_turn_{axis}", ROTATIONAL, "b", f"side 2 about {axis}, side 1 fixed", members, y)
+
+
 def shaft(number: int, side: str, doc: str) -> Terminal:
     """Flange of a joint that takes the motion of each of its shafts."""
     members = {

@@ -92,7 +92,7 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
     from pythonfmu import FmuBuilder
 
     kind = KINDS[MODELS[name].joint]
-    MODELS[name].check_joint(parameters.joint)
+    MODELS[name].of(parameters.joint, parameters.values)
     sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"

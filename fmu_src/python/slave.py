@@ -3,10 +3,10 @@
 import ctypes
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any, ClassVar, NoReturn, TypeVar
+from typing import Any, ClassVar, NamedTuple, NoReturn, TypeVar
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
@@ -18,12 +18,20 @@ from pythonfmu.enums import Fmi2Initial, Fmi2Status
 from jointfmu import __version__
 from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
-from jointfmu.joints.model import Model
+from jointfmu.joints.model import Memory, Model
 from jointfmu.parameters import load
 from jointfmu.quantity import build
 from jointfmu.stamp import build_time
 
 T = TypeVar("T")
+
+
+class Way(NamedTuple):
+    """The last way that a joint with memory went: memory before and after it, and the inputs it led to."""
+
+    before: list[float]
+    after: list[float]
+    inputs: dict[str, float]
 
 
 def surviving(method: Callable[..., T]) -> Callable[..., T]:
@@ -48,7 +56,7 @@ def surviving(method: Callable[..., T]) -> Callable[..., T]:
 class JointSlave(Fmi2Slave):  # type: ignore[misc]
     """Variables, checks, messages and state of one FMU around one call into the package.
 
-    Complete state is `values` (parameters and inputs), `initialized` and `warned`; all else is
+    Complete state is `values` (parameters and inputs), `initialized`, `warned` and `way`; all else is
     computed from it when asked for.
     """
 
@@ -61,7 +69,8 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         super().__init__(**kwargs)
         if self.kind.name not in KINDS:  # of another package
             register(self.kind)
-        self.model: Model = MODELS[self.fmu]
+        file = load(Path(self.resources) / "parameters.toml", self.kind.name)
+        self.model: Model = MODELS[self.fmu].of(file.joint, file.values)
         self.modelName = self.fmu
         self.description = self.model.doc
         self.version, self.license, self.author = __version__, "MIT", "jointfmu"
@@ -69,7 +78,6 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.default_experiment = DefaultExperiment(
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
-        file = load(Path(self.resources) / "parameters.toml", self.model.joint)
         self.start = dict(file.flat)
         self.listed = listed(self.model, file)
         self.fields = self.model.parameter_fields()
@@ -79,8 +87,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         }
         self.initialized = False
         self.warned: set[int] = set()
+        self.way: Way | None = None
         self._spring: Any = None
         self._outputs: dict[str, float] | None = None
+        self._memory: Memory | None = None
         self._register()
 
     def _register(self) -> None:
@@ -117,14 +127,14 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
 
     def evaluate(self) -> dict[str, float]:
         """All outputs; refuses inputs that are not finite or out of range."""
-        inputs = {v.name: self.values[v.name] for v in self.model.inputs}
+        inputs = self.inputs()
         for v in self.model.inputs:
             if not v.interval.contains(inputs[v.name]):
                 unit = "" if v.unit == "1" else f" {v.unit}"
                 self.refuse(f"{v.name} = {inputs[v.name]:g}{unit} is outside {v.interval}: {v.doc}")
         try:
             with np.errstate(all="ignore"):
-                results = self.model.evaluate(self.spring(), inputs)
+                results, self._memory = self.at(inputs)
         except (ValueError, RuntimeError, OverflowError) as error:
             self.refuse(str(error))
         outputs = {name: float(value) for name, value in results.items()}
@@ -136,6 +146,30 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                 self.warned.add(key)
                 self.log(message, Fmi2Status.warning, "logStatusWarning")
         return outputs
+
+    def inputs(self) -> dict[str, float]:
+        """The present inputs."""
+        return {v.name: self.values[v.name] for v in self.model.inputs}
+
+    def memory(self, inputs: dict[str, float]) -> Memory:
+        """What the path to inputs goes on from; at the accepted ones what the way to them began with."""
+        if self.way is None:
+            assert self.model.rest is not None
+            return self.model.rest(self.spring())
+        return np.array(self.way.before if inputs == self.way.inputs else self.way.after)
+
+    def at(self, inputs: dict[str, float]) -> tuple[Mapping[str, Any], Memory | None]:
+        """What the joint gives at inputs, and its memory there, if it has one."""
+        if self.model.evolve is None:
+            return self.model.evaluate(self.spring(), inputs), None
+        return self.model.evolve(self.spring(), inputs, self.memory(inputs))
+
+    def accept(self) -> None:
+        """Evaluate, and let the path go on from the present inputs."""
+        self.output(self.model.outputs[0].name)
+        inputs = self.inputs()
+        if self._memory is not None and (self.way is None or inputs != self.way.inputs):
+            self.way = Way(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
 
     def spring(self) -> Any:
         """The tabulated joint of the present parameters."""
@@ -152,13 +186,13 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     @surviving
     def exit_initialization_mode(self) -> None:
         """Check the parameters, tabulate the law, evaluate once."""
-        self.output(self.model.outputs[0].name)
+        self.accept()
         self.initialized = True
 
     @surviving
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Nothing evolves: the outputs follow the inputs. Refuses bad inputs."""
-        self.output(self.model.outputs[0].name)
+        """The outputs follow the inputs, which become the past of a joint with memory. Refuses bad inputs."""
+        self.accept()
         return True
 
     get_real, set_real = surviving(Fmi2Slave.get_real), surviving(Fmi2Slave.set_real)
@@ -167,18 +201,17 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     get_string, set_string = surviving(Fmi2Slave.get_string), surviving(Fmi2Slave.set_string)
 
     def _get_fmu_state(self) -> dict[str, Any]:
-        return {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
+        state = {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
+        return state | ({"way": self.way} if self.model.rest else {})
 
     @surviving
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        if (
-            state.keys() != {"values", "initialized", "warned"}
-            or state["values"].keys() != self.values.keys()
-        ):
+        if state.keys() != self._get_fmu_state().keys() or state["values"].keys() != self.values.keys():
             self.refuse(f"the FMU state is none of {self.fmu}; expected one that this FMU gave")
         changed = any(self.values[name] != state["values"][name] for name in self.start)
         self.values, self.initialized = dict(state["values"]), state["initialized"]
         self.warned = set(state["warned"])
+        self.way = Way(*state["way"]) if state.get("way") else None
         self._outputs = None
         if changed:
             self._spring = None

@@ -7,12 +7,14 @@ from typing import Any
 from jointfmu import __version__
 from jointfmu.joints import KINDS
 from jointfmu.parameters import write_text
+from jointfmu.reference import ROLES
 from jointfmu.stamp import build_time
+from jointfmu.validation import shown_claim, shown_error, shown_tolerance, summary
 
 from ..joints import part
 from ..templates import template
 from .figure import Figure
-from .systems import resonances
+from .systems import resonances, ring_downs
 
 
 def write_report(path: Path, outcome: Any) -> None:
@@ -22,8 +24,13 @@ def write_report(path: Path, outcome: Any) -> None:
         python=platform.python_version(),
         when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
         outcome=outcome,
+        roles=ROLES,
+        sentence=summary(outcome.rows),
+        shown_error=shown_error,
+        shown_tolerance=shown_tolerance,
+        shown_claim=shown_claim,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
-        figures=[*_of_joints(outcome), *resonances(outcome.ringing)],
+        figures=[*_of_joints(outcome), *resonances(outcome.ringing), *ring_downs(outcome.decays)],
     )
     write_text(path, page)
 

@@ -1,26 +1,44 @@
 """Derivatives of the bolted joint's FMU keep the closed relations of the joint."""
 
+import math
+from itertools import combinations
+
+import pytest
 from joint_cases import RANGES, parameters, random_inputs
 from natives import Host, close, jacobian
 
+STILL = dict.fromkeys((f"{rate}_{axis}" for rate in ("v_rel", "omega") for axis in "xyz"), 0.0)
+APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+STIFFNESS = ("K_xx", "K_yy", "K_zz", "K_rx", "K_ry", "K_rz")
 
-def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(host: Host, version: str) -> None:
-    instance, joint = host("BoltedJoint", version).start(), parameters("BoltedJoint")
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(
+    host: Host, version: str, memory: bool
+) -> None:
+    instance, joint = host("BoltedJoint", version), parameters("BoltedJoint")
+    given = {"memory": memory, "damping": True, "plastic_damping": True}
     for state in random_inputs("BoltedJoint", 20, seed=34):
-        values = instance.at(state | {"v_rel_x": 0.0, "v_rel_y": 0.0, "v_rel_z": 0.0})
+        instance.reset()  # the stiffness is that of a further motion: begin as far apart as it ends
+        instance.start(given | {name: state[name] for name in APART})
+        values = instance.at(state | STILL)
         J = jacobian(instance)
+        for f, s, K in zip(FORCES, MOTIONS, STIFFNESS, strict=True):
+            assert J[f, s] == close(-values[K], 1e-9)
         for axis in "xyz":
-            K, C = values[f"K_{2 * axis}"], values[f"C_{2 * axis}"]
-            assert J[f"f_{axis}", f"s_rel_{axis}"] == close(-K, 1e-10)
-            assert J[f"f_{axis}", f"v_rel_{axis}"] == close(-C, 1e-12)
-        for a, b in ("xy", "xz", "yz"):  # a potential
-            mixed = J[f"f_{a}", f"s_rel_{b}"]
-            assert abs(mixed - J[f"f_{b}", f"s_rel_{a}"]) <= 1e-12 * values["K_zz"]
-        about = J["K_rx", "s_rel_z"] + J["K_ry", "s_rel_z"]
-        share = values["K_rz"] / (values["K_rx"] + values["K_ry"])
-        assert J["K_rz", "s_rel_z"] == close(share * about, 1e-12)
+            assert J[f"f_{axis}", f"v_rel_{axis}"] == close(-values[f"C_{2 * axis}"], 1e-12)
+        for (f, s), (g, t) in combinations(zip(FORCES, MOTIONS, strict=True), 2):
+            lift = {f, g} & {"f_z", "m_x", "m_y"} and {f, g} & {"f_x", "f_y", "m_z"}
+            scale = math.sqrt(abs(J[f, s] * J[g, t]))
+            if memory and lift:  # shear does not lift, whatever lifting does to the friction
+                assert 0.0 in (J[f, t], J[g, s])
+            else:  # a potential
+                assert abs(J[f, t] - J[g, s]) <= 1e-9 * scale, (f, t)
     tight = dict.fromkeys(RANGES["BoltedJoint"], 0.0) | {"preload": 9e3}
-    instance.at(tight)
+    instance.reset()
+    instance.start(tight)
     assert jacobian(instance)["p_mean", "preload"] == close(joint.n_bolts / joint.A_0, 1e-9)
     apart = instance.at(tight | {"s_rel_z": 1e-3})
     J = jacobian(instance)
@@ -29,3 +47,22 @@ def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(host: Host, v
     assert {value for key, value in J.items() if key[1] not in ("preload", "moment")} == {0.0}
     instance.at(dict.fromkeys(tight, 0.0))  # nor is there anything without preload
     assert set(jacobian(instance).values()) == {0.0}
+
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_all_36_slopes_are_those_of_the_forces_after_a_path(host: Host, version: str, memory: bool) -> None:
+    """Against central differences of the same instance, which are trials; slips and openings on the way."""
+    states = random_inputs("BoltedJoint", 6, seed=35)
+    instance = host("BoltedJoint", version).start({"memory": memory} | states[0])
+    for state in states[1:]:
+        instance.step()
+        values = instance.at(state)
+        J = jacobian(instance)
+        for s, size in zip(MOTIONS, 3 * [1e-6] + 3 * [1e-5], strict=True):
+            h = 1e-4 * size  # truncation h^2, 1e-8, and round-off 1e-16/1e-4; sliders slip between the ends
+            up, down = (instance.at(state | {s: state[s] + d * h}) for d in (1.0, -1.0))
+            for f in FORCES:
+                slope = (up[f] - down[f]) / (2.0 * h)
+                scale = abs(J[f, s]) + 1e-2 * abs(values[f]) / size
+                assert abs(slope - J[f, s]) <= 1e-3 * scale, (f, s)
+        assert instance.at(state) == values  # trials left no trace

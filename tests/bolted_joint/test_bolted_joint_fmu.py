@@ -26,8 +26,9 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
         node = pressures(joint, spring.shape, preload, moment)
         k = stiffness_curve(joint, node)[0]
         K_zz = joint.A_0 * float(spring.shape.share @ k)
-        expected = {"K_zz": K_zz, "K_xx": shear_ratio(joint) * K_zz, "p_max": float(node.max())}
+        expected = {"K_zz": K_zz, "p_max": float(node.max())}
         assert {n: found[n] for n in expected} == pytest.approx(expected, rel=TABLE)
+        assert found["K_xx"] == pytest.approx(shear_ratio(joint) * K_zz, rel=5e-3)  # by the patches
         assert [found["f_x"], found["f_y"], found["f_z"]] == [0.0, 0.0, 0.0]
         # the shape has a mean of 1 and a tilt of 0: what the bolts press is what the contact carries
         mean = preload * joint.n_bolts / joint.A_0
@@ -35,7 +36,7 @@ def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None
 
 
 def test_stiffness_is_the_derivative_of_the_force(fmu: Host) -> None:
-    instance = fmu("BoltedJoint").start()
+    instance = fmu("BoltedJoint").start({"memory": False})
     for state in random_inputs("BoltedJoint", 15, seed=8):
         state |= {"v_rel_x": 0.0, "v_rel_y": 0.0, "v_rel_z": 0.0}  # damping off: elastic force only
         K = instance.at(state)
@@ -53,7 +54,7 @@ def test_stiffness_is_the_derivative_of_the_force(fmu: Host) -> None:
 
 
 def test_damping_opposes_the_speed(fmu: Host) -> None:
-    instance = fmu("BoltedJoint").start()
+    instance = fmu("BoltedJoint").start({"plastic_damping": True, "damping": True})
     state = STATE["BoltedJoint"] | {"v_rel_x": 0.0, "v_rel_y": 0.0, "v_rel_z": 0.0}
     still = instance.at(state)
     for axis in "xyz":

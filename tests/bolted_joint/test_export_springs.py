@@ -2,8 +2,11 @@
 
 import csv
 import io
+import re
 import subprocess
 import sys
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,7 +27,7 @@ DIGITS = 1e-8  # the formats carry nine digits
 
 @pytest.fixture(scope="module")
 def joint():
-    return BoltedJointSpring.of(default("bolted_joint").values)
+    return BoltedJointSpring.of_nodes(default("bolted_joint").values)
 
 
 @pytest.fixture(scope="module")
@@ -122,6 +125,9 @@ def test_stated_pressures_give_the_law_at_them(joint):
     np.testing.assert_allclose(springs.pressure, p[7:], rtol=1e-12)
     k = joint.curve.derivatives(joint.curve.inverse(p[7:]), 1)[1]
     np.testing.assert_allclose(springs.K_n, area[7:] * k, rtol=1e-12)
+    assert not np.any(springs.C_n)  # plastic work of first loading
+    joint = replace(joint, joint=replace(joint.joint, plastic_damping=True))
+    springs = under_pressure(joint, Mesh("mesh.csv", labels, place, area, p))
     plastic, elastic = joint.works(p)  # open nodes count with the closing's end, as in the joint
     eta = (plastic @ area) / (elastic @ area)
     expected = eta * np.sqrt(joint.joint.mass * springs.K_n.sum())
@@ -275,6 +281,25 @@ def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
         sums[keyword][axis] += value * len(elements[name])
     whole = [found.sums[n] / 1e3 for n in SUMS]
     np.testing.assert_allclose(sums["SPRING"] + sums["DASHPOT"], whole, rtol=DIGITS)
+
+
+@pytest.mark.parametrize("dashpots", [False, True], ids=["calculix", "abaqus"])
+def test_meshio_has_no_name_for_the_elements(found, tmp_path, capsys, dashpots):
+    """What docs/export.md says: if meshio learns them, the sentence there goes."""
+    meshio = pytest.importorskip("meshio")
+    deck = tmp_path / "springs.inp"
+    text = keywords.springs_text(found, Placing(MM, "z", first=1), ["about"], dashpots=dashpots)
+    names = set(re.findall(r"^\*ELEMENT, TYPE=(\w+)", text, re.MULTILINE))
+    assert names == ({"SPRING2", "DASHPOT2"} if dashpots else {"SPRING2"})
+    page = (Path(__file__).parents[2] / "docs" / "export.md").read_text()
+    for name in sorted(names):
+        assert f"`{name}`" in page
+        blocks = re.findall(rf"^\*ELEMENT, TYPE={name},.*\n(?:\d.*\n)+", text, re.MULTILINE)
+        nodes = text[text.index("*NODE") : text.index("*ELEMENT")]
+        deck.write_text(nodes + blocks[0])
+        with pytest.raises((SystemExit, meshio.ReadError)):
+            meshio.read(deck)
+        assert f"Element type not available: {name}" in "".join(capsys.readouterr())
 
 
 def deck_cards(text):

@@ -30,11 +30,14 @@ def test_table_3(capsys):
     found = json.loads(capsys.readouterr().out)
     rows = {row["id"]: row for row in found["rows"] if row["quantity"] == "natural_frequency"}
     assert len(rows) == 18
-    predicted = {name: row["error"] for name, row in rows.items() if row["role"] == "validation"}
+    predicted = {name: row["error"] for name, row in rows.items() if row["role"] == "prediction"}
     assert len(predicted) == 12
-    missed = {name for name, row in rows.items() if row["role"] == "validation" and row["verdict"] == "miss"}
+    missed = {name for name, row in rows.items() if row["role"] == "prediction" and row["verdict"] == "miss"}
     assert missed == {"f5.15kN", "f3.15kN_4500Nm"}
     assert found["missed"] == len(missed)
+    # the frequencies of 9 kN are nearer in most rows; f1 is within a mesh's 0.3 % of a draw
+    nearer = [name for name in predicted if rows[name]["nearer"] == "law"]
+    assert 1 <= len(nearer) <= 3
     assert max(map(abs, predicted.values())) == pytest.approx(0.057, abs=0.003)  # a mesh changes 0.3 %
     fitted = np.array([row["error"] for row in rows.values() if row["role"] == "calibration"])
     assert np.sqrt(np.mean(fitted**2)) == pytest.approx(0.032, abs=0.003)

@@ -11,8 +11,9 @@ from jointfmu import cli, plots, ramp
 from jointfmu.fields import csvfile
 from jointfmu.fields.contact import ContactField
 from jointfmu.fields.joint_parameters import pressure_shape, with_field
+from jointfmu.fields.loads import PRELOADS, PRESSED, Load
 from jointfmu.fields.reduction import TOLERANCE, reduce
-from jointfmu.fields.sums import PRELOADS, PRESSED, Load, Sums
+from jointfmu.fields.sums import Sums
 from jointfmu.footprint import bolts
 from jointfmu.footprint.shape import NodalField
 from jointfmu.joints import register, unregister
@@ -53,7 +54,8 @@ def reduced(request):
 
 def direct(joint, shape, load):
     """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
-    spring = BoltedJointSpring(joint, Sums.of(joint, PRELOAD, pressures).curve, shape)
+    elastic = replace(joint, memory=False)
+    spring = BoltedJointSpring(elastic, Sums.of(joint, PRELOAD, pressures).curve, shape, shape)
     force = load.preload * PRELOAD
     moment = load.moment * force * joint.row_distance * joint.row_bolts
     start = spring.tightened(force, moment)
@@ -192,7 +194,7 @@ def test_a_file_with_both_sections_is_refused(imported, tmp_path):
     path.write_text(f"{dump(imported[0])}\n[pattern]\n{pattern}\n")
     with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
         load(path, "bolted_joint")
-    assert str(error.value).endswith(": allowed is one of [pattern], [field]")
+    assert str(error.value).endswith(": allowed is one of [pattern], [plate], [field]")
     assert "\n" not in str(error.value)
 
 
@@ -215,7 +217,7 @@ def test_what_asks_for_bolts_refuses_a_field(imported):
 
 
 def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
-    """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes, 1e-6."""
+    """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
     monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
     shape = bolt_pattern(JOINT).shape()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
@@ -240,7 +242,9 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     for i in range(1, len(found["preload"])):
         _, (expected, _), peak = direct(file.values, full, Load(found["preload"][i] / PRELOAD, 0.0, 0.0))
         got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
-        np.testing.assert_allclose(got, expected, rtol=TOLERANCE)
+        shear = got.pop(2), expected[2]
+        np.testing.assert_allclose(got, np.delete(expected, 2), rtol=1e-5)  # 120 of the points
+        assert shear[0] == pytest.approx(shear[1], rel=5e-3)  # the patches of the friction
         assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
     library.write(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
     assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
@@ -276,7 +280,7 @@ def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
         (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
         (["--data", "p"], "is read as csv, point data are for the format mesh (--data)"),
         (["--length-unit", "mm"], "a CSV file states units and plane in its heading (--length-unit)"),
-        (["--with", "b.lis"], "further listings are for the format ansys (--with)"),
+        (["--with", "b.lis"], "further listings are for the format ansys or abaqus (--with)"),
     ):
         assert cli.main([*line, "--open", "keep", *more]) == 2
         assert text in capsys.readouterr().err

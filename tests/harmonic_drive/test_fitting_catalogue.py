@@ -93,6 +93,9 @@ def test_json(capsys):
     assert {row["name"] for row in document["unknowns"]} == set(catalogue.FREE)
 
 
+IN_1E4 = {"K1": 1.0, "K2": 1.4, "K3": 1.6, "T1": 3.9, "T2": 12, "rated-torque": 12}
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -101,6 +104,10 @@ def test_json(capsys):
         ({"K1": -1}, "K1 = -1 N.m/rad is outside (0, inf): stiffness below T1"),
         ({"rated-torque": "nan"}, "rated = nan N.m is outside (0, inf): rated torque"),
         ({"ratio": 0}, "ratio = 0 is outside (0, inf)"),
+        (IN_1E4, "K1 = 1 N.m/rad winds up 9.69 rad at the rated torque 12 N.m, allowed are 1e-05 to 0.1 rad"),
+        (IN_1E4, "likely they are in 1e4 N.m/rad: times 10000"),
+        (IN_1E4 | {"K1": 2.9, "K2": 3.9, "K3": 4.4}, "likely they are in N.m/arcmin: times 3437.75"),
+        (IN_1E4 | {"K1": 1e8, "K2": 1e8, "K3": 1e8}, "1.2e-07 rad at the rated torque"),
         ({"free": "K_FTS"}, "'K_FTS' is no parameter to fit"),
     ],
 )

@@ -4,7 +4,7 @@
 
 #include "host.h"
 
-enum { N_INSTANCES = 4, N_SAVED = 6, MAX_COUNT = 12, MAX_BYTES = 4096 };
+enum { N_INSTANCES = 4, N_SAVED = 6, MAX_COUNT = 12, MAX_BYTES = 1 << 17 };
 
 typedef struct {
     Fmu fmu;

@@ -17,7 +17,7 @@ static Library library;
 static uint32_t in, out;
 static double number, zero, one = 1.0;
 static void *state, *nothing;
-static fmi3Byte bytes[4096];
+static fmi3Byte bytes[1 << 17];
 static size_t size;
 
 #define CALLS2(X)                                                                                            \

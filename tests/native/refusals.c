@@ -9,7 +9,7 @@ static uint32_t in, out, parameter, unknown = 1000;
 static double number, zero, one = 1.0, nan_;
 static const char *bogus[] = {"logBogus"};
 static void *state, *nothing;
-static char bytes[4096];
+static char bytes[1 << 17];
 static size_t size;
 
 typedef struct {
@@ -166,7 +166,7 @@ static void check(const char *token, char kind, char mode)
             must_refuse(&fmu, r->call(fmu.instance), r->name, r->expected);
     CHECK(nothing == NULL, &fmu.log);
     if (mode == 's') {
-        for (size_t i = 0; i < size; i++) { /* a byte that is wrong is noticed, wherever it is */
+        for (size_t i = 0; i < size; i += 1 + size / 4096) { /* a wrong byte is noticed, wherever it is */
             bytes[i] ^= 0x10;
             const int status = CALL(DeSerializeFMUstate(fmu.instance, bytes, size, &nothing),
                                     DeserializeFMUState(fmu.instance, (fmi3Byte *)bytes, size, &nothing));

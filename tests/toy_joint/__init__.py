@@ -39,4 +39,4 @@ MODEL = Model(
     dependencies={"K": ()},
     linear={"f": {"s_rel": "parameters"}},
 )
-KIND = Kind(name="toy", package=__name__, default="spring", parameters=LinearSpring, models=(MODEL,))
+KIND = Kind(name="toy", package=__name__, default="spring", laws={"linear": LinearSpring}, models=(MODEL,))

@@ -11,6 +11,6 @@ REDUCED = Reduced(
     outputs=(KIND.variables["f"],),
     to=lambda spring: 1e-3,
     most=lambda spring: np.inf,
-    evaluate=lambda values, loads, factor: {"f": -np.reshape(values["c"], (-1, 1)) * factor * loads},
+    evaluate=lambda _, values, loads, factor: {"f": -np.reshape(values["c"], (-1, 1)) * factor * loads},
     exact=lambda spring, loads: {"f": -spring.c * loads},
 )

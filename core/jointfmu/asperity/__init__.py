@@ -1,8 +1,9 @@
-"""Published contact laws, a file each; LAWS is the only list of them."""
+"""Interface laws, a file each; LAWS is the only list of them."""
 
 from .hu2023 import Hu2023
+from .roughness import Roughness
 from .yu2022 import Yu2022
 from .zhao2018 import Zhao2018
 
-LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022}
-"""{author and year: parameters of the law}."""
+LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022, "roughness": Roughness}
+"""{author and year, or what it starts from: parameters of the law}."""

@@ -1,7 +1,12 @@
 """Hu et al. 2023 (doi:10.3389/fmats.2023.1211019): asperities of one base radius, four regimes.
 
 Equation numbers are the paper's; where the print is wrong the corrected form is implemented
-(docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas.
+(docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas. The choice
+`reading` tells which pressure Eq. 28 means, and with it which law follows:
+
+corrected : load over nominal area, F_r/A_0; four regimes, stiffness of spots above s_min
+printed   : load over real area, F_r/S_r; all spots elastic, stiffness of one set of spots as Eq. 30 has it
+    but for its sign, in proportion to the pressure. It holds up to `elastic_pressure`.
 """
 
 from dataclasses import dataclass, replace
@@ -38,6 +43,10 @@ class Hu2023:
         "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
     )
 
+    reading: str = choice(
+        "corrected", "printed", doc="pressure of Eq. 28: load over nominal area, or over real area as printed"
+    )
+
     def __post_init__(self) -> None:
         check(self)
 
@@ -48,10 +57,10 @@ class Hu2023:
 
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eq. 17, reference area s_min."""
-        return spots(self)
+        return spots(self) if self.reading == "corrected" else printed_spots(self)
 
     def state(self, u: Number) -> dict[str, Number]:
-        """F [N] Eq. 27; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22."""
+        """F [N] Eq. 27, P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22."""
         s = self.spots()
         names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
         return {symbol: s.total(name, u) for symbol, name in names.items()}
@@ -79,6 +88,48 @@ def critical_area(law: Hu2023) -> Number:
 def critical_load(law: Hu2023) -> Number:
     """f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
     return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * critical_area(law)
+
+
+def elastic_pressure(law: Hu2023) -> Number:
+    """F_r/S_r [Pa] of elastic spots, the largest of area s_ec: Eqs. 9, 18, 23; below it no spot yields."""
+    D = law.surface.D
+    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
+
+
+def printed_spots(law: Hu2023) -> Spots:
+    r"""The law as printed, all spots elastic. With s_l the largest spot
+
+        P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
+
+    and the magnitude of Eq. 30 with s_l as its upper limit, also ~ s_l^(1/2). So K is in proportion to P,
+    and E cancels. The stiffness is that of one set of spots, whatever the area.
+
+    Quantities: load [N], P A_0; normal, tangential [N/m]; area, elastic_area [m2].
+    """
+    s, E = law.surface, contact_modulus(law.side1, law.side2)
+    m, weight = 0.5 * s.D - 0.5, domain_extension_fit(s.D) ** (1.5 - 0.5 * s.D)
+    edge = np.sqrt(s.s_min / np.pi)
+    P = 4.0 / 3.0 * E * (3.0 - s.D) / (4.0 - s.D) * edge / (np.pi * curvature_radius(law))
+    full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * edge
+    if law.traction == "ratio":
+        tangential: Term = Power(0.0 - full_stick * mindlin.stick_root(law.traction_ratio)[0], 0.5)
+    else:
+        slip = law.shear_traction * s.s_min / (law.mu * _elastic_load(law))
+        tangential = Slip(c=full_stick, p=0.5, h=slip, q=0.5, lower=-np.inf, upper=np.inf)
+    terms: dict[str, tuple[Term, ...]] = {
+        "load": (Power(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
+        "normal": (Power(-2.0 * E * edge, 0.5),),
+        "tangential": (tangential,),
+        "area": (Power(s.s_min, 1.0),),
+        "elastic_area": (Power(s.s_min, 1.0),),
+    }
+    return Spots(reference=s.s_min, m=m, weight=weight, terms=terms)
+
+
+def _elastic_load(law: Hu2023) -> Number:
+    """f_e [N] of a spot of area s_min, Eq. 9."""
+    s_min, E = law.surface.s_min, contact_modulus(law.side1, law.side2)
+    return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
 
 
 def spots(law: Hu2023) -> Spots:

@@ -71,13 +71,19 @@ class Yu2022:
     def state(self, u: Number) -> dict[str, Number]:
         """F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1]."""
         s = self.spots()
-        area = s.total("area", u)
+        area, elastic = areas(s, u)
         return {
             "F": s.total("load", u),
             "K_N": s.total("normal", u),
             "A_r": area,
-            "elastic_fraction": s.total("elastic_area", u) / area,
+            "elastic_fraction": elastic,
         }
+
+
+def areas(spots: Spots, u: Number) -> tuple[Number, Number]:
+    """Real area [m2], Eq. 54, and its elastic part [1]."""
+    area = spots.total("area", u)
+    return area, spots.total("elastic_area", u) / area
 
 
 def modulus(law: Yu2022) -> Number:

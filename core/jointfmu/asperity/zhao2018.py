@@ -37,7 +37,7 @@ class Zhao2018:
         "continuity", "printed", "yield", doc="area below which a spot is plastic (Eq. 4)"
     )
     spot_stiffness: str = choice(
-        "family", "hertz", doc="stiffness of an elastic spot: along the size family (Eq. 13), or Hertz"
+        "hertz", "family", doc="stiffness of an elastic spot: Hertz, or along the size family (Eq. 13)"
     )
 
     def __post_init__(self) -> None:
@@ -51,6 +51,14 @@ class Zhao2018:
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eq. 2, reference area a'_c."""
         return spots(self)
+
+    def shear_ratio(self) -> Number:
+        """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
+        return tangential_stiffness(self, 1.0) / normal_stiffness(self, 1.0)
+
+    def loss_factor(self) -> Number:
+        """eta_t [1] at the traction ratio, Eqs. 27-29."""
+        return mindlin.loss_factor(self.traction_ratio)
 
     def state(self, u: Number) -> dict[str, Number]:
         """Everything the law defines when the largest spot has log-area `u`."""
@@ -155,7 +163,7 @@ def state(law: Zhao2018, u: Number) -> dict[str, Number]:
         eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
         C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, law.mass, K_N), 0.0)
     W_d, W = shear_energies(law, F, A_r, s.total("loop_area", u))
-    eta_t = mindlin.loss_factor(law.traction_ratio)
+    eta_t = law.loss_factor()
     return {
         "F": F,
         "K_N": K_N,

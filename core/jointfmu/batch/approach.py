@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..curve import CLOSING_RATIO, closing
+from ..curve import CLOSING_RATIO, closing, closing_reach
 from ..interface import SIDE, Law, checked_spots
 from ..powerlaw import Spots
 from . import chebyshev
@@ -23,6 +23,8 @@ COLLOCATION = 15
 """Chebyshev nodes per regime [1]."""
 FINE = 29
 """Nodes of the table per regime [1]."""
+WIDEST = 8.0
+"""Log-area of a regime [1] from which on it is taken in several parts."""
 CLOSING = np.unique(np.round(512.0 * np.geomspace(1.0 / 512.0, 1.0, 64)).astype(int))[:-1]
 """Nodes of the closing of the contact, out of 512 evenly spaced ones [1]."""
 _CHEBYSHEV = chebyshev.nodes(COLLOCATION)
@@ -87,7 +89,7 @@ def tabulate(law: Law, lowest: Array, highest: Array, names: tuple[str, ...] = (
     bend = stiff**2 / start * relative["normal"][:, :1]
     kept = CLOSING if np.any(lowest < start) else CLOSING[:0]
     x, *closed = closing(start, stiff, bend, kept / 512.0)
-    length = 4.0 * start / stiff
+    length = closing_reach(start, stiff, bend) * start / stiff
     s = np.log(np.concatenate([length + x, length + nodes["approach"]], axis=1))
     pressure = np.concatenate([np.log(closed[0]), p], axis=1)
     stiffness = np.concatenate([np.log(closed[1]), k], axis=1)
@@ -135,11 +137,17 @@ def _regimes(
 
 
 def _pieces(spots: Spots, first: Array, last: Array) -> list[tuple[Array, Array]]:
-    """Ends (n, 1) of the regimes between two log-areas; one that no sample reaches is left out."""
+    """Ends (n, 1) of the regimes between two log-areas, wide ones in parts; one that no sample reaches is
+    left out."""
     inner = [np.clip(np.broadcast_to(end, first.shape), first, last) for end in spots.ends]
     limits = np.sort(np.concatenate([first, *inner, last], axis=1), axis=1)
     pairs = [(limits[:, i : i + 1], limits[:, i + 1 : i + 2]) for i in range(limits.shape[1] - 1)]
-    return [(left, right) for left, right in pairs if np.any(right > left)]
+    parts = []
+    for left, right in pairs:
+        count = int(np.ceil(np.max(right - left) / WIDEST))
+        cuts = [left + (right - left) * (i / count) for i in range(count)] + [right]
+        parts += [(cuts[i], cuts[i + 1]) for i in range(count)]
+    return parts
 
 
 def held(rows: Rows, common: Array, offset: Array, end: Array) -> dict[str, Array]:

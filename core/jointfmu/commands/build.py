@@ -5,14 +5,18 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..parameters import load
-from .common import command, without_package
+from ..joints import MODELS
+from ..judgement import judge_file
+from ..parameters import default, load
+from .common import command, tell, without_package
 
 
 def add(commands: Any) -> None:
     """Declare the command."""
     make = command(commands, "build", _build, "build FMUs")
-    make.add_argument("names", nargs="*", metavar="NAME", help="FMUs to build (default: all)")
+    make.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"FMUs to build: {', '.join(MODELS)} (default: all)"
+    )
     make.add_argument(
         "--flavour",
         nargs="+",
@@ -21,6 +25,13 @@ def add(commands: Any) -> None:
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
+    make.add_argument(
+        "--parameters",
+        choices=("tunable", "fixed"),
+        default="tunable",
+        help="whether a tool may change parameters during a run (tunable, the default) or only before it "
+        "(fixed, which OpenModelica imports without warnings); fmi2 and fmi3",
+    )
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
@@ -34,13 +45,18 @@ def _build(args: argparse.Namespace) -> int:
 
         built = []
         if args.names or not args.systems:
-            built += building.build(args.names, args.flavour, file, args.out)
+            built += building.build(args.names, args.flavour, file, args.out, args.parameters)
         if args.systems:
-            built += ssp.build_systems(args.out, file)
+            built += ssp.build_systems(args.out, file, variability=args.parameters)
     except ImportError as error:
         raise without_package(error, "build") from None
+    joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
+    found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
     if args.json:
-        print(json.dumps({"built": [str(path) for path in built]}))
-    else:
-        print("\n".join(f"built {path}" for path in built))
+        judged = {joint: judgement.document() for joint, judgement in found.items()}
+        print(json.dumps({"built": [str(path) for path in built], "joints": judged}))
+        return 0
+    print("\n".join(f"built {path}" for path in built))
+    for joint, judgement in found.items():
+        tell(judgement, of=f"{joint}: ")
     return 0

@@ -7,17 +7,33 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
+from ..judgement import Judgement
 from ..parameters import parse_setting
+from .examples import BEFORE, EXAMPLES
 
 Run = Callable[[argparse.Namespace], int]
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse with one line for an error, and negative numbers in any notation."""
+    """argparse with one line for an error, negative numbers in any notation, and an example in the help.
+
+    example : words after `jointfmu`; None: that of `EXAMPLES`
+    """
+
+    example: str | None = None
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
+
+    def format_help(self) -> str:
+        """As argparse does, and an example in one line, to be copied."""
+        name = self.prog.partition(" ")[2]
+        example = self.example or EXAMPLES.get(name)
+        if example is None:
+            return super().format_help()
+        before = f", {BEFORE[name]}" if name in BEFORE else ""
+        return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
 
     def error(self, message: str) -> NoReturn:
         """Print one line and exit with 2."""
@@ -25,12 +41,20 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
-def command(commands: Any, name: str, run: Run, text: str) -> argparse.ArgumentParser:
+def command(commands: Any, name: str, run: Run, text: str) -> Parser:
     """Declare a command with `--json`."""
-    sub: argparse.ArgumentParser = commands.add_parser(name, help=text, description=text)
+    sub: Parser = commands.add_parser(name, help=text, description=text)
     sub.set_defaults(run=run)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
+
+
+def tell(found: Judgement, of: str = "") -> None:
+    """Print a judgement: what is found, and the warnings on standard error; `of` is put before."""
+    for line in found.lines():
+        print(f"{of}{line}")
+    for warning in found.warnings:
+        print(f"warning: {of}{warning}", file=sys.stderr)
 
 
 def flag(name: str) -> str:

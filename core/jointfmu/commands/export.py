@@ -10,8 +10,10 @@ from ..export.forms import ERROR, FORMS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
 from ..joints import KINDS
+from ..joints.pressing import pressing
+from ..judgement import Judgement, judge, judge_file, known_height
 from ..parameters import ParameterFile, check_writable, default, load, write_text
-from .common import command, flag
+from .common import command, flag, tell
 
 if TYPE_CHECKING:
     from ..export.writing import Written
@@ -89,15 +91,33 @@ def _export(args: argparse.Namespace) -> int:
     _refuse_idle(args, file)
     written = _written(args, file)
     write_text(args.out, written.text)
+    found = _judged(args, file)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
     if args.json:
-        print(json.dumps({**facts, **written.facts}))
+        print(json.dumps({**facts, **written.facts, **found.document()}))
         return 0
     print(f"wrote {args.out}: {args.what} for {args.form}, {args.units}")
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
         print(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
+    tell(found)
     return 0
+
+
+def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
+    """The judgement at the working point, at the pressures of the user's nodes, or at the usual load."""
+    how = pressing(KINDS[file.joint])
+    load = getattr(args, how.load, None) if how else None
+    if load is None and args.nodes:
+        from ..export.mesh import read_pairs
+
+        mesh = read_pairs(args.nodes)
+        if mesh.pressure is not None:
+            mean = float(mesh.pressure @ mesh.area / mesh.area.sum())
+            return judge(
+                KINDS[file.joint].law_of(file.values), [mean], known_height(file), float(mesh.pressure.max())
+            )
+    return judge_file(file, None if load is None else [load])
 
 
 def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":

@@ -5,7 +5,10 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..drawing.proof import proof_load
+from ..joints import KINDS
 from ..joints.clamped import clamped
+from ..judgement import Judgement, judge, known_height, overload
 from ..parameters import ParameterFile, default, load
 
 if TYPE_CHECKING:
@@ -33,14 +36,12 @@ def joint_file(path: Path | None) -> ParameterFile:
     return file
 
 
-def beyond_law(peak: float, hardness: float) -> list[str]:
-    """The warning if the greatest pressure [Pa] is one that no interface law has."""
-    if peak <= hardness:
-        return []
-    return [
-        f"the greatest pressure, {peak:.4g} Pa, is above the hardness of the softer body, {hardness:.4g} Pa, "
-        "where the interface law ends: the contact yields as a whole, the numbers are an extrapolation"
-    ]
+def judge_assembly(
+    file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
+) -> Judgement:
+    """The judgement of an assembly's contact at a preload [N] per bolt, mean and greatest pressure [Pa]."""
+    found = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
+    return found.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
 
 
 def without_fem(error: Exception) -> ValueError:
@@ -52,7 +53,10 @@ def without_fem(error: Exception) -> ValueError:
 
 
 def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
-    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`."""
+    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`.
+
+    Where the bolts are no two rows, the pressure under their heads carries a moment.
+    """
     changes = {"A_0": assembly.contact_area}
     for name in ("side1", "side2"):
         body = getattr(assembly, name)
@@ -60,7 +64,9 @@ def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> Par
     if whole:
         rows = assembly.outer_rows()
         changes |= {"n_bolts": float(len(assembly.bolts.positions))}
-        if rows is not None:
+        if rows is None:
+            changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
+        else:
             changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
     old = file.flat
     new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}

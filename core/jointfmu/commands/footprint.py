@@ -2,16 +2,17 @@
 
 import argparse
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import plots
+from ..joints import KINDS
+from ..judgement import judge, known_height
 from ..parameters import ParameterFile, check_writable, dump, write_text
 from . import footprint_compute
-from .common import Parser, command
-from .finite_elements import beyond_law, joint_file
+from .common import Parser, command, tell
+from .finite_elements import joint_file
 
 if TYPE_CHECKING:
     from ..fields.contact import ContactField
@@ -33,7 +34,9 @@ OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with
 
 def _import(steps: Any) -> None:
     step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
-    step.add_argument("file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS listing or a mesh")
+    step.add_argument(
+        "file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh"
+    )
     step.add_argument(
         "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
     )
@@ -42,7 +45,9 @@ def _import(steps: Any) -> None:
     )
     step.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
     step.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
-    step.add_argument("--format", metavar="FORMAT", help="csv, mesh, ansys or frd (default: by the name)")
+    step.add_argument(
+        "--format", metavar="FORMAT", help="csv, mesh, ansys, abaqus or frd (default: by the name)"
+    )
     step.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
     step.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
     step.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
@@ -50,9 +55,8 @@ def _import(steps: Any) -> None:
     step.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
     step.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
     step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
-    step.add_argument(
-        "--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help="further listings"
-    )
+    beside = "further listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
+    step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=beside)
     step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
     step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
     step.set_defaults(options=OPTIONS)
@@ -80,12 +84,14 @@ def _bring(args: argparse.Namespace) -> int:
     if args.out:
         write_text(args.out, dump(file))
     facts = _findings(args, file, field, reduction)
+    found = judge(
+        KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
+    )
     if args.json:
-        print(json.dumps(facts))
+        print(json.dumps(facts | found.document()))
     else:
         print("\n".join(_lines(facts, start.values.A_0)))
-        for warning in facts["warnings"]:
-            print(f"warning: {warning}", file=sys.stderr)
+        tell(found)
     return 0
 
 
@@ -136,12 +142,11 @@ def _findings(
         "largest_moment": reduction.moment * args.preload * joint.row_distance * joint.row_bolts,
         "deviation_beyond": reduction.beyond,
         "written": [str(path) for path in (args.out, args.plot) if path],
-        "warnings": beyond_law(float(field.pressure.max()), float(joint.hardness)),
     }
 
 
 def _lines(facts: dict[str, Any], before: float) -> list[str]:
-    from ..fields.sums import PRELOADS
+    from ..fields.loads import PRELOADS
 
     low, high = PRELOADS
     part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)

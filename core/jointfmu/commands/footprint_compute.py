@@ -2,24 +2,20 @@
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import plots
 from ..curve import Curve, approach_curve
 from ..parameters import ParameterFile, check_writable, dump, write_text
-from .common import command
-from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
+from .common import command, tell
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.bolted_contact import JointSolution
     from ..fem.convergence import MeshResult
 
-TILT = 1.0 / 3.0
-"""Moment of the second field for `--out`, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
 FINEST = 5
 """Most meshes of `--refine`."""
 COARSEST = 0.3
@@ -54,6 +50,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         from ..fem import convergence, results
         from ..fem.assembly import load as read
+        from ..fem.symmetry import unlike_holes
     except ImportError as error:
         raise without_fem(error) from None
     assembly, file = read(args.assembly), joint_file(args.params)
@@ -70,14 +67,15 @@ def run(args: argparse.Namespace) -> int:
         raise without_fem(error) from None
     written = _write(args, file, solution)
     facts = _findings(solution, moment, args.preload)
-    warnings = beyond_law(solution.peak, float(file.values.hardness))
+    found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
+    found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
     if args.json:
-        print(json.dumps(facts | {"meshes": list(_meshes(rows)), "written": written, "warnings": warnings}))
+        shown = facts | {"meshes": list(_meshes(rows)), "written": written}
+        print(json.dumps(shown | found.document()))
     else:
         print("\n".join([*_lines(facts), *_table(rows)]))
+        tell(found)
         print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
-        for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 
@@ -111,18 +109,10 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
-    """The joint with the field at the preload, and what a moment adds from a second one."""
-    from ..fields.joint_parameters import with_field
+    """The joint with the field at the preload, and what a moment adds."""
+    from ..fem.joint_file import with_solution
 
-    joint, law = solution.joint, _law(file)
-    moment = args.moment or TILT * joint.assembly.most_moment(args.preload)
-    equal = joint.solve(law, args.preload).field if args.moment else solution.field
-    tilted = (
-        solution.field if args.moment else joint.solve(law, args.preload, moment).field if moment else None
-    )
-    source = f"finite elements of the assembly {joint.assembly.name}"
-    file, _ = with_field(file, equal, args.preload, source, tilted=tilted, moment=moment or None)
-    return replace(file, name=f"{file.name}, computed field")
+    return with_solution(file, solution, args.preload, args.moment or 0.0)
 
 
 def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:

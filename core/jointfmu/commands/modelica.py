@@ -7,8 +7,9 @@ from typing import Any
 
 from ..joints import KINDS
 from ..joints.kind import Kind
-from ..parameters import load
-from .common import command, flag, without_package
+from ..judgement import Judgement, judge_file
+from ..parameters import ParameterFile, load
+from .common import command, flag, tell, without_package
 
 
 def add(commands: Any) -> None:
@@ -37,11 +38,20 @@ def _modelica(args: argparse.Namespace) -> int:
         written = library.write(args.out, file, points)
     except ImportError as error:
         raise without_package(error, "write the library") from None
+    found = _judged(file, points) if file else None
     if args.json:
-        print(json.dumps({"written": [str(path) for path in written]}))
-    else:
-        print(f"wrote {args.out / library.NAME}: {len(written)} files")
+        said = found.document() if found else {}
+        print(json.dumps({"written": [str(path) for path in written]} | said))
+        return 0
+    print(f"wrote {args.out / library.NAME}: {len(written)} files")
+    if found:
+        tell(found)
     return 0
+
+
+def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:
+    """The judgement of the user's joint at its working points."""
+    return judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
 
 
 def _inputs() -> dict[str, list[Kind]]:

@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ..curve import approach_curve
 from ..joints.clamped import clamping
 from ..parameters import check_writable, write_bytes
-from .common import command
-from .finite_elements import assembly_arguments, beyond_law, joint_file, with_assembly, without_fem
+from .common import command, tell
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ..fem.modes import Modes
@@ -59,16 +58,15 @@ def run(args: argparse.Namespace) -> int:
         raise without_fem(error) from None
     if args.vtu:
         write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
-    warnings = beyond_law(solution.peak, float(file.values.hardness))
+    found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
     if args.json:
-        print(json.dumps(_document(args, assembly.name, modes, even) | {"warnings": warnings}))
+        print(json.dumps(_document(args, assembly.name, modes, even) | found.document()))
     else:
         print(
             f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
         )
         print("\n".join(_table(modes, even)))
-        for warning in warnings:
-            print(f"warning: {warning}", file=sys.stderr)
+        tell(found)
     return 0
 
 

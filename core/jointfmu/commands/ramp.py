@@ -1,30 +1,66 @@
-"""`jointfmu ramp`: an FMU along a load ramp."""
+"""`jointfmu ramp`: an FMU along a load ramp, or to and fro."""
 
 import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from .. import ramp
+import numpy as np
+
+from .. import loops, plots, ramp
 from ..parameters import check_writable, write_text
-from .common import command, settings
+from .common import command, flag, settings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output", "plot")
+"""Options of a ramp, and of loops beside --loop."""
 
 
 def add(commands: Any) -> None:
     """Declare the command."""
-    drive = command(commands, "ramp", _ramp, "run an FMU along a load ramp from zero and print every output")
+    text = "run an FMU along a load ramp from zero, or to and fro, and print every output or the loops' loss"
+    drive = command(commands, "ramp", _run, text)
     drive.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
     drive.add_argument("--input", required=True, metavar="NAME", help="input to drive")
-    drive.add_argument("--to", type=float, required=True, metavar="VALUE", help="end of the ramp (SI)")
-    drive.add_argument("--step", type=float, required=True, metavar="VALUE", help="step of the ramp (SI)")
+    drive.add_argument("--to", type=float, metavar="VALUE", help="end of the ramp (SI)")
+    drive.add_argument("--step", type=float, metavar="VALUE", help="step of the ramp (SI)")
+    drive.add_argument(
+        "--loop", type=float, nargs="+", metavar="VALUE", help="amplitudes of loops, each from rest (SI)"
+    )
+    drive.add_argument("--about", type=float, metavar="VALUE", help="middle of the loops (default: 0)")
+    drive.add_argument(
+        "--shape", choices=loops.SHAPES, help=f"of a loop over time (default: {loops.SHAPES[0]})"
+    )
+    drive.add_argument("--points", type=int, metavar="N", help=f"of a cycle (default: {loops.POINTS})")
+    drive.add_argument("--cycles", type=int, metavar="N", help=f"of a loop (default: {loops.CYCLES})")
+    drive.add_argument("--output", metavar="NAME", help="force or motion conjugate to the input of loops")
     settings(drive)
-    drive.add_argument("--csv", type=Path, metavar="FILE", help="write the ramp to a file")
+    drive.add_argument("--csv", type=Path, metavar="FILE", help="write every point to a file")
+    drive.add_argument(
+        "--plot", type=Path, metavar="FILE", help="draw loops, loss and stiffness (.png, .svg)"
+    )
+
+
+def _run(args: argparse.Namespace) -> int:
+    """A ramp or loops, as the options say; ValueError if they say both or neither."""
+    ramped, looped = ([name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP))
+    if args.loop and ramped:
+        raise ValueError(
+            f"--loop and {flag(ramped[0])} are both given; allowed is --loop, or --to with --step"
+        )
+    if not args.loop and looped:
+        raise ValueError(f"{flag(looped[0])} is given without --loop; allowed is with --loop only")
+    if not args.loop and len(ramped) < len(RAMP):
+        raise ValueError("the drive is not stated; expected --to with --step, or --loop")
+    if args.csv:
+        check_writable(args.csv)
+    return _loops(args) if args.loop else _ramp(args)
 
 
 def _ramp(args: argparse.Namespace) -> int:
-    if args.csv:
-        check_writable(args.csv)
     result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)
@@ -38,3 +74,76 @@ def _ramp(args: argparse.Namespace) -> int:
     else:
         sys.stdout.write(result.csv())
     return 0
+
+
+def _loops(args: argparse.Namespace) -> int:
+    if args.plot:
+        plots.check(args.plot)
+    given = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
+    swing = loops.Swing(**given)
+    found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
+    for message in found.messages:
+        print(message, file=sys.stderr)
+    if args.csv:
+        write_text(args.csv, found.csv())
+    if args.plot:
+        with plots.drawing(args.plot, (11.4, 3.8)) as figure:
+            _draw(figure, found, swing)
+    if args.json:
+        print(json.dumps(_document(args.fmu, found)))
+        return 0
+    sys.stdout.write(found.table())
+    for path in filter(None, (args.csv, args.plot)):
+        print(f"wrote {path}")
+    return 0
+
+
+def _document(fmu: Path, found: loops.Loops) -> dict[str, Any]:
+    """What was found as one JSON object; forces act on the joint, positive with the motion."""
+    rows = found.rows()
+    for row, loop in zip(rows, found.loops, strict=True):
+        row |= {"motions": loop.motion.tolist(), "forces": loop.force.tolist(), "closed": loop.closed}
+    names = {"motion": found.motion, "force": found.force, "sign": found.sign}
+    return {
+        "fmu": str(fmu),
+        **names,
+        "units": dict(zip(("motion", "force"), found.units, strict=True)),
+        "rows": rows,
+    }
+
+
+def _draw(figure: "Figure", found: loops.Loops, swing: loops.Swing) -> None:
+    """Loops with first loading and ends; loss, and stiffness, over the amplitude."""
+    left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
+    every = sorted(found.loops, key=lambda loop: loop.amplitudes[0])
+    (motion, by), (force, times) = (
+        plots.shown(unit, np.concatenate([getattr(loop, name) for loop in every]))
+        for unit, name in zip(found.units, ("motion", "force"), strict=True)
+    )
+    for loop in every:
+        left.plot(
+            by * loop.motion[loop.closed :], times * loop.force[loop.closed :], color=plots.BLUE, lw=1.2
+        )
+    first = slice(None, swing.points // 4 + 1)
+    left.plot(by * every[-1].motion[first], times * every[-1].force[first], "--", color=plots.RED)
+    ends = np.array([(by * loop.motion[-1], times * loop.force[-1]) for loop in every])
+    left.plot(*ends.T, "o", color=plots.RED, ms=4, label="first loading, ends of the loops")
+    left.set_xlabel(f"{found.motion} [{motion}]")
+    left.set_ylabel(f"{'-' if found.sign < 0.0 else ''}{found.force} [{force}]")
+    left.legend(loc="lower right")
+    rows = [loop.row() for loop in every]
+    amplitude, stiffness, loss = (
+        np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
+    )
+    unit, size = plots.shown("N/m" if found.units[0] == "m" else "N.m/rad", stiffness)
+    for axes, y, label in (
+        (middle, loss, "loss of a cycle [J]"),
+        (right, size * stiffness, f"secant stiffness [{unit}]"),
+    ):
+        axes.plot(by * amplitude, y, "o-", color=plots.BLUE, ms=4)
+        axes.set_xlabel(f"amplitude [{motion}]")
+        axes.set_ylabel(label)
+    right.set_xlim(left=0.0)
+    right.set_ylim(0.0, 1.1 * size * float(np.max(stiffness)))
+    if np.all(loss > 0.0):
+        middle.set(xscale="log", yscale="log")

@@ -1,4 +1,4 @@
-"""`jointfmu ring`: resonance of a joint in its system over the load, by running FMUs."""
+"""`jointfmu ring`: resonance of a joint in its system over the load or the amplitude, by running FMUs."""
 
 import argparse
 import json
@@ -13,12 +13,12 @@ from .. import columns, plots
 from ..joints import KINDS
 from ..parameters import check_writable, write_text
 from ..systems import System, system, systems
-from .common import command, without_package
+from .common import command, settings, without_package
 
 
 def add(commands: Any) -> None:
     """Declare the command."""
-    text = "run a joint's FMU with a body on it and find resonance and damping over the load"
+    text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
     examples = systems()
     ring.add_argument("system", choices=list(examples), metavar="SYSTEM", help=" or ".join(examples))
@@ -41,6 +41,14 @@ def add(commands: Any) -> None:
     ring.add_argument(
         "--inertia", type=float, metavar="VALUE", help=f"of the body [{units}] (default: of the example)"
     )
+    ring.add_argument(
+        "--amplitude",
+        type=float,
+        metavar="VALUE",
+        help="let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
+        "the motion in which the joint slips (default load: the largest of the several)",
+    )
+    settings(ring)
     ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
     ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
 
@@ -55,9 +63,12 @@ def _ring(args: argparse.Namespace) -> int:
     _check(args, example.inertia_unit)
     try:
         from jointfmu_fmu_src import ringing
-        from jointfmu_fmu_src.report.systems import SIZE, draw
     except ImportError as error:
         raise without_package(error, "run a system") from None
+    if args.amplitude is not None:
+        return _decays(args, example)
+    if args.settings:
+        raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
     points = ringing.ring(args.system, args.fmus, args.load, args.inertia)
     rows = [_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.messages):
@@ -66,6 +77,8 @@ def _ring(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
+        from jointfmu_fmu_src.report.systems import SIZE, draw
+
         with plots.drawing(args.plot, SIZE) as figure:
             draw(figure, points, ringing.body_on(example.joint))
     misses = [line for point in points for line in point.misses]
@@ -80,6 +93,56 @@ def _ring(args: argparse.Namespace) -> int:
     return int(bool(misses))
 
 
+def _decays(args: argparse.Namespace, example: System) -> int:
+    """Frequency and damping over the amplitude."""
+    from jointfmu_fmu_src import decays, ringing
+
+    points = decays.decays(
+        args.system, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings)
+    )
+    body = ringing.body_on(example.joint)
+    for message in dict.fromkeys(text for point in points for text in point.messages):
+        print(message, file=sys.stderr)
+    heads = {
+        "load": example.load_unit,
+        "amplitude": KINDS[example.joint].variables[body.motion[0]].unit,
+        "frequency": "Hz",
+        "loop_frequency": "Hz",
+        "damping_ratio": "1",
+        "loop_damping_ratio": "1",
+    }
+    values = [np.concatenate(column) for column in zip(*map(_falling, points), strict=True)]
+    table = columns.text(list(heads.items()), values, digits=6)
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        from jointfmu_fmu_src.report.systems import WIDE, draw_decays
+
+        with plots.drawing(args.plot, WIDE) as figure:
+            draw_decays(figure, points, body)
+    if args.json:
+        rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
+        print(json.dumps({"system": args.system, "rows": rows}))
+        return 0
+    sys.stdout.write(table)
+    for path in filter(None, (args.csv, args.plot)):
+        print(f"wrote {path}")
+    return 0
+
+
+def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
+    """Columns of a decay: load, amplitude, frequency [Hz] of decay and loop, damping ratio of both."""
+    hertz = 1.0 / math.tau
+    return (
+        np.full(point.amplitude.size, point.load),
+        point.amplitude,
+        hertz * point.frequency,
+        hertz * point.expected,
+        point.damping,
+        point.stated,
+    )
+
+
 def _check(args: argparse.Namespace, unit: str) -> None:
     """Refuse what no FMU would, before the work; `unit` is the inertia's."""
     for value in args.load or ():
@@ -87,6 +150,8 @@ def _check(args: argparse.Namespace, unit: str) -> None:
             raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
     if args.inertia is not None and not 0.0 < args.inertia < math.inf:
         raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
+    if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
+        raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
     if args.csv:
         check_writable(args.csv)
     if args.plot:

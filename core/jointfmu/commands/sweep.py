@@ -38,6 +38,7 @@ def add(commands: Any) -> None:
 
 def _sweep(args: argparse.Namespace) -> int:
     from ..uncertainty import journal, study
+    from ..uncertainty.cluster import leave
     from ..uncertainty.sweep import plan, sweep
     from ..uncertainty.worker import Drive
 
@@ -48,14 +49,15 @@ def _sweep(args: argparse.Namespace) -> int:
     drive = Drive(args.input, args.to, args.step)
     given = study.settings(args.study, args.settings)
     record, runs = plan(args.fmu, drive, given, count, args.seed)
-    journal.claim(args.out, record)
     try:
-        done = sweep(args.fmu, drive, runs, args.out, args.scheduler, args.workers)
+        with journal.claimed(args.out, record):
+            done = sweep(args.fmu, drive, runs, args.out, args.scheduler, args.workers)
     except KeyboardInterrupt:
         print(
-            f"jointfmu sweep: finished runs are kept in {args.out}; the same command resumes", file=sys.stderr
+            f"jointfmu sweep: interrupted; finished runs are kept in {args.out}, the same command resumes",
+            file=sys.stderr,
         )
-        raise
+        leave(130)
     failure = done.first_failure
     if args.json:
         example = failure and {key: failure[key] for key in ("run", "parameters", "error")}

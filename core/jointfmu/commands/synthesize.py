@@ -10,6 +10,11 @@ from ..topography import csvfile, synthesis
 from ..topography.heights import Areal, Heights
 from .common import command
 
+MEMORY = 2e9
+"""Memory [B] that making a surface and its file may take."""
+MAP_POINT, PROFILE_POINT = 64.0, 190.0
+"""Memory [B] for a point of a map and of a profile, with its text (measured at a million points)."""
+MOST_RIDGES = 1000
 SHAPES = ("isotropic", "textured", "profile")
 
 
@@ -63,6 +68,21 @@ def _synthesize(args: argparse.Namespace) -> int:
     return 0
 
 
+def _check_memory(args: argparse.Namespace) -> None:
+    """Refuse more points than MEMORY holds."""
+    if args.shape == "profile":
+        each, number = PROFILE_POINT, float(args.points)
+        most = MEMORY / each
+    else:
+        each, number = MAP_POINT, float(args.points) ** 2
+        most = (MEMORY / each) ** 0.5
+    if number * each > MEMORY:
+        raise ValueError(
+            f"points = {args.points} take {number * each / 1e9:.3g} GB, allowed are {MEMORY / 1e9:g} GB: "
+            f"at most {int(most)} points along a side of shape {args.shape}"
+        )
+
+
 def _made(args: argparse.Namespace) -> Heights:
     count = 2 if args.shape == "textured" else 1
     for name, given in (("D", args.D), ("G", args.G)):
@@ -74,8 +94,9 @@ def _made(args: argparse.Namespace) -> Heights:
             raise ValueError(f"G = {min(given):g} m is outside (0, inf): fractal roughness")
     if args.seed < 0:
         raise ValueError(f"seed = {args.seed} is negative, allowed are 0, 1, 2, ...")
-    if args.ridges < 1:
-        raise ValueError(f"ridges = {args.ridges}, allowed are 1, 2, 3, ...")
+    if not 1 <= args.ridges <= MOST_RIDGES:
+        raise ValueError(f"ridges = {args.ridges}, allowed are 1, 2, 3, ... {MOST_RIDGES}")
+    _check_memory(args)
     waves = synthesis.Waves(size=args.size, points=args.points, gamma=args.gamma)
     if args.shape == "isotropic":
         return synthesis.isotropic(waves, args.D[0], args.G[0], args.ridges, args.seed)

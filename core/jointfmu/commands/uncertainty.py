@@ -2,12 +2,15 @@
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..joints import KINDS
+from ..judgement import judge_file
 from ..parameters import ParameterFile, check_writable, default, load, write_text
-from .common import command, settings
+from ..quantity import build
+from .common import command, settings, tell
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
@@ -76,8 +79,10 @@ def _uncertainty(args: argparse.Namespace) -> int:
         from ..uncertainty import figure
 
         figure.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
+    found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
     if args.json:
-        print(json.dumps(report.as_json(task, bands, indices)))
+        print(json.dumps(report.as_json(task, bands, indices) | found.document()))
     else:
         print(report.table(task, bands, indices))
+        tell(found)
     return 0

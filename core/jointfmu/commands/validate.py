@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from dataclasses import asdict
 from typing import Any
 
 from .. import validation
@@ -28,7 +29,8 @@ def _validate(args: argparse.Namespace) -> int:
             raise without_fem(error) from None
     misses = validation.missed(rows)
     if args.json:
-        print(json.dumps({"rows": [row.as_dict() for row in rows], "missed": len(misses)}))
+        counts = asdict(validation.counts(rows))
+        print(json.dumps({"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)}))
         return int(bool(misses))
     print(validation.table(rows))
     print(validation.summary(rows))

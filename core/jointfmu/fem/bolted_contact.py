@@ -47,11 +47,16 @@ class BoltedContact:
 
     def solve(self, law: PressureLaw, preload: float, moment: float = 0.0) -> "JointSolution":
         """Equilibrium under a preload [N] per bolt and a moment [N.m] about x."""
+        return self._solve(ContactModel(self.bodies, self.interface, law), preload, moment)
+
+    def _solve(
+        self, model: ContactModel, preload: float, moment: float, near: ContactSolution | None = None
+    ) -> "JointSolution":
         force = self.assembly.bolt_forces(preload, moment)
         signs = (-1.0,) if len(self.bodies) == 1 else (1.0, -1.0)
         loads = [sign * head @ force for sign, head in zip(signs, self.heads, strict=True)]
-        model = ContactModel(self.bodies, self.interface, law)
-        return JointSolution(self, force, model.solve(loads, force.sum() / self.interface.area.sum()))
+        mean = float(force.sum() / self.interface.area.sum())
+        return JointSolution(self, force, model.solve(loads, mean, near))
 
 
 def elastic_body(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0) -> ElasticBody:
@@ -67,6 +72,10 @@ class JointSolution:
     joint: BoltedContact
     force: Array
     contact: ContactSolution
+
+    def under(self, preload: float, moment: float = 0.0) -> "JointSolution":
+        """The same joint and law under another preload [N] per bolt and moment [N.m], found from here."""
+        return self.joint._solve(self.contact.model, preload, moment, self.contact)
 
     @property
     def field(self) -> ContactField:

@@ -11,7 +11,7 @@ supports that stop rigid motions carry nothing; loads that the contact cannot ba
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -23,7 +23,7 @@ from skfem import Basis, Element, ElementQuadS2, MeshQuad
 
 from .balance import RigidBalance
 from .elasticity import ElasticBody
-from .newton import Energy
+from .newton import Energy, Minimum
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -111,38 +111,55 @@ class ContactModel:
             _supports(body, fully=i == 0 and not self.mirrored) for i, body in enumerate(self.bodies)
         )
 
-    def solve(self, loads: Sequence[Array], start: float) -> "ContactSolution":
+    @cached_property
+    def _free(self) -> tuple[Index, ...]:
+        """Unknowns of each body that move."""
+        pairs = zip(self.bodies, self.supports(), strict=True)
+        return tuple(np.setdiff1d(np.arange(body.size), fixed) for body, fixed in pairs)
+
+    @cached_property
+    def _unloaded(self) -> Energy:
+        """The energy in the unknowns that move, without loads."""
+        blocks = [body.stiffness[part][:, part] for body, part in zip(self.bodies, self._free, strict=True)]
+        traces = [trace[:, part] for trace, part in zip(self.traces(), self._free, strict=True)]
+        return Energy(
+            stiffness=blocks[0] if self.mirrored else sp.block_diag(blocks, format="csr"),
+            load=np.zeros(sum(part.size for part in self._free)),
+            trace=(self.interface.values @ sp.hstack(traces)).tocsr(),
+            weight=self.interface.area * (0.5 if self.mirrored else 1.0),
+            law=self.law.derivatives,
+        )
+
+    def solve(
+        self, loads: Sequence[Array], start: float, near: "ContactSolution | None" = None
+    ) -> "ContactSolution":
         """Equilibrium under loads (n) [N] on each body, from a start with a pressure [Pa] > 0 everywhere.
+
+        near : equilibrium of this model under other loads, to start from instead
 
         Raises
         ------
         RuntimeError : no equilibrium: loads that the contact cannot balance, or bodies that nothing holds
         """
-        held = self.supports()
         balance = self.balance(loads)
         balance.check_loads()
-        free = [
-            np.setdiff1d(np.arange(body.size), fixed) for body, fixed in zip(self.bodies, held, strict=True)
-        ]
-        traces = [trace[:, part] for trace, part in zip(self.traces(), free, strict=True)]
-        split = np.cumsum([part.size for part in free])[:-1]
-        energy = Energy(
-            stiffness=[body.stiffness[part][:, part] for body, part in zip(self.bodies, free, strict=True)],
-            load=np.concatenate([load[part] for load, part in zip(loads, free, strict=True)]),
-            trace=(self.interface.values @ sp.hstack(traces)).tocsr(),
-            weight=self.interface.area * (0.5 if self.mirrored else 1.0),
-            law=self.law.derivatives,
-        )
         gap = self.opening(*self.interface.position.T)
-        offset = float(self.law.inverse(np.asarray(start))) + float(gap.max())
-        unknowns, approach, steps = energy.minimise(offset - gap)
-        balance.check_contact(energy.weight * self.law.derivatives(approach, 1)[0])
-        displacement = []
-        for body, part, values in zip(self.bodies, free, np.split(unknowns, split), strict=True):
-            whole = np.zeros(body.size)
-            whole[part] = values
-            displacement.append(whole)
-        return ContactSolution(self, tuple(loads), tuple(displacement), offset, approach, steps)
+        offset = (
+            float(self.law.inverse(np.asarray(start))) + float(gap.max()) if near is None else near.offset
+        )
+        given = np.concatenate([load[part] for load, part in zip(loads, self._free, strict=True)])
+        energy = replace(self._unloaded, load=given)
+        found = energy.minimise(offset - gap, None if near is None else near.minimum)
+        balance.check_contact(energy.weight * self.law.derivatives(found.approach, 1)[0])
+        return ContactSolution(self, tuple(loads), self._whole(found.displacement), offset, found)
+
+    def _whole(self, moving: Array) -> tuple[Array, ...]:
+        """Displacement (n) of each body, from that of the unknowns that move."""
+        parts = np.split(moving, np.cumsum([part.size for part in self._free])[:-1])
+        displacement = tuple(np.zeros(body.size) for body in self.bodies)
+        for whole, free, values in zip(displacement, self._free, parts, strict=True):
+            whole[free] = values
+        return displacement
 
     def balance(self, loads: Sequence[Array]) -> RigidBalance:
         """Forces of loads (n) [N] on the rigid motions of the bodies."""
@@ -164,16 +181,24 @@ class ContactSolution:
     loads    : (n) [N] on each body
     displacement : (n) [m] of each body, three values per node
     offset   : [m] approach at zero displacement where the gap is zero
-    approach : (q) [m] in equilibrium
-    steps    : of Newton's method
+    minimum  : of the energy
     """
 
     model: ContactModel
     loads: tuple[Array, ...]
     displacement: tuple[Array, ...]
     offset: float
-    approach: Array
-    steps: int
+    minimum: Minimum
+
+    @property
+    def approach(self) -> Array:
+        """(q) [m] in equilibrium."""
+        return self.minimum.approach
+
+    @property
+    def steps(self) -> int:
+        """How many steps Newton's method took."""
+        return self.minimum.steps
 
     @property
     def pressure(self) -> Array:

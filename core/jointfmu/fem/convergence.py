@@ -43,12 +43,14 @@ def study(
 
     preload : [N] per bolt; moment : [N.m]
     """
-    rows = []
-    for refinement in track(levels, "meshes"):
-        joint = BoltedContact.of(assembly, refinement)
-        solution = joint.solve(law, preload, moment)
-        rows.append(result(solution, refinement))
-    return rows, solution
+
+    def solved(refinement: float) -> JointSolution:
+        return BoltedContact.of(assembly, refinement).solve(law, preload, moment)
+
+    *before, last = levels
+    rows = [result(solved(refinement), refinement) for refinement in track(before, "meshes")]
+    solution = solved(last)
+    return [*rows, result(solution, last)], solution
 
 
 def result(solution: JointSolution, refinement: float) -> MeshResult:

@@ -1,8 +1,9 @@
 """ANSYS listings: nodal contact pressure (PRNSOL,CONT), nodes (NLIST) and contact elements (ELIST).
 
-A listing is a text of pages. A table begins with its header, a line of column names that starts with NODE or
-ELEM, and page headers may interrupt it anywhere. Only lines with a number for every column are its rows; the
-summary of extreme values at the end is passed over.
+Nodes and elements may come from an archive (CDWRITE, .cdb) instead. A listing is a text of pages. A table
+begins with its header, a line of column names that starts with NODE or ELEM, and page headers may interrupt
+it anywhere. Only lines with a number for every column are its rows; the summary of extreme values at the end
+is passed over.
 """
 
 import re
@@ -12,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..refusal import Refusal
+from . import cdb
 from .nodal_result import NodalResult, Nodes
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
@@ -22,7 +24,7 @@ PRESSURE = "PRES"
 
 
 def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
-    """The contact result of one or more listings; units in SI.
+    """The contact result of one or more listings, or of one with an archive; units in SI.
 
     Raises ValueError naming file and line: a file that cannot be read, a table that is missing, a node
     with two values, an element with a node that is not listed.
@@ -30,7 +32,8 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
     values: dict[int, float] = {}
     places: dict[int, tuple[float, ...]] = {}
     elements: list[list[int]] = []
-    for path in paths:
+    meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
+    for path in (path for path in paths if path not in meshes):
         for where, content, row in _rows(path):
             if content == "element":
                 elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
@@ -43,6 +46,8 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
                 if listed.setdefault(name, value) != value:
                     raise ValueError(f"{where}: node {name} has a second {content}, expected one")
     first = paths[0]
+    if meshes and values:
+        return _on_archive(first, meshes[0], values, length, pressure)
     for table, text in (
         (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
         (places, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
@@ -51,6 +56,16 @@ def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
         if not table:
             raise Refusal(f"{first}: has {text}; give further listings", "beside")
     return _result(first, values, places, elements, length, pressure)
+
+
+def _on_archive(
+    path: Path, archive: Path, values: dict[int, float], length: float, pressure: float
+) -> NodalResult:
+    """The pressures on those faces of an archive whose corners are listed."""
+    mesh = cdb.read(archive)
+    if stray := mesh.stray(node for node, value in values.items() if value):
+        raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive}")
+    return mesh.result(path, values, length, pressure)
 
 
 def _result(

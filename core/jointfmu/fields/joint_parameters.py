@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..footprint.shape import PressureShape
-from ..joints import KINDS
+from ..footprint.shape import PressureShape, growing, mean_squares
 from ..joints.clamped import Clamped, clamping
 from ..parameters import ORIGINS, ParameterFile
 from ..quantity import build
@@ -16,7 +15,7 @@ FORCE_ERROR = 0.01
 """Largest difference of a field's force from the stated preload [1]."""
 MOMENT_PART = (0.5, 1.5)
 """What part of a stated moment [1] the pressures may balance; the rest is bolt forces."""
-_REPLACED = ("pattern.", "field.")
+_REPLACED = ("pattern.", "plate.", "field.")
 """Groups of the file that the field replaces."""
 
 
@@ -28,6 +27,7 @@ def with_field(
     origin: str = "derived",
     tilted: ContactField | None = None,
     moment: float | None = None,
+    bolts: Array | None = None,
 ) -> tuple[ParameterFile, Reduction]:
     """A joint with the pressure of a field instead of a pattern of bolts, and its contact area.
 
@@ -41,6 +41,7 @@ def with_field(
     tilted  : the field at the same nodes under a bending moment too; without it the pressure grows in
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
+    bolts   : (n, 2) [m] places of the bolts, for what their stiffness adds to rotations; None: nothing
 
     Raises ValueError if the joint's pressure cannot be a field, if a field's force differs from that of the
     bolts by more than FORCE_ERROR, if the two fields do not fit each other, or if the pressures' own moment
@@ -61,11 +62,14 @@ def with_field(
     }
     given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
     given["A_0"] = float(np.sum(field.area))
+    if bolts is not None:
+        x2, y2 = mean_squares(bolts - field.centroid)
+        given |= {"field.bolt_x2": x2, "field.bolt_y2": y2}
     kept = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(
         file,
-        values=build(KINDS[file.joint].parameters, kept | given),
+        values=build(type(file.values), kept | given),
         origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
         | dict.fromkeys(given, origin),
         sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
@@ -99,7 +103,8 @@ def pressure_shape(
     mean = preload * joint.n_bolts / area
     equal = scale * field.pressure / mean
     if tilted is None:
-        return PressureShape(share, position, equal, _proportional(joint, share, position[:, 1], equal))
+        tilt = joint.row_distance * growing(share, position[:, 1], equal)
+        return PressureShape(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
     scale = _force(joint, tilted, preload, "the field with a moment")
@@ -113,16 +118,6 @@ def pressure_shape(
             f"allowed is {low:g} to {high:g}: a positive moment raises the pressure at y > 0"
         )
     return PressureShape(share, position, equal, added * joint.row_distance * area / moment)
-
-
-def _proportional(joint: Clamped, share: Array, y: Array, equal: Array) -> Array:
-    """What a moment adds if it grows with the distance from the centre of pressure."""
-    force = share * equal
-    away = y - force @ y
-    spread = float(force @ away**2)
-    if not spread > 0.0:
-        raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
-    return np.asarray(joint.row_distance * equal * away / spread)
 
 
 def _force(joint: Clamped, field: ContactField, preload: float, name: str) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..refusal import Refusal
 from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
+from .mesh import no_reader
 from .nodal_result import Array, NodalResult
 
 
@@ -46,10 +47,7 @@ def _read(path: Path) -> Any:
     try:
         import meshio
     except ImportError as error:
-        raise ValueError(
-            f"the package {error.name} is missing, needed to read {path}; "
-            "install it with: pip install 'jointfmu[field]'"
-        ) from None
+        raise no_reader(path, error) from None
     if not path.is_file():
         raise ValueError(f"{path}: cannot be read (no such file); expected a mesh with point data")
     try:

@@ -7,13 +7,23 @@ from pathlib import Path
 import numpy as np
 
 from ..refusal import Refusal
-from . import ansys, csvfile, frd, meshfile
+from . import abaqus, ansys, csvfile, frd, meshfile
 from .contact import ContactField
 from .contact_surface import OPEN, ContactSurface, Plane, contact_surface
 from .nodal_result import LENGTHS, PRESSURES, NodalResult
 
-FORMATS = ("csv", "mesh", "ansys", "frd")
-SUFFIXES = {".csv": "csv", ".frd": "frd", ".lis": "ansys", ".txt": "ansys", ".out": "ansys"}
+FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
+SUFFIXES = {
+    ".csv": "csv",
+    ".frd": "frd",
+    ".lis": "ansys",
+    ".txt": "ansys",
+    ".out": "ansys",
+    ".rpt": "abaqus",
+    ".dat": "abaqus",
+}
+LISTINGS = {"ansys": ansys.read, "abaqus": abaqus.read}
+"""Formats in which several files belong together."""
 """Format by the end of a file's name; others are meshes."""
 
 
@@ -25,7 +35,7 @@ class Reading:
     length   : unit of its lengths, of LENGTHS; None for CSV, whose heading states it
     pressure : unit of its pressures, of PRESSURES; None for CSV
     data     : point data that is the pressure, for meshes
-    beside   : further listings (ANSYS)
+    beside   : further listings, or the mesh (ANSYS, Abaqus)
     open     : what to do with nodes without pressure, one of OPEN
     """
 
@@ -69,17 +79,18 @@ class Reading:
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
         format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
         for given, what, name, only in (
-            (self.data, "point data are", "data", "mesh"),
-            (beside, "further listings are", "beside", "ansys"),
+            (self.data, "point data are", "data", ("mesh",)),
+            (beside, "further listings are", "beside", tuple(LISTINGS)),
         ):
-            if given and format != only:
-                raise Refusal(f"{path}: is read as {format}, {what} for the format {only}", name)
+            if given and format not in only:
+                allowed = " or ".join(only)
+                raise Refusal(f"{path}: is read as {format}, {what} for the format {allowed}", name)
         if format == "csv":
             self._stated_by_file(path)
             return csvfile.read(path)
         length, pressure = self._units(path)
-        if format == "ansys":
-            return ansys.read([path, *beside], length, pressure)
+        if format in LISTINGS:
+            return LISTINGS[format]([path, *beside], length, pressure)
         if format == "frd":
             return frd.read(path, length, pressure)
         return meshfile.read(path, length, pressure, self.data)

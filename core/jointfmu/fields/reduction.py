@@ -1,40 +1,45 @@
 """Few points for many nodes: a field's sums at all loads, kept by some of its nodes with new shares.
 
 What a joint exports are sums over its nodes of share times a function of the node's two pressures
-(`equal`, `tilt`), with its position as a factor. At finitely many loads these are finitely many sums, and
-some of the nodes with positive shares keep them all (Tchakaloff's theorem); non-negative least squares finds
-such nodes. Loads at which the points miss are added until none of further ones is missed.
+(`equal`, `tilt`), with its position as a factor. At finitely many loads these are finitely many sums, most of
+which follow from the others. Some of the nodes with positive shares keep these (`recombination`), and as few
+of them as keep all within the tolerance are taken. Loads at which the points miss are added until none of
+further ones is missed.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import nnls
+from scipy.linalg import qr, solve_triangular
 
 from ..footprint.shape import PressureShape
 from ..joints.clamped import Clamped, Pressures
 from ..progress import track
+from .loads import PRELOADS, SEED, Load, first_loads, further_loads, largest_moment
 from .nodal_result import Array, Nodes
-from .sums import PRELOADS, SEED, Load, Sums, SumsAtLoad, balance, first_loads, further_loads, largest_moment
+from .recombination import recombined
+from .sums import Sums, SumsAtLoads, balance, grouped
 
 TOLERANCE = 1e-6
 """Largest deviation of a sum [1] that a reduced field may have."""
-AIM, LET_PASS, WORTH_ADDING = 0.3, 0.5, 0.15
+AIM, LET_PASS, WORTH_ADDING = 0.05, 0.6, 0.15
 """Parts of the tolerance [1]: what is aimed at, what is let pass where it was not aimed at (the rest is for
 loads that are not tried), and from where on a load is one to aim at."""
-LEAST = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8)
-"""Combinations of the sums that are kept: with so much of the weight of the largest one [1]."""
+LEAST = 7e-9
+"""Sums that are kept: those that say so much that others do not, over the one that says most [1]."""
+FEWER = 0.93
+"""Sums that are kept in a further attempt with fewer points [1]."""
+MORE = 100
+"""Of the further loads, how many are aimed at from the beginning."""
 SKETCH = 600
-"""Random combinations of nodes, from which those of the sums are found."""
+"""Random combinations of these nodes (Halko, Martinsson and Tropp 2011), more than the sums that are kept."""
 FEW = 60
 """Nodes that are kept as they are."""
 MOST = 3000
 """Nodes that are all kept where no points do."""
-CANDIDATES = 3000
-"""Nodes among which the points are sought; twice and four times as many where these do not do."""
+SAMPLE = 3000
+"""Nodes on which it is found which sums follow from others."""
 TESTS, WORK = (60, 300), 3e6
 """Fewest and most loads per round at which the points are tried, and how many nodes all of them may have."""
 ROUNDS = 8
@@ -80,14 +85,14 @@ def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pres
     nodes = shape.share.size
     if nodes <= FEW:
         return Reduction(shape, nodes)
-    rng, sums = np.random.default_rng(SEED), Sums.of(joint, preload, pressures)
-    for size in (CANDIDATES, 2 * CANDIDATES, 4 * CANDIDATES):
-        few = rng.choice(nodes, min(size, nodes), replace=False)
-        reduction = _search(sums, shape, _part(shape, np.union1d(few, _highest(shape))))
-        if reduction is not None:
-            return reduction
-        if size >= nodes:
-            break
+    sums = Sums.of(joint, preload, pressures)
+    shape = shape.part(np.argsort(shape.equal))  # neighbours on the curve, which is read the faster
+    few = np.random.default_rng(SEED).choice(
+        nodes, min(SAMPLE, nodes), replace=False, p=sums.weights(shape, largest_moment(joint, shape))
+    )
+    reduction = _search(sums, shape, shape.part(few))
+    if reduction is not None:
+        return reduction
     if nodes <= MOST:
         return Reduction(shape, nodes)
     raise RuntimeError(f"the field of {nodes} nodes has no points that keep its sums within {TOLERANCE:g}")
@@ -100,28 +105,23 @@ def _highest(shape: PressureShape) -> Nodes:
 
 
 def _search(sums: Sums, shape: PressureShape, some: PressureShape) -> Reduction | None:
-    """Points among some nodes; None if there are none within the tolerance."""
+    """Points that keep the sums at first loads and at those of others that they missed."""
     limit = largest_moment(sums.joint, shape)
-    loads = further_loads(limit)
-    rows = [sums.row(shape, load) for load in first_loads(limit)]
-    columns = [sums.columns(some, row) for row in rows]
+    loads, tests = further_loads(limit), int(np.clip(WORK / shape.share.size, *TESTS))
+    system = _System.of(sums, shape, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
     best, least = None, TOLERANCE
-    tests = int(np.clip(WORK / shape.share.size, *TESTS))
     for _ in track(range(ROUNDS), "points", ROUNDS):
-        weights = _weights(rows, columns, shape, some)
-        if weights is None:
+        points = system.points()
+        if points is None:
             break
-        points = _balanced(some, weights)
-        tried = [sums.row(shape, load) for load in islice(loads, tests)]
-        missed = [sums.deviation(points, row) for row in tried]
-        worst = max(missed)
+        tried = sums.at(shape, list(islice(loads, tests)))
+        missed = sums.deviations(points, tried)
+        worst = float(np.max(missed))
         if worst <= least:
             best, least = points, worst
         if worst <= LET_PASS * TOLERANCE:
             break
-        more = [row for row, miss in zip(tried, missed, strict=True) if miss > WORTH_ADDING * TOLERANCE]
-        rows += more
-        columns += [sums.columns(some, row) for row in more]
+        system.add(tried.part(missed > WORTH_ADDING * TOLERANCE))
     if best is None:
         return None
     beyond = _beyond(sums, shape, best, limit)
@@ -134,56 +134,120 @@ def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: floa
         return 0.0
     moments = np.linspace(limit, 1.0, 6)[1:].tolist()
     loads = [Load(p, sign * m, 0.0) for p in PRELOADS for m in moments for sign in (-1.0, 1.0)]
-    return max(sums.deviation(points, sums.row(shape, load)) for load in loads)
+    return float(np.max(sums.deviations(points, sums.at(shape, loads))))
 
 
-def _weights(
-    rows: Sequence[SumsAtLoad], values: Sequence[Array], shape: PressureShape, some: PressureShape
-) -> Array | None:
-    """Shares (c) of the nodes, most of them zero, that keep the sums; None if there are none."""
-    everywhere = balance(shape)
-    over = np.maximum(np.max(np.abs(everywhere), axis=0), np.finfo(float).tiny)
-    columns = np.concatenate([balance(some) / over, *values], axis=1)
-    target = np.concatenate([shape.share @ everywhere / over, *(row.total for row in rows)])
-    size, directions = _combinations(np.sqrt(some.share / np.sum(some.share))[:, None] * columns)
-    fixed = np.zeros(some.share.size)
-    held = _highest(some)
-    fixed[held] = some.share[held]
-    rest = target - fixed @ columns
-    best, error = fixed, np.inf
-    for least in LEAST:
-        kept = directions[size > least * size[0]]
-        scale = np.sqrt(size[: len(kept)])[:, None]
-        try:
-            shares, _ = nnls((kept @ columns.T) / scale, (kept @ rest) / scale[:, 0], maxiter=50 * len(kept))
-        except RuntimeError:  # too many steps
-            break
-        miss = float(np.max(np.abs(shares @ columns - rest)))
-        if miss > error:
-            break
-        best, error = fixed + shares, miss
-        if error <= AIM * TOLERANCE:
-            break
-    return best if error <= LET_PASS * TOLERANCE else None
+@dataclass(slots=True)
+class _System:
+    """Sums that shares of the nodes of a shape are to keep, those that balance it and those at loads.
 
-
-def _combinations(columns: Array) -> tuple[Array, Array]:
-    """Weights, descending, and rows of the combinations of columns that matter.
-
-    From random combinations of the nodes (Halko, Martinsson and Tropp 2011), many more than are needed.
+    some   : (c) nodes on which it is found which sums follow from others, mixed by `mixing` (SKETCH, c)
+    rows   : the sums at loads
+    over   : what those that balance the shape are divided by
+    sketch : (SKETCH, r) the functions at these nodes, mixed
     """
-    mixed = np.random.default_rng(SEED).standard_normal((SKETCH, len(columns))) / np.sqrt(SKETCH)
-    _, size, directions = np.linalg.svd(mixed @ columns, full_matrices=False)
-    return size, directions
 
+    sums: Sums
+    shape: PressureShape
+    some: PressureShape
+    mixing: Array
+    rows: SumsAtLoads
+    over: Array
+    sketch: Array
 
-def _part(shape: PressureShape, index: NDArray[np.intp]) -> PressureShape:
-    return PressureShape(shape.share[index], shape.position[index], shape.equal[index], shape.tilt[index])
+    @classmethod
+    def of(cls, sums: Sums, shape: PressureShape, some: PressureShape, rows: SumsAtLoads) -> "_System":
+        """Of loads, to begin with."""
+        over = np.maximum(np.max(np.abs(balance(shape)), axis=0), np.finfo(float).tiny)
+        mixing = np.random.default_rng(SEED).standard_normal((SKETCH, some.share.size))
+        mixing *= np.sqrt(some.share / SKETCH)
+        sketch = mixing @ np.concatenate([balance(some) / over, sums.columns(some, rows)], axis=1)
+        return cls(sums, shape, some, mixing, rows, over, sketch)
+
+    def add(self, rows: SumsAtLoads) -> None:
+        """Further loads."""
+        self.sketch = np.concatenate([self.sketch, self.mixing @ self.sums.columns(self.some, rows)], axis=1)
+        self.rows = self.rows.joined(rows)
+
+    def values(self, shape: PressureShape) -> Array:
+        """(n, r) the functions at nodes."""
+        return np.concatenate([balance(shape) / self.over, self.sums.columns(shape, self.rows)], axis=1)
+
+    def points(self) -> PressureShape | None:
+        """The fewest nodes found that keep the sums; None if none do."""
+        kept, turn = self._combinations()
+        held = _highest(self.shape)
+        try:
+            some, share = self._groups(kept, turn, held)
+            left, share = recombined(self._kept(some, kept), share, turn)
+        except RuntimeError:  # rounding
+            return None
+        left = some[left]
+        values = self.values(self.shape.part(left))
+        target = np.concatenate([self.shape.share @ balance(self.shape) / self.over, self.rows.total.ravel()])
+        target -= self.shape.share[held] @ self.values(self.shape.part(held))
+        best, count = None, kept.size
+        allowed = LET_PASS * TOLERANCE
+        while count > 1 and np.max(np.abs(share @ values - target)) <= allowed:
+            best, allowed = (left, share), AIM * TOLERANCE
+            count = int(FEWER * count)
+            try:
+                few, share = recombined(values[:, kept[:count]], share, turn[:count, :count])
+            except RuntimeError:
+                break
+            left, values = left[few], values[few]
+        if best is None:
+            return None
+        both = self.shape.part(np.concatenate([held, best[0]]))
+        return _balanced(both, np.concatenate([self.shape.share[held], best[1]]))
+
+    def _groups(self, kept: Nodes, turn: Array, held: Nodes) -> tuple[Nodes, Array]:
+        """Nodes of few groups, with shares that keep the sums of all nodes but those held."""
+        share = self.shape.share.copy()
+        share[held] = 0.0
+        of_node = np.arange(share.size) // grouped(share.size)
+        before = np.asarray(np.bincount(of_node, share), dtype=np.float64)
+        full = np.flatnonzero(before)
+        sums = self._group_sums(kept)
+        np.subtract.at(sums, of_node[held], self.shape.share[held, None] * self._kept(held, kept))
+        left, after = recombined(sums[full] / before[full, None], before[full], turn)
+        scale = np.zeros(before.size)
+        scale[full[left]] = after / before[full[left]]
+        share *= scale[of_node]
+        nodes = np.flatnonzero(share)
+        return nodes, share[nodes]
+
+    def _group_sums(self, kept: Nodes) -> Array:
+        """(g, k) sums of some of the functions over groups of nodes."""
+        share, own = self.shape.share[:, None], self.over.size
+        still = kept < own
+        load, function = np.divmod(kept[~still] - own, 9)
+        values = (balance(self.shape) / self.over)[:, kept[still]]
+        out = np.empty((self.rows.groups.shape[2], kept.size))
+        out[:, still] = np.add.reduceat(share * values, np.arange(0, share.size, grouped(share.size)))
+        out[:, ~still] = self.rows.groups[load, function].T
+        return out
+
+    def _kept(self, nodes: Nodes, kept: Nodes) -> Array:
+        """(n, k) some of the functions at nodes."""
+        some, own = self.shape.part(nodes), self.over.size
+        still = kept < own
+        out = np.empty((nodes.size, kept.size))
+        out[:, still] = (balance(some) / self.over)[:, kept[still]]
+        out[:, ~still] = self.sums.few_columns(some, self.rows, kept[~still] - own)
+        return out
+
+    def _combinations(self) -> tuple[Nodes, Array]:
+        """Sums that say what others do not, the most telling first, and what makes them independent."""
+        triangle, order = qr(self.sketch, mode="r", pivoting=True)
+        size = np.abs(np.diag(triangle))
+        count = int(np.sum(size > LEAST * size[0]))
+        return order[:count], solve_triangular(triangle[:count, :count], np.eye(count))
 
 
 def _balanced(some: PressureShape, weights: Array) -> PressureShape:
     """The nodes with a share, their sums put right to round-off."""
-    points = _part(some, np.flatnonzero(weights > 0.0))
+    points = some.part(np.flatnonzero(weights > 0.0))
     share = weights[weights > 0.0] / np.sum(weights)
     return PressureShape(
         share=share,

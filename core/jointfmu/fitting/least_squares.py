@@ -140,7 +140,7 @@ def solve(
         residuals=rest,
         noise=noise,
         jacobian=jacobian,
-        covariance=_covariance(jacobian, noise),
+        covariance=covariance(jacobian, noise),
         at_bound=tuple(name for name, there in zip(model.names, edge, strict=True) if there),
         limit=model.refusal if model.retreated else None,
     )
@@ -203,7 +203,7 @@ class _Model:
         return np.stack(columns, axis=1)
 
 
-def _covariance(jacobian: Array, noise: float) -> Array:
+def covariance(jacobian: Array, noise: float) -> Array:
     """noise^2 (J^T J)^-1 by singular values; directions without any effect get a huge variance."""
     _, s, rows = np.linalg.svd(jacobian, full_matrices=False)
     s = np.maximum(s, 1e-12 * max(float(s[0]), 1e-300))

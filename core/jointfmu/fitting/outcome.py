@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..joints import KINDS
 from ..parameters import ParameterFile
 from ..quantity import Interval, flat_fields
 from ..stamp import build_time
@@ -38,6 +37,7 @@ class Outcome:
 
     facts : {name: (value, unit, meaning)} beside the parameters
     notes : what the user should know, one line each
+    beside : a second picture, drawn beside the first
     """
 
     parameters: ParameterFile
@@ -45,6 +45,7 @@ class Outcome:
     facts: Mapping[str, tuple[float, str, str]]
     picture: Picture
     notes: Sequence[str] = ()
+    beside: Picture | None = None
 
     def rows(self) -> list[dict[str, Any]]:
         """Every unknown with value, unit, relative standard deviation and whether it is determined."""
@@ -64,13 +65,17 @@ class Outcome:
         """What the data do not determine, by name, and where the fit stopped; one line each."""
         lines = []
         if loose := undetermined(self.solution):
-            lines.append(f"the data do not determine {', '.join(loose)}")
+            lines.append(f"the data do not determine {', '.join(loose)}: other values fit as well")
             ranked = combinations(self.solution)
             for combination in ranked:
                 if combination.determined:
-                    lines.append(f"they determine {combination} to {percent(combination.deviation)}")
+                    lines.append(
+                        f"the combination {combination} is determined within {percent(combination.deviation)}"
+                    )
                 elif len(combination.exponents) > 1:
-                    lines.append(f"they know {combination} only to {percent(combination.deviation)}")
+                    lines.append(
+                        f"the combination {combination} stays open: {percent(combination.deviation)}"
+                    )
         lines += [f"{name} ended on its bound" for name in self.solution.at_bound]
         if self.solution.limit:
             lines.append(f"the fit ended where the model refuses: {self.solution.limit}")
@@ -100,7 +105,7 @@ def percent(part: float) -> str:
     """A relative standard deviation as text."""
     if part < 1.0:
         return f"{100.0 * part:.2g} %"
-    return f"a factor {np.exp(part):.2g}" if part < 5.0 else "orders of magnitude"
+    return f"{np.exp(part):.2g} times more or less" if part < 5.0 else "orders of magnitude"
 
 
 def _finite(value: float) -> float | None:
@@ -115,9 +120,7 @@ def unknowns(
     Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
     """
     values, wanted = start.flat, []
-    declared = {
-        n: f for n, f in flat_fields(KINDS[start.joint].parameters) if isinstance(values.get(n), float)
-    }
+    declared = {n: f for n, f in flat_fields(type(start.values)) if isinstance(values.get(n), float)}
     for name in names:
         if name not in declared:
             raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")

@@ -35,6 +35,7 @@ class Procedure:
     name    : what is fitted, with hyphens
     text    : what is fitted to which joint, in words
     file    : whether the data are a measured file
+    column  : one that all its files have, and those of other joints' procedures of this name have not
     options : what it takes beside
     run     : ([path of the file,] ParameterFile to start from or None, names to fit or None,
               **options by name) -> Outcome; a module of the joint's is loaded only then.
@@ -44,5 +45,14 @@ class Procedure:
     name: str
     text: str
     file: bool
+    column: str = ""
     options: Sequence[Option] = ()
     run: "Callable[..., Outcome]"
+
+
+DAMPING_RATIO = Option(
+    name="damping_ratio",
+    text="of the structure, beside the joint [1]; to fit it, free damping_ratio",
+    default=0.0,
+)
+"""What procedures with a vibration take beside."""

@@ -1,12 +1,14 @@
 """Pressure of a bolted frame: every bolt spreads its force over the contact by one decay law."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..quantity import check, quantity
-from .shape import NodalField, PressureShape
+from .plate import BoltedPlate
+from .shape import NodalField, PressureShape, mean_squares
 
 Array = NDArray[np.float64]
 
@@ -42,6 +44,22 @@ class BoltPattern:
         """Bolt positions (8, 2) [m]: rows y > 0, y = 0, y < 0."""
         x, y = 0.5 * self.column_spacing, 0.5 * self.row_spacing
         return np.array([[-x, y], [0, y], [x, y], [-x, 0], [x, 0], [-x, -y], [0, -y], [x, -y]])
+
+    @property
+    def area(self) -> float:
+        """Area [m2] of the frame without its holes."""
+        frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
+        return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
+
+    @property
+    def rows(self) -> tuple[float, float]:
+        """Bolts [1] and distance [m] of the two rows that carry a moment."""
+        return 3.0, self.row_spacing
+
+    @property
+    def bolt_spread(self) -> tuple[float, float]:
+        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
+        return mean_squares(self.bolts)
 
     def decay(self, distance: Array) -> Array:
         """Pressure of one bolt, up to its factor: (1 + (r/decay_length)^2)^-decay_exponent [1]."""
@@ -93,6 +111,10 @@ def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array)
     return np.asarray(decay(at) / np.sum(areas * decay(points), axis=1)[:, None])
 
 
-def pressure_shape(source: BoltPattern | NodalField) -> PressureShape:
+PressureSource: TypeAlias = BoltPattern | BoltedPlate | NodalField
+"""What gives the pressure of a bolted joint."""
+
+
+def pressure_shape(source: PressureSource) -> PressureShape:
     """The baked-in table of the bolted joint: shares, positions and pressure shapes."""
     return source.shape()

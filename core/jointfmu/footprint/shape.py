@@ -1,18 +1,16 @@
 """What a bolted contact's pressure looks like, and the shape that comes as numbers: a nodal field."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import check, series
+from ..quantity import check, quantity, series
 
 Array = NDArray[np.float64]
 
 BALANCE = 1e-6
 """Largest error of a field's sums [1]: what the reduction of a field keeps."""
-
-
 ALIKE = 11
 """Decimals to which `equal` and `tilt` of nodes agree that symmetry makes equal: they are numbers near 1."""
 
@@ -33,6 +31,10 @@ class PressureShape:
     equal: Array
     tilt: Array
 
+    def part(self, nodes: "slice | NDArray[np.intp]") -> "PressureShape":
+        """Some of the nodes, with their shares."""
+        return PressureShape(self.share[nodes], self.position[nodes], self.equal[nodes], self.tilt[nodes])
+
     def merged(self, moment: bool = True) -> "MergedShape":
         """Nodes that have the same pressure under every preload and moment as one.
 
@@ -44,6 +46,27 @@ class PressureShape:
         share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
         return MergedShape(share, self.equal[first], tilt[first], x2, y2)
+
+
+def growing(share: Array, y: Array, equal: Array) -> Array:
+    """What a moment of 1 N.m on 1 m2 adds to the pressure (n) [1/m] if it grows from the centre of pressure.
+
+    share, y, equal are (n) of a PressureShape. equal (y - y_p)/sum(share equal (y - y_p)^2), y_p the centre.
+
+    Raises ValueError if all nodes that touch have the same y.
+    """
+    force = share * equal
+    away = y - force @ y
+    spread = float(force @ away**2)
+    if not spread > 0.0:
+        raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
+    return np.asarray(equal * away / spread)
+
+
+def mean_squares(points: Array) -> tuple[float, float]:
+    """Means of x^2 and y^2 of points (n, 2)."""
+    x2, y2 = np.mean(points**2, axis=0).tolist()
+    return x2, y2
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +81,10 @@ class MergedShape:
     tilt: Array
     x2: Array
     y2: Array
+
+
+_POINTS = ("share", "x", "y", "equal", "tilt")
+"""What a point of a field has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,13 +102,19 @@ class NodalField:
     tilt: tuple[float, ...] = series(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
+    bolt_x2: float = quantity(
+        "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
+    )
+    bolt_y2: float = quantity(
+        "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
-        for item in fields(self):
-            if (count := len(getattr(self, item.name))) != len(self.share):
+        for name in _POINTS:
+            if (count := len(getattr(self, name))) != len(self.share):
                 raise ValueError(
-                    f"{item.name} has {count} numbers, expected as many as share has: {len(self.share)}"
+                    f"{name} has {count} numbers, expected as many as share has: {len(self.share)}"
                 )
         shape = self.shape()
         reach = float(np.max(np.abs(shape.position)))
@@ -97,7 +130,12 @@ class NodalField:
             if not abs(value - expected) <= BALANCE * size:
                 raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
 
+    @property
+    def bolt_spread(self) -> tuple[float, float]:
+        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
+        return self.bolt_x2, self.bolt_y2
+
     def shape(self) -> PressureShape:
         """The points as arrays."""
-        share, x, y, equal, tilt = (np.array(getattr(self, item.name)) for item in fields(self))
+        share, x, y, equal, tilt = (np.array(getattr(self, name)) for name in _POINTS)
         return PressureShape(share, np.column_stack([x, y]), equal, tilt)

@@ -7,14 +7,14 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..footprint.bolts import BoltPattern
-from ..footprint.shape import NodalField, PressureShape
+from ..footprint.bolts import PressureSource
+from ..footprint.shape import PressureShape
 from ..interface import Law
 from ..quantity import Number
 from . import KINDS
 
 Array = NDArray[np.float64]
-Pressures = Callable[[Any, PressureShape, float, float], Array]
+Pressures = Callable[[Any, PressureShape, Array, Array], Array]
 
 
 class Clamped(Law, Protocol):
@@ -39,16 +39,16 @@ class Clamped(Law, Protocol):
         """Distance L_a [m] of the rows."""
 
     @property
-    def pattern(self) -> BoltPattern | NodalField:
-        """What gives the pressure; tables [pattern] and [field] of a parameter file."""
+    def pattern(self) -> PressureSource:
+        """What gives the pressure; tables [pattern], [plate] and [field] of a parameter file."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clamping:
     """How such a joint carries its bolts' forces: `FIELD` of the file field.py in its folder.
 
-    pressures   : node pressures (n) [Pa] of parameters, a shape (n), a preload [N] per bolt and a moment
-                  [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
+    pressures   : node pressures (m, n) [Pa] of parameters, a shape (n), preloads (m) [N] per bolt and moments
+                  (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
     shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
     """
 

@@ -1,6 +1,6 @@
 """What a joint's folder says of the joint; everything that knows joints loops over these."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.resources import files
@@ -30,6 +30,11 @@ def itself(parameters: Any) -> Any:
     return parameters
 
 
+def none(parameters: Any) -> Iterable[str]:
+    """No contradictions: each parameter stands for itself."""
+    return ()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
     """A joint.
@@ -39,30 +44,41 @@ class Kind:
     name          : of its folders, and `joint = NAME` in parameter files
     package       : import name of its folder
     default       : stem of its default parameter file
-    parameters    : its parameter set
-    law           : its interface law, a value of asperity.LAWS; None if it has none
+    laws          : {interface law: its parameter set with this law}, the default first; a name of
+                    asperity.LAWS, or any other if it has no interface law
     law_of        : the law's parameter set out of the joint's
     models        : what it is exported as; the first is its component in a system model
     surfaces      : its rough surfaces
     working_point : names of inputs that its linearisations need (preload, ...), the first always
+    contradictions : of a parameter set: a line for each parameter that contradicts another; what a parameter
+                    file must not have
     papers        : files of published numbers in models/reference/ that it is compared with
     """
 
     name: str
     package: str
     default: str
-    parameters: type[Any]
+    laws: Mapping[str, type[Any]]
     law_of: Callable[[Any], Any] = itself
     models: Sequence[Model]
-    law: type[Any] | None = None
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
+    contradictions: Callable[[Any], Iterable[str]] = none
     papers: Sequence[str] = ()
 
     @property
     def title(self) -> str:
         """Its name as words."""
         return self.name.replace("_", " ")
+
+    @property
+    def parameters(self) -> type[Any]:
+        """Its parameter set with the default law."""
+        return next(iter(self.laws.values()))
+
+    def law(self, parameters: Any) -> str:
+        """Name of the interface law of a parameter set."""
+        return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
     @property
     def variables(self) -> dict[str, Variable]:
@@ -78,10 +94,12 @@ class Kind:
         """The tabulated joint of a parameter set."""
         return self.models[0].spring(parameters)
 
-    def default_file(self) -> Path:
-        """Its default parameter file, models/NAME/DEFAULT.toml; of another package models/ in its folder."""
+    def default_file(self, law: str | None = None) -> Path:
+        """Its default parameter file, models/NAME/DEFAULT.toml, with another law DEFAULT_LAW.toml; of another
+        package models/ in its folder."""
+        stem = self.default if law in (None, next(iter(self.laws))) else f"{self.default}_{law}"
         folder = files("jointfmu_models") / self.name if self.own else files(self.package) / "models"
-        return Path(str(folder / f"{self.default}.toml"))
+        return Path(str(folder / f"{stem}.toml"))
 
     def part(self, tool: str) -> ModuleType | None:
         """What a tool finds in the joint's folder, the module of the tool's name; None if there is none."""

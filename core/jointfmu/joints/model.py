@@ -5,12 +5,16 @@ Parameters are those of the joint's parameter set, whose units, intervals and me
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ..quantity import Interval, Number, flat_fields
 
 Values = Mapping[str, float]
+Memory = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +61,9 @@ class Model:
     """One exported model of a joint, later an FMU.
 
     joint    : kind of the parameter file
+    parameters : its parameter set with the joint's default law
     spring   : makes the tabulated joint of a parameter set
-    evaluate : (spring, inputs) -> outputs
+    evaluate : (spring, inputs) -> outputs; of a joint with memory from rest
     outside  : warnings about a state outside the tables
     dependencies : inputs that an output depends on, where not on all
     linear   : {output: {input: what the factor depends on}} where an output is linear in an input with a
@@ -66,6 +71,9 @@ class Model:
     hidden   : prefixes of parameters that are baked in
     states   : continuous states, the first outputs; the rate of each is the output after it
     moves    : outputs change with time, while inputs rest
+    rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
+    evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
+        memory given stays as it is
     """
 
     name: str
@@ -83,6 +91,12 @@ class Model:
     hidden: Sequence[str] = ()
     states: int = 0
     moves: bool = False
+    rest: Callable[[Any], Memory] | None = None
+    evolve: Callable[[Any, Values, Memory], tuple[Mapping[str, Any], Memory]] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.rest is None) != (self.evolve is None):
+            raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
 
     def parameter_fields(self) -> dict[str, Any]:
         """Structured names and fields of the parameters that the FMU exposes."""
@@ -93,21 +107,29 @@ class Model:
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
-    def check_joint(self, joint: str) -> None:
-        """Raise ValueError if a parameter file is of another joint than this FMU's."""
+    def of(self, joint: str, parameters: Any) -> "Model":
+        """The model with the parameters of a parameter file, whose interface law may be another.
+
+        Raises ValueError if the file is of another joint than this FMU's.
+        """
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
+        return replace(self, parameters=type(parameters))
+
+    def memory_size(self, parameters: Any) -> int:
+        """Numbers of the memory; 0 without one."""
+        return 0 if self.rest is None else self.rest(self.spring(parameters)).size
 
     def warnings(self, spring: Any, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""
-        units = {v.name: v.unit for v in (*self.inputs, *self.outputs)}
+        units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}
         for i, o in enumerate(self.outside):
             value, unit = values[o.variable], units[o.variable]
             low, high = (float(end) for end in o.interval(spring.joint, spring.curve.end, values))
             inside = Interval.of(ge=low, le=high)
             if not inside.contains(value):
-                messages[i] = f"{o.variable} = {value:.6g} {unit} is outside {inside} {unit}: {o.doc}"
+                messages[i] = f"{o.variable} = {value:.6g}{unit} is outside {inside}{unit}: {o.doc}"
         return messages
 
     def depends(self, output: str) -> Sequence[str]:

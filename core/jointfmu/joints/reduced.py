@@ -11,7 +11,7 @@ from .kind import Kind
 from .model import Variable
 
 Array = NDArray[np.float64]
-Evaluate = Callable[[Mapping[str, Any], Array, Array], dict[str, Array]]
+Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,8 @@ class Reduced:
     outputs  : what is computed along the ramp
     to       : default end of the ramp, of the parameter set
     most     : where the tabulated law ends, of the parameter set (numbers or samples)
-    evaluate : (values or samples (n), loads (m), factor (n, 1)) -> outputs (n, m) at factor times loads
+    evaluate : (class of the parameter set, values or samples (n), loads (m), factor (n, 1)) -> outputs
+        (n, m) at factor times loads
     exact    : (parameter set, loads (m)) -> outputs (m), by the exported spring itself
     """
 

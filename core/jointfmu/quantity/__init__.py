@@ -1,7 +1,7 @@
 """The one place where a physical field declares its SI unit, open or closed interval and meaning."""
 
 from .declaration import check, choice, group, problem, quantity, series
-from .interval import Interval, Number, where
+from .interval import Interval, Number, erf, where
 from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "check",
     "check_limits",
     "choice",
+    "erf",
     "flat_fields",
     "flatten",
     "group",

@@ -1,6 +1,6 @@
 """A physical field declares its SI unit, open or closed interval and meaning, and is checked against them."""
 
-from dataclasses import Field, field, fields
+from dataclasses import MISSING, Field, field, fields
 from typing import Any
 
 import numpy as np
@@ -18,13 +18,15 @@ def quantity(
     le: float | None = None,
     calibration: bool = False,
     whole: bool = False,
+    default: float | None = None,
 ) -> Any:
     """Declare a number [unit] inside an interval, see `Interval.of`.
 
-    `calibration` marks a value that was fitted, `whole` one that counts.
+    `calibration` marks a value that was fitted, `whole` one that counts; without `default` it must be given.
     """
     meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
-    return field(metadata={**meta, "calibration": calibration, "whole": whole})
+    meta |= {"calibration": calibration, "whole": whole}
+    return field(metadata=meta, default=MISSING if default is None else default)
 
 
 def series(

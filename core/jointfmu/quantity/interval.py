@@ -1,5 +1,6 @@
 """Intervals of numbers with open and closed ends, and what lets floats, arrays and symbols pass alike."""
 
+import math
 import sys
 from dataclasses import dataclass
 from math import inf, nextafter
@@ -92,6 +93,13 @@ def _beside(end: float, towards: float) -> float:
 def is_symbol(value: Any) -> bool:
     """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
     return type(value).__module__.startswith("casadi")
+
+
+def erf(x: Number) -> Number:
+    """Error function [1] of floats, arrays or symbols."""
+    if is_symbol(x):
+        return sys.modules[type(x).__module__.partition(".")[0]].erf(x)
+    return np.vectorize(math.erf, otypes=[float])(x)
 
 
 def where(condition: Any, value: Number, otherwise: Number) -> Number:

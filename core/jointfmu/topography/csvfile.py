@@ -5,6 +5,7 @@
 # grid: dx = 0.5 um, dy = 0.5 um, z [um]   one line of z per y
 """
 
+import contextlib
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from ..columns import cells, check_length, content, number, rows, separator
-from ..units import sizes
+from ..units import measured, sizes
+from . import grid
 from .heights import Areal, Array, Heights, Profile
 
 LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
@@ -25,9 +27,10 @@ ALLOWED = ", ".join(filter(str.isascii, LENGTHS))
 
 def unit(text: str, where: str) -> float:
     """A length unit in metres."""
-    if text not in LENGTHS:
-        raise ValueError(f"{where}: unit {text!r} is not one of {ALLOWED}")
-    return LENGTHS[text]
+    try:
+        return measured(text, LENGTHS)
+    except ValueError:
+        raise ValueError(f"{where}: unit {text!r} is not one of {ALLOWED}") from None
 
 
 def header(path: Path) -> str | None:
@@ -37,8 +40,8 @@ def header(path: Path) -> str | None:
     return first if _HEADER.match(first) else None
 
 
-def read(path: Path, line: str) -> Heights:
-    """A file whose first line declares its layout."""
+def read(path: Path, line: str) -> tuple[Heights, str]:
+    """A file whose first line declares its layout, and the unit of its lengths along x."""
     match = _HEADER.match(line)
     assert match
     layout, rest = match[1], match[2]
@@ -49,17 +52,20 @@ def read(path: Path, line: str) -> Heights:
         raise ValueError(f"{path}: the header states no unit of {', '.join(missing)}; write it as {expected}")
     factors = {name: unit(units[name], f"{path}: {name}") for name in needed}
     if layout == "grid":
-        dx, dy = (_spacing(path, rest, name) for name in ("dx", "dy"))
-        return Areal(z=table(path) * factors["z"], dx=dx, dy=dy, name=str(path))
-    return columns(path, table(path), [factors[name] for name in needed])
+        spacings = {name: _spacing(path, rest, name) for name in ("dx", "dy")}
+        dx, dy = (size for size, _ in spacings.values())
+        stated = spacings["dx"][1]
+        return Areal(z=table(path) * factors["z"], dx=dx, dy=dy, name=str(path)), stated
+    return columns(path, table(path), [factors[name] for name in needed]), units["x"]
 
 
-def _spacing(path: Path, text: str, name: str) -> float:
+def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
+    """A spacing [m] and the unit in which it is stated."""
     match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", text)
     if not match:
         raise ValueError(f"{path}: the header states no {name}; write it as {name} = 0.5 um")
     try:
-        return float(match[1]) * unit(match[2], f"{path}: {name}")
+        return float(match[1]) * unit(match[2], f"{path}: {name}"), match[2]
     except ValueError as error:
         if "unit" in str(error):
             raise
@@ -72,6 +78,8 @@ def table(path: Path) -> Array:
     if not lines:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
     mark = separator(lines[0][1])
+    with contextlib.suppress(ValueError):  # empty cells, rows of other lengths, words: row by row below
+        return np.loadtxt([line for _, line in lines], delimiter=mark, ndmin=2)
     values: list[Array] = []
     for i, line in lines:
         row = cells(line, mark) if mark else line.split()
@@ -94,36 +102,35 @@ def columns(path: Path, values: Array, factors: list[float]) -> Heights:
     """Columns x, z (a profile) or x, y, z (an areal map) with their factors to metres."""
     if values.shape[1] != len(factors):
         raise ValueError(f"{path}: has {values.shape[1]} columns, its header declares {len(factors)}")
-    values = values * np.asarray(factors)
     if len(factors) == 2:
-        x, z = values[np.argsort(values[:, 0], kind="stable")].T
-        return Profile(z=z, dx=_step(path, "x", x), name=str(path))
-    x, y, z = values.T
-    dx, dy = (_step(path, name, np.unique(at)) for name, at in (("x", x), ("y", y)))
-    column, row = np.rint((x - x.min()) / dx).astype(int), np.rint((y - y.min()) / dy).astype(int)
-    if (column.max() + 1) * (row.max() + 1) > 4 * x.size:
+        return _profile(path, values[:, 0], values[:, 1] * factors[1], factors[0])
+    (x, dx), (y, dy) = (_places(path, name, values[:, i], factors[i]) for i, name in enumerate("xy"))
+    if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
         raise ValueError(f"{path}: {x.size} points lie on no grid of x and y; resample them to one")
-    heights = np.full((row.max() + 1, column.max() + 1), np.nan)
-    heights[row, column] = z
+    heights = np.full((y.max() + 1, x.max() + 1), np.nan)
+    if np.unique(y * heights.shape[1] + x).size < x.size:
+        raise ValueError(f"{path}: x and y repeat points; expected every point once")
+    heights[y, x] = values[:, 2] * factors[2]
     return Areal(z=heights, dx=dx, dy=dy, name=str(path))
 
 
-def _step(path: Path, name: str, at: Array) -> float:
-    """Constant spacing of sorted positions; up to 1 % off the grid is taken as rounding."""
-    if at.size < 2 or not np.all(np.isfinite(at)):
-        raise ValueError(f"{path}: {name} has a gap or a single value; expected positions in rising order")
-    gaps = np.diff(at)
-    step = float(np.median(gaps))
-    if step <= 0.0 or gaps.min() < 0.5 * step:
-        raise ValueError(f"{path}: {name} repeats values; expected every position once")
-    step = float((at[-1] - at[0]) / np.rint((at[-1] - at[0]) / step))
-    off = np.abs((at - at[0]) / step - np.rint((at - at[0]) / step)).max()
-    if off > 0.05 or (name == "x" and gaps.max() > 1.5 * step and at.size < 0.8 * (at[-1] - at[0]) / step):
-        raise ValueError(
-            f"{path}: the spacing of {name} varies ({gaps.min():.4g} to {gaps.max():.4g} m); "
-            "resample to a constant one"
-        )
-    return step
+def _places(path: Path, name: str, values: Array, factor: float) -> tuple[grid.Places, float]:
+    """Place of every point along x or y, which come in any order, and the spacing [m]."""
+    at, which = np.unique(values, return_inverse=True)
+    place, step = grid.places(path, name, at, factor)
+    return place[which], step * factor
+
+
+def _profile(path: Path, x: Array, z: Array, factor: float) -> Profile:
+    """A profile of x, in a unit of `factor` metres, and z [m]; rows may come in any order, and be missing."""
+    if x[-1] < x[0]:
+        x, z = x[::-1], z[::-1]
+    order = np.argsort(x, kind="stable")
+    in_order = bool(np.all(order == np.arange(x.size)))
+    place, step = grid.places(path, "x", x[order], factor, repeats=in_order)
+    heights = np.full(place[-1] + 1, np.nan)
+    heights[place] = z[order]
+    return Profile(z=heights, dx=step * factor, name=str(path))
 
 
 def text(heights: Heights) -> str:

@@ -1,6 +1,6 @@
 """Fit of the self-affine law to a series: generalised least squares, range search, test of straightness."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -15,6 +15,14 @@ CORRELATION = 0.5
 """Length in ln(scale) over which deviations from the law hang together [1]."""
 DRIFT = 0.1
 """Largest drift of D over a range that counts as straight, unless within its own two standard errors."""
+MOST_DRIFT = 0.7
+"""Largest drift of D that counts as straight however unsure it is, well below that from 1 to 2."""
+RUN = 0.8
+"""Drift of D over all scales beyond which D counts as running through its interval from 1 to 2."""
+ENOUGH = 1.5
+"""Length of a straight range, in decades, that counts although D runs through its interval beyond it."""
+BOUND = 0.02
+"""The fit keeps H that far from 0 and 1."""
 ROUGHEST = 0.25
 """Largest standard deviation of ln(value) from the law that counts as self-affine."""
 SHORTEST = 0.5
@@ -37,6 +45,7 @@ class SelfAffineLaw:
     deviation : standard deviation of ln(value) from the law beyond chance
     drift, drift_error : change of D over the range, its standard error
     low, high : range [m]; straight : whether the law holds there
+    runs      : whether the range is a short piece of a series over which D runs through its whole interval
     """
 
     H: float
@@ -49,11 +58,18 @@ class SelfAffineLaw:
     drift_error: float
     low: float
     high: float
+    runs: bool = False
 
     @property
     def straight(self) -> bool:
         """Whether drift and deviation stay within what counts as self-affine."""
-        return abs(self.drift) <= max(DRIFT, 2.0 * self.drift_error) and self.deviation <= ROUGHEST
+        allowed = max(DRIFT, min(2.0 * self.drift_error, MOST_DRIFT))
+        return abs(self.drift) <= allowed and self.deviation <= ROUGHEST and not self.runs
+
+    @property
+    def at_bound(self) -> bool:
+        """Whether H lies at an end of its interval, where its standard error means nothing."""
+        return not 1.5 * BOUND < self.H < 1.0 - 1.5 * BOUND
 
     @property
     def decades(self) -> float:
@@ -93,11 +109,14 @@ def _search(series: Series) -> SelfAffineLaw:
         ),
         reverse=True,
     )
+    whole = _fit(series)
+    runs = abs(whole.drift) > max(RUN, 2.0 * whole.drift_error)
     tried: list[SelfAffineLaw] = []
     for length, negative, j in windows:
         if length < SHORTEST and tried:
             break
         candidate = _fit(series.within(np.arange(-negative, j)))
+        candidate = replace(candidate, runs=runs and candidate.decades < ENOUGH)
         if candidate.straight:
             return candidate
         tried.append(candidate)
@@ -125,7 +144,7 @@ def _fit(series: Series) -> SelfAffineLaw:
             white = solve_triangular(root, known - law(p), lower=True)
             return np.append(white, p[2] / OFFSET) if offset else np.asarray(white)
 
-        bounds = ([0.02, -np.inf, -0.9][: p.size], [0.98, np.inf, np.inf][: p.size])
+        bounds = ([BOUND, -np.inf, -0.9][: p.size], [1.0 - BOUND, np.inf, np.inf][: p.size])
         result = least_squares(residual, p, bounds=bounds, x_scale=np.array([0.1, 0.1, 0.1])[: p.size])
         p = result.x
         chance = series.covariance(float(np.clip(p[0], 0.05, 0.95)))

@@ -6,11 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, median_filter
 
-from .heights import Array, Heights
+from .heights import FORMS, Array, Heights
 
 Mask = NDArray[np.bool_]
-FORMS = ("tilt", "mean", "curvature")
-"""What is removed: a plane (default), the mean height, a surface of second order."""
 SPIKE = 8.0
 """A spike deviates from the median of its neighbours by that many standard deviations."""
 SWEEPS = 50
@@ -116,3 +114,20 @@ def _nearest(z: Array, valid: Mask) -> Array:
         return z
     index = distance_transform_edt(~valid, return_distances=False, return_indices=True)
     return np.asarray(z[tuple(index)])
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A surface without form: with gaps for the structure function, filled for the spectrum."""
+
+    gappy: Heights
+    whole: Heights
+    repairs: tuple[Repair, ...]
+
+
+def prepare(heights: Heights, form: str = FORMS[0]) -> Prepared:
+    """Take spikes as missing, remove the form, fill."""
+    clean, spikes = without_spikes(heights)
+    gappy = without_form(clean, form)
+    whole, gaps = filled(gappy)
+    return Prepared(gappy, whole, (*spikes, *gaps))

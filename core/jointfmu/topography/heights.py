@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+FORMS = ("tilt", "mean", "curvature")
+"""What is removed before anything else: a plane (default), the mean height, a surface of second order."""
 LEAST_PROFILE = 128
 """Least number of points of a profile: the lags used then span 0.9 decades."""
 LEAST_AREAL = 64

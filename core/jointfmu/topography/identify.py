@@ -1,13 +1,14 @@
 """D and G of a surface, or of the equivalent surface of a pair, with confidence intervals and warnings."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ..refusal import Refusal
 from . import fractal
 from .fit import SelfAffineLaw, fit
-from .form import Repair, filled, without_form, without_spikes
+from .form import prepare
 from .heights import Areal, Array, Heights
 from .results import (
     TEXTURE,
@@ -20,6 +21,7 @@ from .results import (
     texture,
     warnings,
 )
+from .roughness import check_wave, default_wave, of_scan
 from .series import Series
 from .spectrum import psd
 from .structure import structure
@@ -27,28 +29,14 @@ from .structure import structure
 LEVEL = 0.95
 """Level of the confidence intervals."""
 DRAWS = 4000
-METHODS = ("structure", "psd")
-
-
-@dataclass(frozen=True, slots=True)
-class Prepared:
-    """A surface without form: with gaps for the structure function, filled for the spectrum."""
-
-    gappy: Heights
-    whole: Heights
-    repairs: tuple[Repair, ...]
-
-
-def prepare(heights: Heights, form: str) -> Prepared:
-    """Take spikes as missing, remove the form, fill."""
-    clean, spikes = without_spikes(heights)
-    gappy = without_form(clean, form)
-    whole, gaps = filled(gappy)
-    return Prepared(gappy, whole, (*spikes, *gaps))
 
 
 def identify(
-    surfaces: Sequence[Heights], form: str = "tilt", span: tuple[float, float] | None = None
+    surfaces: Sequence[Heights],
+    form: str = "tilt",
+    span: tuple[float, float] | None = None,
+    longest: float | None = None,
+    side: str | None = None,
 ) -> Identification:
     """Identify one surface, or the equivalent surface of two.
 
@@ -56,12 +44,20 @@ def identify(
         whose structure function and spectrum are the sums of theirs
     form     : what is removed, see `form.FORMS`
     span     : scaling range [m] of lags and wavelengths; by default the longest straight one is searched
+    longest  : longest wave [m] of the roughness; by default the shortest `default_wave` of the surfaces
+    side     : of one surface, the side of the contact that it is, one of SIDES: on a smooth other side, or
+               on another one like it; of two surfaces the first is side 1
     """
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
+    if side is not None and len(surfaces) == 2:
+        raise Refusal(f"side = {side} beside two files, of which the first is side 1; leave it out", "side")
     areal = {isinstance(surface, Areal) for surface in surfaces}
     if len(areal) == 2:
         raise ValueError("a profile and an areal map given, a pair needs two of the same kind")
+    if longest is not None:
+        for surface in surfaces:
+            check_wave(surface, longest)
     prepared = [prepare(surface, form) for surface in surfaces]
     directions = ("areal", "x", "y") if areal == {True} else ("profile",)
     low, high = span or (None, None)
@@ -72,13 +68,23 @@ def identify(
                 method(surface.gappy if method is structure else surface.whole, direction)
                 for surface in prepared
             ]
-            series = parts[0] if len(parts) == 1 else added(parts[0], parts[1])
+            series = doubled(parts[0]) if side == "both" else parts[0]
+            if len(parts) == 2:
+                series = added(parts[0], parts[1])
             results.append(_result(series, fit(series, low, high)))
     repairs = [(surface.whole.name, repair) for surface in prepared for repair in surface.repairs]
     repeats = [texture(surface.whole) for surface in prepared if isinstance(surface.whole, Areal)]
     names = tuple(surface.name for surface in surfaces)
     textured = any(max(shares) > TEXTURE for shares in repeats)
-    return Identification(names, tuple(results), tuple(repairs), tuple(warnings(results, textured)), textured)
+    wave = longest or min(default_wave(surface) for surface in surfaces)
+    scans = tuple(of_scan(surface.gappy, surface.whole, wave) for surface in prepared)
+    notes = tuple(warnings(results, textured))
+    return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
+
+
+def doubled(series: Series) -> Series:
+    """Series of the equivalent surface of two sides of one finish, of which one is known."""
+    return replace(series, value=2.0 * series.value, raw=2.0 * series.raw)
 
 
 def added(first: Series, second: Series) -> Series:

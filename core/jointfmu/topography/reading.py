@@ -9,20 +9,27 @@ from typing import Any
 import numpy as np
 
 from ..refusal import Refusal
-from . import csvfile
+from . import csvfile, sift
 from .heights import Areal, Heights, Profile
 
+USUAL = (1e-6, 1.0)
+"""Shortest and longest field [m] that is taken without asking back."""
+LIKELY = ("mm", "um", "nm")
+"""Units that may have been meant."""
+TYPICAL = 1e-3
+"""Length [m] of a typical scan."""
 TEXT = (".csv", ".txt", ".dat", ".xy", ".prf")
 """Suffixes of files that may hold bare columns of numbers."""
 
 
-def read(path: str | Path, unit: str | None = None) -> Heights:
+def read(path: str | Path, unit: str | None = None, any_size: bool = False) -> Heights:
     """Heights in metres of a profile or an areal map.
 
-    unit : length unit of a file that states none (x, y and z alike); refused for a file that states its own
+    unit     : length unit of a file that states none (x, y and z alike); refused beside one's own
+    any_size : take a field beyond USUAL as it is
 
     Raises ValueError with one line: no file, no surface, unit missing or stated twice, too few points,
-    constant, all missing.
+    constant, all missing; a length that hints at another unit.
     """
     path = Path(path)
     if not path.is_file():
@@ -34,10 +41,31 @@ def read(path: str | Path, unit: str | None = None) -> Heights:
     if line := csvfile.header(path):
         if unit is not None:
             raise Refusal(f"{path}: states its units itself; leave the unit {unit} out", "unit")
-        return csvfile.read(path, line)
-    if path.suffix.lower() in TEXT and _bare(path):
-        return _bare_columns(path, unit)
-    return _instrument(path, unit)
+        heights, stated = csvfile.read(path, line)
+    elif path.suffix.lower() in TEXT and _bare(path):
+        heights, stated = _bare_columns(path, unit), str(unit)
+    else:
+        heights, stated = _instrument(path, unit)
+    if not any_size:
+        _usual(heights, stated)
+    return heights
+
+
+def _usual(heights: Heights, unit: str) -> None:
+    """Refuse a field that nobody scans, naming the unit that was probably meant."""
+    low, high = USUAL
+    if max(heights.lengths) <= high and max(heights.lengths) >= low:
+        return
+    factor = _metres(unit)
+    number = max(heights.lengths) / factor
+    meant = min(LIKELY, key=lambda name: abs(np.log(number * csvfile.LENGTHS[name] / TYPICAL)))
+    size = " x ".join(f"{length:.4g} m" for length in heights.lengths)
+    told = " x ".join(f"{length / factor:.4g} {meant}" for length in heights.lengths)
+    raise Refusal(
+        f"{heights.name}: the field is {size} with lengths in {unit}, scans have {low:g} to {high:g} m; "
+        f"were lengths in {meant} meant ({told})? State the right unit, or that the size is right",
+        "force",
+    )
 
 
 def _without_unit(path: Path) -> Refusal:
@@ -62,8 +90,9 @@ def _bare_columns(path: Path, unit: str | None) -> Heights:
     return csvfile.columns(path, values, [csvfile.LENGTHS[unit]] * values.shape[1])
 
 
-def _instrument(path: Path, unit: str | None) -> Heights:
-    """Any format of SurfaceTopography, the default channel."""
+def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:
+    """Any format of SurfaceTopography, the default channel, and its unit."""
+    sift.check(path)
     try:
         import SurfaceTopography
         import SurfaceTopography.Exceptions
@@ -85,22 +114,29 @@ def _instrument(path: Path, unit: str | None) -> Heights:
     except Exception as error:  # the readers raise what they like
         reason = " ".join(str(error).split())[:120] or type(error).__name__
         raise ValueError(f"{path}: is no surface that SurfaceTopography can read ({reason})") from None
-    return _heights(path, topography, size, heights, _factor(path, topography.unit, unit))
-
-
-def _factor(path: Path, stated: str | None, given: str | None) -> float:
-    if stated is None and given is None:
+    if topography.unit is None and unit is None:
         raise _without_unit(path)
-    if stated is not None and given is not None:
-        raise Refusal(f"{path}: states its unit {stated} itself; leave the unit {given} out", "unit")
-    if given is not None:
-        return csvfile.LENGTHS[given]
+    if topography.unit is not None and unit is not None:
+        raise Refusal(f"{path}: states its unit {topography.unit} itself; leave the unit {unit} out", "unit")
+    stated = str(unit or topography.unit)
+    try:
+        factor = _metres(stated)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return _heights(path, topography, size, heights, factor), stated
+
+
+def _metres(unit: str) -> float:
+    """A length unit in metres, ours or one of SurfaceTopography; also µm whose two bytes were read as two."""
+    unit = unit.replace("Â", "").strip(" \0")
+    if unit in csvfile.LENGTHS:
+        return csvfile.LENGTHS[unit]
     from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
 
-    factor = get_unit_conversion_factor(stated, "m")
-    if factor is None:
-        raise ValueError(f"{path}: its unit {stated!r} is no length")
-    return float(factor)
+    with contextlib.suppress(ValueError):
+        if (factor := get_unit_conversion_factor(unit, "m")) is not None:
+            return float(factor)
+    raise ValueError(f"its unit {unit!r} is no length that is known")
 
 
 def _heights(path: Path, topography: Any, size: Any, heights: Any, factor: float) -> Heights:

@@ -8,6 +8,7 @@ import numpy as np
 from .fit import SelfAffineLaw
 from .form import Repair
 from .heights import Areal
+from .roughness import ScanRoughness
 from .series import Series
 
 TEXTURE = 0.3
@@ -80,19 +81,75 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class Identification:
-    """All results, the repairs per file and the warnings."""
+    """All results, the repairs per file, the warnings, and the roughness of every file.
+
+    side : of a single surface, the side of the contact that it is, one of SIDES
+    """
 
     names: tuple[str, ...]
     results: tuple[Result, ...]
     repairs: tuple[tuple[str, Repair], ...]
     warnings: tuple[str, ...]
     textured: bool
+    scans: tuple[ScanRoughness, ...]
+    side: str | None = None
+
+    @property
+    def sides(self) -> dict[int, ScanRoughness]:
+        """The roughness of every known side of the contact; a single one of no stated side is the first."""
+        if len(self.scans) == 2 or self.side == "both":
+            return {1: self.scans[0], 2: self.scans[-1]}
+        return {int(self.side or 1): self.scans[0]}
+
+    @property
+    def h(self) -> float:
+        """Rms height [m] of both sides together over the longest wave; one that is not known is smooth."""
+        return float(np.sqrt(sum(scan.h**2 for scan in self.sides.values())))
+
+    @property
+    def slope(self) -> float:
+        """Rms slope [1] of both sides together."""
+        return float(np.sqrt(sum(scan.slope**2 for scan in self.sides.values())))
+
+    @property
+    def longest_wave(self) -> float:
+        """Longest wave [m] of h and slope."""
+        return self.scans[0].longest_wave
 
     def best(self, direction: str | None = None, method: str | None = None) -> Result:
-        """The result with the smaller standard error of D; of a direction, by default the whole surface."""
+        """The result with the smaller standard error of D; of a direction, by default the whole surface.
+
+        One at the end of D's interval comes last, as that end cuts its error off; then one not self-affine.
+        """
+        fitting = [r for r in self.along(direction) if method in (None, r.method)]
+        return min(fitting, key=lambda r: (r.fit.at_bound, not r.fit.straight, r.fit.covariance[0, 0]))
+
+    def along(self, direction: str | None = None) -> list[Result]:
+        """The results of all methods along a direction, by default of the whole surface."""
         direction = direction or self.results[0].direction
-        fitting = [r for r in self.results if r.direction == direction and method in (None, r.method)]
-        return min(fitting, key=lambda r: (not r.fit.straight, r.fit.covariance[0, 0]))
+        return [r for r in self.results if r.direction == direction]
+
+    def doubt(self, direction: str | None = None) -> str | None:
+        """Why D and G along a direction are not determined; None if they are.
+
+        Every method must find the surface self-affine with a D inside its interval, the intervals of all
+        methods must overlap, and that of G must be one of positive numbers.
+        """
+        found = self.along(direction)
+        for result in found:
+            D = result.profile.D.value
+            if result.fit.at_bound:
+                return f"D = {D:.2f} ({result.method}) lies at the end of 1 to 2"
+            if not result.fit.straight:
+                return f"not self-affine ({result.method})"
+        if max(r.profile.D.low for r in found) > min(r.profile.D.high for r in found):
+            values = ", ".join(
+                f"{r.profile.D.value:.2f} [{r.profile.D.low:.2f}, {r.profile.D.high:.2f}] ({r.method})"
+                for r in found
+            )
+            return f"the methods disagree, D = {values}"
+        G = self.best(direction).profile.G
+        return None if G.determined else f"the interval of G spans {G.decades:.0f} decades"
 
 
 def texture(heights: Areal) -> tuple[float, float]:
@@ -101,7 +158,8 @@ def texture(heights: Areal) -> tuple[float, float]:
     for z in (heights.z, heights.z.T):
         lag = max(2, z.shape[1] // 32)
         second = z[:, 2 * lag :] - 2.0 * z[:, lag:-lag] + z[:, : -2 * lag]
-        shares.append(float(np.mean(second.mean(axis=0) ** 2) / np.mean(second**2)))
+        whole = float(np.mean(second**2))
+        shares.append(float(np.mean(second.mean(axis=0) ** 2)) / whole if whole > 0.0 else 1.0)
     return shares[0], shares[1]
 
 
@@ -115,14 +173,19 @@ def warnings(results: Sequence[Result], textured: bool) -> list[str]:
         )
     for result in results:
         where = f"{result.method}, {result.direction}"
-        if not result.fit.straight:
+        if not (result.fit.straight or result.fit.runs):
             lines.append(
                 f"{where}: not self-affine over {result.fit.low:.3g} to {result.fit.high:.3g} m: D drifts by "
                 f"{result.fit.drift:+.2f}, deviation from the law {100.0 * result.fit.deviation:.0f} %"
             )
         if result.fit.decades < 1.0:
             lines.append(f"{where}: the range spans {result.fit.decades:.2f} decades, less than one")
-        if not 0.03 < result.fit.H < 0.97:
+        if result.fit.runs:
+            lines.append(
+                f"{where}: over all scales D runs through its interval from 1 to 2, and only a piece of "
+                f"{result.fit.decades:.2f} decades is straight; state a range to take it"
+            )
+        if result.fit.at_bound:
             lines.append(f"{where}: D = {result.profile.D.value:.2f} lies at the end of 1 to 2; no fractal")
     G = min(results[:2], key=lambda result: result.fit.covariance[0, 0]).profile.G
     if G.decades > 4.0:

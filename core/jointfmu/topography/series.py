@@ -13,6 +13,11 @@ from numpy.typing import NDArray
 
 from .heights import Array
 
+METHODS = ("structure", "psd")
+SIDES = ("1", "2", "both")
+"""What one scan stands for: a side of the contact on a smooth other one, or both alike."""
+LEAST = 1e-200
+"""Least value of a series [m2], so that lines of one height have a logarithm."""
 KERNEL = 0.3
 """Width of the Gaussian kernel in ln(frequency): it smooths the separate waves up to gamma = 2."""
 

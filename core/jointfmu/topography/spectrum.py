@@ -3,7 +3,7 @@
 import numpy as np
 
 from .heights import Areal, Array, Heights
-from .series import KERNEL, Series
+from .series import KERNEL, LEAST, Series
 
 HANN = 35.0 / 18.0
 """Neighbouring Fourier modes of a Hann window that count as one, per direction."""
@@ -44,7 +44,7 @@ def psd(heights: Heights, direction: str) -> Series:
         weight = weight / weight.sum(axis=1, keepdims=True)
         return np.asarray((weight * (per_mode / count)) @ weight.T)
 
-    value = kernel @ power / norm
+    value = np.maximum(kernel @ power / norm, LEAST)
     return Series(
         method="psd",
         direction=direction,

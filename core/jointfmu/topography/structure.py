@@ -6,7 +6,7 @@ import numpy as np
 
 from .fractal import second_difference, structure_constant
 from .heights import Areal, Array, Heights
-from .series import KERNEL, Series
+from .series import KERNEL, LEAST, Series
 
 MODES = 256
 """Fourier modes per direction that enter a covariance; shorter waves hardly contribute."""
@@ -35,7 +35,7 @@ def _differences(z: Array) -> tuple[Array, Array, Array]:
         step = z[:, lag:] - z[:, :-lag]
         raw[i] = _mean_square(step)
         value[i] = _mean_square(step[:, lag:] - step[:, :-lag])
-    return lags.astype(float), value, raw
+    return lags.astype(float), np.maximum(value, LEAST), np.maximum(raw, LEAST)
 
 
 def _smoothed(

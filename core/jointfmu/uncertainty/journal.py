@@ -8,14 +8,18 @@ index in the study), `parameters`, and either `columns` (the ramp) or `error` (t
 import hashlib
 import json
 import os
+import sys
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from ..parameters import write_text
+from ..parameters import made_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
+FAR = 1 << 40
+"""Place in the file of runs [byte] that no run reaches."""
 
 
 def digest(data: bytes) -> str:
@@ -47,6 +51,22 @@ def claim(folder: Path, study: Mapping[str, Any]) -> None:
         f"{folder}: holds another study ({changed[0]} = {before[:60]}, now {now[:60]}); "
         "expected the same study or another folder"
     )
+
+
+@contextmanager
+def claimed(folder: Path, study: Mapping[str, Any]) -> Iterator[None]:
+    """`claim`; a folder that is new is removed again if the work is refused before any run is finished."""
+    new = not (folder / STUDY).exists()
+    with made_folder(folder):
+        claim(folder, study)
+        try:
+            yield
+        except ValueError:
+            runs = folder / RUNS
+            if new and not (runs.exists() and runs.stat().st_size):
+                runs.unlink(missing_ok=True)
+                (folder / STUDY).unlink()
+            raise
 
 
 class Journal:
@@ -115,9 +135,13 @@ def _lines(path: Path) -> Iterator[tuple[dict[str, Any], int]]:
 
 
 def _lock(handle: int) -> None:
-    """Hold the file until it is closed; OSError if another process does. Without effect on Windows."""
-    try:
+    """Hold the file until it is closed; OSError if another process does."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        os.lseek(handle, FAR, os.SEEK_SET)  # what is locked cannot be read, so a byte behind all runs
+        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+    else:
         import fcntl
-    except ImportError:
-        return
-    fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

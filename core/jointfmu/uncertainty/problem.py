@@ -24,6 +24,7 @@ LOAD_END = "up to the end of the tabulated law"
 class Problem:
     """What is propagated.
 
+    parameters : class of the parameter set
     values    : the parameter file's, with the plain settings
     uncertain : parameters with a distribution, the load's last if it has one
     loads     : (m) ramp of the load, ascending; one point if the load itself was set
@@ -31,6 +32,7 @@ class Problem:
     """
 
     joint: str
+    parameters: type[Any]
     values: Mapping[str, Any]
     uncertain: tuple[Uncertain, ...]
     loads: Array
@@ -55,7 +57,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
     """
     kind = KINDS[file.joint]
-    curves, declared = reduced(kind), dict(flat_fields(kind.parameters))
+    curves, declared = reduced(kind), dict(flat_fields(type(file.values)))
     base = dict(file.flat)
     lists = {name for name, item in declared.items() if "series" in item.metadata}
     known = [*(base.keys() - lists), curves.load.name]
@@ -76,7 +78,7 @@ def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points
     load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
     loads = _ramp(curves, stated.values, at, to, points, load)
-    return Problem(file.joint, stated.flat, order, loads, relative if load else None)
+    return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
 
 
 def _check(parameter: Uncertain, item: Any) -> None:

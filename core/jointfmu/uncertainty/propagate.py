@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..batch.samples import columns, inside
-from ..joints import KINDS
 from ..progress import track
 from ..quantity import Interval, build
 from .problem import LOAD_END, Problem
@@ -39,7 +38,7 @@ def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs
     """All outputs at loads (m) for points (n, d) of the unit cube."""
     values, factor = task.sampled(points)
     n = len(points)
-    joint = columns(KINDS[task.joint].parameters, values)
+    joint = columns(task.parameters, values)
     good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.reduced.most(joint))
     outputs: dict[str, Singles] = {
         name: np.full((loads.size, n), np.nan, np.float32) for name in task.reduced.units
@@ -62,7 +61,7 @@ def _evaluated(
     some = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
     try:
         with np.errstate(all="ignore"):
-            results = task.reduced.evaluate(some, loads, factor[block][:, None])
+            results = task.reduced.evaluate(task.parameters, some, loads, factor[block][:, None])
     except (ValueError, RuntimeError):
         halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
         for half in halves:
@@ -104,7 +103,7 @@ def bands(task: Problem, points: Array) -> Bands:
     if not np.any(outcome.good):
         raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
     error = check(task, points, outcome)
-    nominal = task.reduced.evaluate(task.values, task.loads, np.ones((1, 1)))
+    nominal = task.reduced.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
     spread = {
         name: np.stack([_spread(row, outcome.good) for row in value], axis=1)
         for name, value in outcome.outputs.items()
@@ -145,11 +144,11 @@ def refusals(task: Problem, points: Array, good: Mask) -> Refused:
     values, factor, drawn = one_sample(task, points, int(bad[0]))
     reason = "the law gives no finite value"
     load, ramped = factor * float(task.loads[-1]), task.reduced.load
-    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(KINDS[task.joint].parameters, values)))
+    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(task.parameters, values)))
     if not allowed.contains(load):
         reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_END}"
     try:
-        task.reduced.exact(build(KINDS[task.joint].parameters, values), load * np.ones(1))
+        task.reduced.exact(build(task.parameters, values), load * np.ones(1))
     except (ValueError, RuntimeError) as error:
         reason = str(error)
     return Refused(int(bad.size), drawn, reason)
@@ -165,9 +164,10 @@ def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
     worst = 0.0
     for i in np.flatnonzero(outcome.good)[:CHECKED]:
         values, factor, drawn = one_sample(task, points, int(i))
-        exact = task.reduced.exact(build(KINDS[task.joint].parameters, values), factor * task.loads[few])
+        exact = task.reduced.exact(build(task.parameters, values), factor * task.loads[few])
         for name, value in exact.items():
-            miss = float(np.max(np.abs(outcome.outputs[name][few, i] / value - 1.0)))
+            scale = np.where(value == 0.0, 1.0, np.abs(value))
+            miss = float(np.max(np.abs(outcome.outputs[name][few, i] - value) / scale))
             if not miss <= ACCURACY:
                 sample = ", ".join(f"{k} = {v:g}" for k, v in drawn.items())
                 raise RuntimeError(

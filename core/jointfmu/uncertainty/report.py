@@ -13,6 +13,15 @@ SHOWN = 6
 """Loads that the table on the screen shows."""
 
 
+def loads(task: Problem) -> list[float]:
+    """Loads above zero that the table on the screen shows."""
+    return [float(load) for load in task.loads[_shown(task.loads)] if load > 0.0]
+
+
+def _shown(values: Any) -> Any:
+    return np.unique(np.linspace(0, values.size - 1, SHOWN).astype(int))
+
+
 def bands_csv(task: Problem, bands: Bands) -> str:
     """One row per load: nominal, mean, standard deviation and quantiles of every output, exact numbers."""
     load = task.reduced.load
@@ -76,7 +85,7 @@ def _indices_json(sensitivity: Sensitivity) -> dict[str, Any]:
 def table(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> str:
     """Bands at a few loads, and the indices at the end of the ramp."""
     lines = []
-    picked = np.unique(np.linspace(0, bands.loads.size - 1, SHOWN).astype(int))
+    picked = _shown(bands.loads)
     at = {q: QUANTILES.index(q) for q in (0.05, 0.5, 0.95)}
     for name, unit in bands.units.items():
         head = f"{task.reduced.load.name} [{task.reduced.load.unit}]"

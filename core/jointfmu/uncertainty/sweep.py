@@ -104,7 +104,7 @@ def sweep(
                     held.add(entry)
         summary = Summary(len(runs), len(held.finished) - before, held.failed, held.first_failure)
     if summary.failed < summary.runs:
-        write_text(out / journal.BANDS, bands_csv(out))
+        write_text(out / journal.BANDS, bands_csv(out, ramp.units(fmu)))
     return summary
 
 
@@ -160,16 +160,16 @@ def _as_completed(
             queue.add(submit(following))
 
 
-def bands_csv(folder: Path) -> str:
+def bands_csv(folder: Path, units: Mapping[str, str]) -> str:
     """Quantiles of every output at every point of the ramp over the runs that did not fail, as CSV."""
     runs: dict[str, list[Array]] = {}
     for entry in journal.entries(folder):
         for name, values in entry.get("columns", {}).items():
             runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
     driven, *outputs = runs
-    heads: list[columns.Head] = [(driven, None)]
+    heads: list[columns.Head] = [(driven, units[driven])]
     table = [runs[driven][0]]
     for name in outputs:
-        heads += [(f"{name} {100 * q:g} %", None) for q in QUANTILES]
+        heads += [(f"{name} {100 * q:g} %", units[name]) for q in QUANTILES]
         table += list(np.quantile(np.stack(runs[name]), QUANTILES, axis=0))
     return columns.text(heads, table)

@@ -1,4 +1,5 @@
-/* Repeats `BoltedJointSpring.motion` of the package: the sums over the nodes; the laws in it are generated. */
+/* Repeats `BoltedJointSpring.evolve` of the package: the sums over nodes and patches; the laws in it are
+ * generated. */
 #include "bolted_joint.h"
 
 #include <math.h>
@@ -6,15 +7,14 @@
 
 #include "tabulated.h"
 
-enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3 }; /* places of the inputs */
+enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3, THETA = V_REL + 3, OMEGA = THETA + 3 }; /* places of the inputs */
 _Static_assert(MOMENT == PRELOAD + 1, "the arguments of bolt_pressures");
-enum { X_S_REL = N_SUMS, X_P_MAX = N_SUMS + 6, N_X };  /* of the arguments of `outputs` */
-_Static_assert(N_INPUTS == V_REL + 3, "preload, moment, displacement and its rate");
-_Static_assert(N_LAW_STATE == 2, "plastic and elastic work");
-_Static_assert(SUM_ELASTIC == SUM_PLASTIC + 1, "in the order of the law's state");
-
-/* Beyond so many cells from rest the displacement is so large that nodes are taken one by one. */
-static const double FAR = 1e9;
+_Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn and their rates");
+/* Arguments of `outputs`. */
+enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
+_Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
+_Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
+_Static_assert(N_MEMORY == FORCES + N_PATCHES * 2 * SLIDERS, "as the package has it");
 
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
@@ -25,179 +25,109 @@ static bool tabulate(Joint *joint, int steps, Text *why)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    const Curve *curve = &joint->curve;
+    double head[4];
     kind->tight = false;
     if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate, APPROACH_STEPS, why))
         return false;
-    const double segment = (curve->end.x - curve->first.x) / (curve->n - 1);
-    kind->width = segment * fmin(1.0, (double)PASSING / N_NODES);
+    joint_head(0, joint->c, head);
+    kind->memory = head[0] != 0.0;
+    kind->mu = head[1];
+    kind->ratio = head[2];
+    kind->area = head[3];
+    energy_tabulate(&kind->energy, &joint->curve);
+    for (int i = 0; i < N_NODES; i++) {
+        const double share = NODES[i][SHARE], x = NODES[i][PLACE_X], y = NODES[i][PLACE_Y];
+        const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
+        memcpy(kind->weight[i], weight, sizeof weight);
+    }
+    foundation_tabulate(&kind->foundation, &joint->curve, &kind->energy, kind->mu, kind->ratio);
+    for (int j = 0; j < N_PATCHES; j++)
+        kind->from[j] = kind->to[j] = foundation_point(&kind->foundation, joint->curve.end.x, 0);
     return true;
 }
 
-/* Approach of the nodes at tightening; kept while preload and moment stay. */
+/* Tightening */
+
+static double tighten_point(const Joint *joint, const double *point, const double *bolts, int *segment, double *p)
+{
+    const double x[4] = {point[EQUAL], point[TILT], bolts[0], bolts[1]};
+    double pressure;
+    shaped_pressure(x, joint->c, &pressure);
+    return curve_inverse(&joint->curve, pressure, segment, p);
+}
+
+/* Approaches at tightening; kept while preload and moment stay. */
 static void tighten(Joint *joint, const double *inputs)
 {
     Kind *kind = &joint->kind;
     if (kind->tight && kind->preload == inputs[PRELOAD] && kind->moment == inputs[MOMENT])
         return;
-    const bool even = inputs[MOMENT] == 0.0;
-    kind->nodes = even ? EVEN_NODES : NODES;
-    kind->n_nodes = even ? N_EVEN_NODES : N_NODES;
-    double bolts[2], tightened = 0.0, largest = -1.0;
+    double bolts[2], carried;
     int segment = 0;
     bolt_pressures(inputs + PRELOAD, joint->c, bolts);
-    for (int i = 0; i < kind->n_nodes; i++) {
-        const double *node = kind->nodes[i], x[4] = {node[EQUAL], node[TILT], bolts[0], bolts[1]};
-        double pressure, carried;
-        shaped_pressure(x, joint->c, &pressure);
-        kind->start[i] = curve_inverse(&joint->curve, pressure, &segment, &carried);
-        tightened += node[SHARE] * carried;
-        if (pressure > largest) {
-            largest = pressure;
-            kind->tightest = i;
-        }
+    memset(kind->sums, 0, sizeof kind->sums);
+    for (int i = 0; i < N_NODES; i++) {
+        const double *node = NODES[i];
+        kind->start[i] = tighten_point(joint, node, bolts, &segment, &kind->tightened[i]);
+        for (int d = 0; d < 3; d++)
+            kind->sums[d] += kind->weight[i][d] * kind->tightened[i];
     }
-    kind->tightened = tightened;
+    for (int j = 0; j < N_PATCHES; j++)
+        kind->patch_start[j] = tighten_point(joint, PATCHES[j], bolts, &segment, &carried);
     kind->preload = inputs[PRELOAD];
     kind->moment = inputs[MOMENT];
     kind->tight = true;
-    kind->tightening++;
-    kind->listed = 0;
+    kind->pressed = false;
 }
 
-/* Cells */
-
-/* y[m] += factor^m times the sum over k of a[k] (k over m) t[k - m]: what nodes with these powers of t on a
- * segment give as a polynomial of `factor` times its argument. */
-static inline void add_polynomial(double *y, const double *a, int degree, const double *t, double factor)
+/* Rate of a point's approach at tightening along a seed of preload and moment. */
+static double tightening_rate(const Joint *joint, const double *point, const double *bolts, double start)
 {
-    static const double binomial[6][6] = {{1.0},
-                                          {1.0, 1.0},
-                                          {1.0, 2.0, 1.0},
-                                          {1.0, 3.0, 3.0, 1.0},
-                                          {1.0, 4.0, 6.0, 4.0, 1.0},
-                                          {1.0, 5.0, 10.0, 10.0, 5.0, 1.0}};
-    double scale = 1.0;
-    for (int m = 0; m <= degree; m++, scale *= factor) {
-        double sum = 0.0;
-        for (int k = m; k <= degree; k++)
-            sum += a[k] * binomial[k][m] * t[k - m];
-        y[m] += scale * sum;
-    }
+    const double x[6] = {point[EQUAL], point[TILT], bolts[0], bolts[1], bolts[2], bolts[3]};
+    double rate, y[2];
+    if (bolts[2] == 0.0 && bolts[3] == 0.0)
+        return 0.0;
+    shaped_pressure_seed(x, joint->c, &rate);
+    curve_at(&joint->curve, start, 1, y);
+    return y[1] > 0.0 ? rate / y[1] : 0.0;
 }
 
-/* Add the nodes of a slot to a cell and empty it. */
-static void empty_slot(const Joint *joint, Moments *slot, Polynomials *sum)
+static inline double apart_at(const double *point, const double *v)
+{
+    return v[S_REL + 2] + v[THETA] * point[PLACE_Y] - v[THETA + 1] * point[PLACE_X];
+}
+
+static inline double along_x(const double *point, const double *v)
+{
+    return v[S_REL] - v[THETA + 2] * point[PLACE_Y];
+}
+
+static inline double along_y(const double *point, const double *v)
+{
+    return v[S_REL + 1] + v[THETA + 2] * point[PLACE_X];
+}
+
+/* Nodes */
+
+/* Pressure with its derivatives up to an order at an approach, works of first loading and their slopes. */
+static inline bool node_at(const Joint *joint, double approach, int order, double *y, double *works, double *slopes,
+                           Text *why)
 {
     const Kind *kind = &joint->kind;
-    const int segment = slot->segment - 1;
-    if (segment < 0)
-        return;
-    const double *a = joint->curve.a[segment], per = joint->curve.per[segment];
-    const double factor = 0.5 * kind->width * per;
-    double stiffness[5];
-    for (int k = 0; k < 5; k++)
-        stiffness[k] = (k + 1) * a[k + 1] * per;
-    add_polynomial(sum->pressure, a, 5, slot->share, factor);
-    add_polynomial(sum->about_x, stiffness, 4, slot->y2, factor);
-    add_polynomial(sum->about_y, stiffness, 4, slot->x2, factor);
-    for (int q = 0; q < N_LAW_STATE; q++)
-        add_polynomial(sum->works[q], kind->approach.state[segment][q], 5, slot->share, factor);
-    *slot = (Moments){.segment = 0};
-}
-
-static inline void add_moments(Moments *slot, const double *node, double t)
-{
-    const double square = t * t, fourth = square * square;
-    const double power[6] = {1.0, t, square, t * square, fourth, t * fourth};
-    for (int k = 0; k < 5; k++) {
-        slot->share[k] += node[SHARE] * power[k];
-        slot->x2[k] += node[SHARE_X2] * power[k];
-        slot->y2[k] += node[SHARE_Y2] * power[k];
-    }
-    slot->share[5] += node[SHARE] * power[5];
-}
-
-static double inside(const Curve *curve, double x)
-{
-    return x < curve->first.x ? curve->first.x : (x > curve->end.x ? curve->end.x : x);
-}
-
-/* Add a node to a cell in whose middle its approach is x: to the sum if it is open or on one segment in all
- * of the cell, else to the list. The search begins at a segment and leaves the one that was found. */
-static inline void add_to_cell(Joint *joint, int i, double x, int *nearest, Polynomials *sum)
-{
-    const double *node = joint->kind.nodes[i];
     const Curve *curve = &joint->curve;
-    Kind *kind = &joint->kind;
-    const double low = x - 0.51 * kind->width, high = x + 0.51 * kind->width; /* half, and round-off */
-    if (high < curve->first.x) { /* open: no pressure, and the works of the closing's end */
-        for (int q = 0; q < N_LAW_STATE; q++)
-            sum->works[q][0] += node[SHARE] * kind->approach.state[0][q][0];
-        return;
+    if (approach >= curve->first.x && approach < curve->end.x) {
+        const int segment = curve_segment(curve, approach);
+        const double t = (approach - curve->x[segment]) * curve->per[segment];
+        curve_derivatives(curve, segment, t, order, y);
+        approach_state(&kind->approach, curve, segment, t, works, slopes);
+        return true;
     }
-    int segment = *nearest;
-    if (!(low >= curve->x[segment] && low < curve->x[segment + 1]))
-        *nearest = segment = curve_segment(curve, inside(curve, low));
-    if (!(low >= curve->first.x && high < curve->x[segment + 1])) {
-        kind->list[kind->listed++] = (Passing){(unsigned short)i, (unsigned short)segment};
-        return;
-    }
-    Moments *slot = &kind->slots[segment % SLOTS];
-    if (slot->segment != segment + 1) {
-        empty_slot(joint, slot, sum);
-        slot->segment = segment + 1;
-    }
-    add_moments(slot, node, (x - curve->x[segment]) * curve->per[segment]);
-}
-
-static void make_cell(Joint *joint, Cell *cell, double place)
-{
-    Kind *kind = &joint->kind;
-    const double middle = (place + 0.5) * kind->width;
-    if (kind->listed + N_NODES > LIST) { /* no room: the other cells are forgotten */
-        kind->listed = 0;
-        kind->tightening++;
-    }
-    *cell = (Cell){.place = place, .tightening = kind->tightening, .first = kind->listed};
-    int nearest = 0;
-    for (int i = 0; i < kind->n_nodes; i++)
-        add_to_cell(joint, i, kind->start[i] - middle, &nearest, &cell->sum);
-    for (int k = 0; k < SLOTS; k++)
-        empty_slot(joint, &kind->slots[k], &cell->sum);
-    cell->passing = kind->listed - cell->first;
-}
-
-/* The cell of a displacement. */
-static const Cell *cell_at(Joint *joint, double apart)
-{
-    Kind *kind = &joint->kind;
-    const double place = floor(apart / kind->width);
-    Cell *cell = &kind->cells[(unsigned)(int)place % CELLS];
-    if (cell->tightening != kind->tightening || cell->place != place)
-        make_cell(joint, cell, place);
-    return cell;
-}
-
-/* Sums */
-
-/* What nodes give together, each with its derivatives in the approach. */
-typedef struct {
-    double pressure[5];
-    double about_x[2], about_y[2];
-    double works[N_LAW_STATE][2];
-} Sums;
-
-/* Outside the table: the law continues with its last tangent, and an open node has nothing. */
-static bool add_outside(const Joint *joint, double x, double *curve, double *works, double *slopes, Text *why)
-{
-    const Kind *kind = &joint->kind;
-    curve_at(&joint->curve, x, 4, curve);
-    if (x >= joint->curve.end.x) {
-        if (!approach_exact(&kind->spots, joint->c, curve[0], kind->approach.last, works, slopes, why))
+    curve_at(curve, approach, order, y);
+    if (approach >= curve->end.x) {
+        if (!approach_exact(&kind->spots, joint->c, y[0], kind->approach.last, works, slopes, why))
             return false;
         for (int q = 0; q < N_LAW_STATE; q++)
-            slopes[q] *= curve[1];
+            slopes[q] *= y[1];
         return true;
     }
     for (int q = 0; q < N_LAW_STATE; q++) {
@@ -207,174 +137,450 @@ static bool add_outside(const Joint *joint, double x, double *curve, double *wor
     return true;
 }
 
-/* Add a node at an approach, times `weight`; the search begins at a segment that is not behind its own. With
- * `order` 0 the last derivative of each sum is left out. */
-static inline bool add_node(const Joint *joint, const double *node, int segment, double x, double weight, int order,
-                            Sums *sums, Text *why)
+/* Add what a node has to the sums of its normal side: pressure and stiffness, with what shear adds. */
+static inline void add_normal(double *x, const double *node, double factor, double p, double k, double lifted,
+                              double stiffer)
 {
-    const Curve *c = &joint->curve;
-    double curve[5], works[N_LAW_STATE], slopes[N_LAW_STATE];
-    if (x >= c->first.x && x < c->end.x) {
-        segment += x >= c->x[segment + 1]; /* mostly the only one, so without a branch */
-        while (x >= c->x[segment + 1])
-            segment++;
-        const double t = (x - c->x[segment]) * c->per[segment];
-        curve_derivatives(c, segment, t, 3 + order, curve);
-        approach_state(&joint->kind.approach, c, segment, t, works, slopes);
-    } else if (!add_outside(joint, x, curve, works, slopes, why)) {
+    const double share = factor * node[SHARE], px = node[PLACE_X], py = node[PLACE_Y];
+    const double pressure = share * p, stiffness = share * k, all = share * (p + lifted);
+    const double normal = share * (k + stiffer);
+    x[SUM_NORMAL] += all;
+    x[SUM_NORMAL_X] += all * px;
+    x[SUM_NORMAL_Y] += all * py;
+    x[SUM_NORMAL_STIFFNESS] += normal;
+    x[SUM_NORMAL_ABOUT_X] += normal * py * py;
+    x[SUM_NORMAL_ABOUT_Y] += normal * px * px;
+    x[SUM_PRESSURE] += pressure;
+    x[SUM_STIFFNESS] += stiffness;
+    x[SUM_STIFFNESS_X] += stiffness * px;
+    x[SUM_STIFFNESS_Y] += stiffness * py;
+    x[SUM_ABOUT_X] += stiffness * py * py;
+    x[SUM_ABOUT_Y] += stiffness * px * px;
+    x[SUM_ABOUT_XY] += stiffness * px * py;
+}
+
+/* Add a shear traction and its derivatives xx, xy, yy in the shift. */
+static inline void add_shear(double *x, const double *point, const double *traction, const double *tangent)
+{
+    const double share = point[SHARE], px = point[PLACE_X], py = point[PLACE_Y];
+    x[SUM_TRACTION_X] += share * traction[0];
+    x[SUM_TRACTION_Y] += share * traction[1];
+    x[SUM_TORSION] += share * (px * traction[1] - py * traction[0]);
+    x[SUM_TANGENT_X] += share * tangent[0];
+    x[SUM_TANGENT_Y] += share * tangent[2];
+    x[SUM_TANGENT_Z] += share * (py * py * tangent[0] - 2.0 * px * py * tangent[1] + px * px * tangent[2]);
+}
+
+enum { LIFTED = 5, STIFFER, N_ELASTIC };              /* results of `elastic_shear`: traction, tangent, then these */
+enum { E_LIMIT, E_CURVE, E_SHIFT = E_CURVE + 4, N_E = E_SHIFT + 2 }; /* its arguments */
+
+static void elastic_arguments(const Joint *joint, int i, const double *y, const double *inputs, double *x)
+{
+    x[E_LIMIT] = joint->kind.mu * joint->kind.tightened[i];
+    memcpy(x + E_CURVE, y, 4 * sizeof *x);
+    x[E_SHIFT] = along_x(NODES[i], inputs);
+    x[E_SHIFT + 1] = along_y(NODES[i], inputs);
+}
+
+/* Pressure, stiffness and works of first loading of a node inside the table. */
+static inline void node_inside(const Joint *joint, double approach, double *p, double *k, double *works)
+{
+    const Curve *curve = &joint->curve;
+    const int segment = curve_segment(curve, approach);
+    const double t = (approach - curve->x[segment]) * curve->per[segment], *a = curve->a[segment];
+    *p = curve_value(a, t);
+    *k = curve_slope(a, t) * curve->per[segment];
+    for (int q = 0; q < N_LAW_STATE; q++)
+        works[q] = curve_value(joint->kind.approach.state[segment][q], t);
+}
+
+/* The same of one beside the table. */
+static bool node_outside(const Joint *joint, double approach, double *p, double *k, double *works, Text *why)
+{
+    double y[2], all[N_LAW_STATE], slopes[N_LAW_STATE];
+    if (!node_at(joint, approach, 1, y, all, slopes, why))
         return false;
-    }
-    const double share = weight * node[SHARE], x2 = weight * node[SHARE_X2], y2 = weight * node[SHARE_Y2];
-    for (int k = 0; k < 4 + order; k++)
-        sums->pressure[k] += share * curve[k];
-    for (int k = 0; k < 1 + order; k++) {
-        sums->about_x[k] += y2 * curve[1 + k];
-        sums->about_y[k] += x2 * curve[1 + k];
-    }
-    for (int q = 0; q < N_LAW_STATE; q++) {
-        sums->works[q][0] += share * works[q];
-        if (order)
-            sums->works[q][1] += share * slopes[q];
-    }
+    *p = y[0];
+    *k = y[1];
+    memcpy(works, all, sizeof all);
     return true;
 }
 
-/* Add a node that may be anywhere. */
-static bool add_any(const Joint *joint, const double *node, double x, double weight, Sums *sums, Text *why)
-{
-    const int segment = curve_segment(&joint->curve, inside(&joint->curve, x));
-    return add_node(joint, node, segment, x, weight, 1, sums, why);
-}
+/* Some nodes, looked up before they are summed up. */
+enum { BATCH = 32 };
+typedef struct {
+    double p[BATCH], k[BATCH], works[BATCH][N_LAW_STATE];
+} Batch;
 
-/* A polynomial at z and its first derivatives in the approach; `per` is that of z. */
-static inline void expand(const double *a, int degree, double z, double per, int order, double *y)
+static inline bool look_up(const Joint *joint, const double *inputs, int first, int n, Batch *batch, Text *why)
 {
-    double b[6], scale = 1.0;
-    memcpy(b, a, (size_t)(degree + 1) * sizeof *b);
-    for (int m = 0; m <= order; m++) {
-        for (int k = degree - 1; k >= m; k--)
-            b[k] += z * b[k + 1];
-        y[m] = scale * b[m];
-        scale *= (m + 1) * per;
-    }
-}
-
-/* The sums over all nodes at a displacement; with `order` 0 without the last derivative of each. */
-static inline bool press(Joint *joint, double apart, int order, Sums *sums, Text *why)
-{
-    Kind *kind = &joint->kind;
-    *sums = (Sums){.pressure = {0.0}};
-    if (!(fabs(apart) < FAR * kind->width)) {
-        for (int i = 0; i < kind->n_nodes; i++)
-            if (!add_any(joint, kind->nodes[i], kind->start[i] - apart, 1.0, sums, why))
-                return false;
-        return true;
-    }
-    const Cell *cell = cell_at(joint, apart);
-    const double per = 2.0 / kind->width, z = ((cell->place + 0.5) * kind->width - apart) * per;
-    expand(cell->sum.pressure, 5, z, per, 3 + order, sums->pressure);
-    expand(cell->sum.about_x, 4, z, per, order, sums->about_x);
-    expand(cell->sum.about_y, 4, z, per, order, sums->about_y);
-    for (int q = 0; q < N_LAW_STATE; q++)
-        expand(cell->sum.works[q], 5, z, per, order, sums->works[q]);
-    for (int k = 0; k < cell->passing; k++) {
-        const Passing *passing = &kind->list[cell->first + k];
-        const double x = kind->start[passing->node] - apart;
-        if (!add_node(joint, kind->nodes[passing->node], passing->segment, x, 1.0, order, sums, why))
+    const double begin = joint->curve.first.x, end = joint->curve.end.x;
+    for (int i = 0; i < n; i++) {
+        const double approach = joint->kind.start[first + i] - apart_at(NODES[first + i], inputs);
+        if (approach >= begin && approach < end)
+            node_inside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i]);
+        else if (!node_outside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i], why))
             return false;
     }
     return true;
+}
+
+/* Sums over the nodes, without what shear adds; false: one is beyond the law. */
+static bool sum_nodes(Joint *joint, const double *inputs, Text *why)
+{
+    Kind *kind = &joint->kind;
+    double force[3] = {0.0}, stiffness[6] = {0.0}, work[N_LAW_STATE] = {0.0}, largest = 0.0, *x = kind->normal;
+    Batch batch;
+    for (int first = 0; first < N_NODES; first += BATCH) {
+        const int n = N_NODES - first < BATCH ? N_NODES - first : BATCH;
+        if (!look_up(joint, inputs, first, n, &batch, why))
+            return false;
+        for (int i = 0; i < n; i++) {
+            const double *weight = kind->weight[first + i], p = batch.p[i];
+            for (int d = 0; d < 3; d++)
+                force[d] += weight[d] * p;
+            for (int d = 0; d < 6; d++)
+                stiffness[d] += weight[d] * batch.k[i];
+            for (int q = 0; q < N_LAW_STATE; q++)
+                work[q] += weight[0] * batch.works[i][q];
+            largest = p > largest ? p : largest;
+        }
+    }
+    kind->p_max = largest;
+    x[SUM_NORMAL] = x[SUM_PRESSURE] = force[0];
+    x[SUM_NORMAL_X] = force[1];
+    x[SUM_NORMAL_Y] = force[2];
+    x[SUM_NORMAL_STIFFNESS] = x[SUM_STIFFNESS] = stiffness[0];
+    x[SUM_STIFFNESS_X] = stiffness[1];
+    x[SUM_STIFFNESS_Y] = stiffness[2];
+    x[SUM_NORMAL_ABOUT_X] = x[SUM_ABOUT_X] = stiffness[3];
+    x[SUM_NORMAL_ABOUT_Y] = x[SUM_ABOUT_Y] = stiffness[4];
+    x[SUM_ABOUT_XY] = stiffness[5];
+    memcpy(x + SUM_PLASTIC, work, sizeof work);
+    return true;
+}
+
+/* The normal sums with memory; kept while the sides stay as far apart. */
+static bool press(Joint *joint, const double *inputs, Text *why)
+{
+    Kind *kind = &joint->kind;
+    const double apart[3] = {inputs[S_REL + 2], inputs[THETA], inputs[THETA + 1]};
+    if (kind->pressed && memcmp(kind->apart, apart, sizeof apart) == 0)
+        return true;
+    kind->pressed = false;
+    if (!sum_nodes(joint, inputs, why))
+        return false;
+    memcpy(kind->apart, apart, sizeof apart);
+    kind->pressed = true;
+    return true;
+}
+
+/* All sums over the nodes without memory. */
+static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *why)
+{
+    Kind *kind = &joint->kind;
+    double works[N_LAW_STATE], slopes[N_LAW_STATE], y[4], at[N_E], e[N_ELASTIC];
+    kind->p_max = 0.0;
+    for (int i = 0; i < N_NODES; i++) {
+        const double approach = kind->start[i] - apart_at(NODES[i], inputs);
+        if (!node_at(joint, approach, 3, y, works, slopes, why))
+            return false;
+        elastic_arguments(joint, i, y, inputs, at);
+        elastic_shear(at, joint->c, e);
+        add_normal(x, NODES[i], 1.0, y[0], y[1], e[LIFTED], e[STIFFER]);
+        add_shear(x, NODES[i], e, e + 2);
+        for (int q = 0; q < N_LAW_STATE; q++)
+            x[SUM_PLASTIC + q] += NODES[i][SHARE] * works[q];
+        kind->p_max = y[0] > kind->p_max ? y[0] : kind->p_max;
+    }
+    return true;
+}
+
+/* Patches */
+
+static Point point_at(const Joint *joint, double approach, int near)
+{
+    return foundation_point(&joint->kind.foundation, approach, near);
+}
+
+/* The points of the patches at the ends of their paths from the memory to the inputs; before the memory begins it
+ * is the shift alone. The last ones are kept where they are still right. */
+static void find_points(Joint *joint, const double *inputs, const double *memory)
+{
+    Kind *kind = &joint->kind;
+    for (int j = 0; j < N_PATCHES; j++) {
+        Point *from = &kind->from[j], *to = &kind->to[j];
+        const double end = kind->patch_start[j] - apart_at(PATCHES[j], inputs);
+        const double start = memory[BEGUN] != 0.0 ? memory[APPROACHES + j] : end;
+        if (from->approach != start)
+            *from = to->approach == start ? *to : point_at(joint, start, from->full);
+        if (to->approach != end)
+            *to = from->approach == end ? *from : point_at(joint, end, to->full);
+    }
+}
+
+static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
+{
+    const double *patch = PATCHES[j], *force = memory + FORCES + j * 2 * SLIDERS;
+    const double turn = inputs[THETA + 2] - memory[RIGID + 2];
+    const double u = inputs[S_REL] - memory[RIGID] - turn * patch[PLACE_Y];
+    const double v = inputs[S_REL + 1] - memory[RIGID + 1] + turn * patch[PLACE_X];
+    return (PatchPath){.force = {force, force + SLIDERS},
+                       .from = &joint->kind.from[j],
+                       .to = &joint->kind.to[j],
+                       .shift = {u, v},
+                       .straight = joint->kind.straight};
+}
+
+/* The integral of the curve from its beginning, the load and its slope. */
+static inline double energy_at(const Joint *joint, double x, double *y)
+{
+    const Curve *curve = &joint->curve;
+    const double at = x < curve->first.x ? curve->first.x : (x > curve->end.x ? curve->end.x : x);
+    const int segment = curve_segment(curve, at);
+    const double t = (at - curve->x[segment]) * curve->per[segment], beyond = x - at;
+    curve_derivatives(curve, segment, t, 1, y);
+    const double whole = energy_inside(&joint->kind.energy, curve, segment, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
+    y[0] += beyond * y[1];
+    return whole;
+}
+
+/* The same inside the table, without the slope. */
+static inline double energy_near(const Joint *joint, double x, double *load)
+{
+    const Curve *curve = &joint->curve;
+    double y[2];
+    if (!(x >= curve->first.x && x < curve->end.x)) {
+        const double energy = energy_at(joint, x, y);
+        *load = y[0];
+        return energy;
+    }
+    const int segment = curve_segment(curve, x);
+    const double t = (x - curve->x[segment]) * curve->per[segment];
+    *load = curve_value(curve->a[segment], t);
+    return energy_inside(&joint->kind.energy, curve, segment, t);
+}
+
+/* Add the loops whose amplitude is the present shift, see `loop_sums`. */
+static void add_loops(const Joint *joint, const double *inputs, double *x)
+{
+    const double mu = joint->kind.mu, reach = mu / joint->kind.ratio, per_reach = joint->kind.ratio / mu;
+    double works = 0.0, energies = 0.0;
+    for (int j = 0; j < N_PATCHES; j++) {
+        const Point *at = &joint->kind.to[j];
+        const double u = along_x(PATCHES[j], inputs), v = along_y(PATCHES[j], inputs), size = sqrt(u * u + v * v);
+        double then;
+        const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
+        const double stored = 0.5 * mu * (at->y[0] - then) * size;
+        const double work = 8.0 * (mu * (at->y[0] * size - reach * energy) - stored);
+        works += PATCHES[j][SHARE] * (work > 0.0 ? work : 0.0);
+        energies += PATCHES[j][SHARE] * stored;
+    }
+    x[SUM_LOOP_WORK] = works;
+    x[SUM_LOOP_ENERGY] = energies;
+}
+
+/* Add the rate of the loop of a patch, whose approach, shift x and y have these rates. */
+static void add_loop_rate(const Joint *joint, const double *patch, const Point *at, const double *inputs,
+                          const double *rates, double *dx)
+{
+    const Kind *kind = &joint->kind;
+    const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
+    if (size == 0.0)
+        return;
+    const double mu = kind->mu, reach = mu / kind->ratio, *now = at->y;
+    double then[2];
+    const double energy = at->energy - energy_at(joint, at->approach - size / reach, then);
+    const double backbone = mu * (now[0] - then[0]), stored = 0.5 * backbone * size;
+    const double work = 8.0 * (mu * (now[0] * size - reach * energy) - stored);
+    const double approach = rates[0], grows = (u * rates[1] + v * rates[2]) / size, falls = approach - grows / reach;
+    const double slope = mu * (now[1] * approach - then[1] * falls);
+    const double energy_rate = now[0] * approach - then[0] * falls;
+    const double stored_rate = 0.5 * (slope * size + backbone * grows);
+    const double integral_rate = mu * (now[1] * approach * size + now[0] * grows - reach * energy_rate);
+    dx[SUM_LOOP_WORK] += patch[SHARE] * (work > 0.0 ? 8.0 * (integral_rate - stored_rate) : 0.0);
+    dx[SUM_LOOP_ENERGY] += patch[SHARE] * stored_rate;
+}
+
+/* Sums over the patches. */
+static void slide_all(Joint *joint, const double *inputs, const double *memory, double *x)
+{
+    Kind *kind = &joint->kind;
+    double heat = 0.0;
+    kind->straight = memory[BEGUN] < 2.0 && inputs[S_REL + 1] == memory[RIGID + 1] && inputs[THETA + 2] == memory[RIGID + 2];
+    find_points(joint, inputs, memory);
+    add_loops(joint, inputs, x);
+    for (int j = 0; j < N_PATCHES && kind->memory; j++) {
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        double *const moved[2] = {kind->force[j][0], kind->force[j][1]};
+        Shear shear;
+        foundation_move(&kind->foundation, &path, moved, &kind->work, &shear);
+        add_shear(x, PATCHES[j], shear.traction, shear.tangent);
+        heat += PATCHES[j][SHARE] * shear.loss;
+    }
+    kind->loss = memory[LOSS] + kind->area * heat;
+    x[SUM_LOSS] = kind->loss / kind->area;
+}
+
+/* The forces of some sliders, none of the others. */
+static void copy_forces(const double *from, int n, double *to)
+{
+    memcpy(to, from, (size_t)n * sizeof *to);
+    memset(to + n, 0, (size_t)(SLIDERS - n) * sizeof *to);
+}
+
+void joint_accept(Joint *joint, const double *inputs, const double *before, double *after)
+{
+    const Kind *kind = &joint->kind;
+    if (!kind->memory) {
+        memcpy(after, before, N_MEMORY * sizeof *after);
+        return;
+    }
+    after[BEGUN] = kind->straight ? 1.0 : 2.0;
+    after[LOSS] = kind->loss;
+    after[RIGID] = inputs[S_REL];
+    after[RIGID + 1] = inputs[S_REL + 1];
+    after[RIGID + 2] = inputs[THETA + 2];
+    for (int j = 0; j < N_PATCHES; j++) {
+        const Point *from = &kind->from[j], *to = &kind->to[j];
+        const int n = 2 * (from->touched > to->touched ? from->touched : to->touched);
+        double *force = after + FORCES + 2 * j * SLIDERS;
+        after[APPROACHES + j] = to->approach;
+        copy_forces(kind->force[j][0], n, force);
+        copy_forces(kind->force[j][1], kind->straight ? 0 : n, force + SLIDERS);
+    }
 }
 
 /* Outputs */
 
-/* Arguments of `outputs` from the sums, or their rates from those; `order` 0 or 1 says which. */
-static void fill(const Sums *sums, int order, double factor, double *x)
-{
-    for (int k = 0; k < 4; k++)
-        x[SUM_PRESSURE + k] += factor * sums->pressure[order + k];
-    x[SUM_ABOUT_X] += factor * sums->about_x[order];
-    x[SUM_ABOUT_Y] += factor * sums->about_y[order];
-    for (int q = 0; q < N_LAW_STATE; q++)
-        x[SUM_PLASTIC + q] += factor * sums->works[q][order];
-}
-_Static_assert(SUM_TWIST == SUM_PRESSURE + 3, "the pressure and its derivatives in their order");
-
-bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
+static void fill(const Joint *joint, const double *inputs, double *x)
 {
     const Kind *kind = &joint->kind;
-    const double apart = inputs[S_REL + 2];
-    double x[N_X] = {0.0}, largest[2];
-    Sums sums;
+    memcpy(x + SUM_TIGHTENED, kind->sums, sizeof kind->sums);
+    memcpy(x + X_S_REL, inputs + S_REL, 3 * sizeof *x);
+    memcpy(x + X_THETA, inputs + THETA, 3 * sizeof *x);
+    memcpy(x + X_RATES, inputs + V_REL, 3 * sizeof *x);
+    memcpy(x + X_RATES + 3, inputs + OMEGA, 3 * sizeof *x);
+    x[X_P_MAX] = kind->p_max;
+}
+
+/* Whether the normal side is as tightened: nothing apart, and without memory no shear that would lift. */
+static bool as_tightened(const Kind *kind, const double *inputs)
+{
+    const double *s = inputs + S_REL, *turn = inputs + THETA;
+    const bool sheared = s[0] != 0.0 || s[1] != 0.0 || turn[2] != 0.0;
+    return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
+}
+
+static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *x, Text *why)
+{
+    Kind *kind = &joint->kind;
     tighten(joint, inputs);
-    if (!press(joint, apart, 0, &sums, why))
+    if (kind->memory) {
+        if (!press(joint, inputs, why))
+            return false;
+        memcpy(x, kind->normal, sizeof kind->normal);
+    } else if (!press_elastic(joint, inputs, x, why)) {
         return false;
-    fill(&sums, 0, 1.0, x);
-    x[SUM_TIGHTENED] = kind->tightened;
-    if (apart == 0.0)
-        x[SUM_PRESSURE] = kind->tightened; /* the same sum, without the round-off of another order */
-    memcpy(x + X_S_REL, inputs + S_REL, 6 * sizeof *x);
-    curve_at(&joint->curve, kind->start[kind->tightest] - apart, 1, largest);
-    x[X_P_MAX] = largest[0];
+    }
+    if (as_tightened(kind, inputs)) { /* the same sums, without the round-off of another order */
+        memcpy(x + SUM_NORMAL, kind->sums, sizeof kind->sums);
+        x[SUM_PRESSURE] = kind->sums[0];
+    }
+    slide_all(joint, inputs, memory, x);
+    fill(joint, inputs, x);
+    return true;
+}
+
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+{
+    double x[N_X] = {0.0};
+    if (!sum_up(joint, inputs, memory, x, why))
+        return false;
     outputs(x, joint->c, out);
     return true;
 }
 
-/* Add the rates of all arguments of `outputs` by what a seed changes at tightening, of all nodes: a moment
- * that is none yet may become one. An open node stays open. */
-static bool add_tightening(const Joint *joint, const double *inputs, const double *seed, double *rates,
-                           Text *why)
+/* Derivatives */
+
+/* Rates of the sums over the nodes; of the patches' come from the sliders with memory. */
+static bool node_rates(const Joint *joint, const double *inputs, const double *seed, const double *bolts, double *dx,
+                       Text *why)
 {
-    const Curve *curve = &joint->curve;
-    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
-    double x[6], y[2], carried, pressure, rate, largest = -1.0;
-    int segment = 0;
-    Sums sums = {.pressure = {0.0}};
-    bolt_pressures(at, joint->c, x + 2);
-    bolt_pressures_seed(at, joint->c, x + 4);
+    const Kind *kind = &joint->kind;
+    double y[5], works[N_LAW_STATE], slopes[N_LAW_STATE], at[2 * N_E], e[N_ELASTIC] = {0.0}, largest = -1.0;
     for (int i = 0; i < N_NODES; i++) {
-        x[0] = NODES[i][EQUAL];
-        x[1] = NODES[i][TILT];
-        shaped_pressure(x, joint->c, &pressure);
-        shaped_pressure_seed(x, joint->c, &rate);
-        const double start = joint->kind.nodes == NODES
-                                 ? joint->kind.start[i]
-                                 : curve_inverse(curve, pressure, &segment, &carried);
-        curve_at(curve, start, 1, y);
-        const double approach = y[1] > 0.0 ? rate / y[1] : 0.0;
-        rates[SUM_TIGHTENED] += NODES[i][SHARE] * approach * y[1];
-        if (!add_any(joint, NODES[i], start - inputs[S_REL + 2], approach, &sums, why))
+        const double *node = NODES[i];
+        const double approach = kind->start[i] - apart_at(node, inputs);
+        const double tightening = tightening_rate(joint, node, bolts, kind->start[i]);
+        const double rate = tightening - apart_at(node, seed);
+        double carried[2] = {0.0, 0.0};
+        if (tightening != 0.0)
+            curve_at(&joint->curve, kind->start[i], 1, carried);
+        if (!node_at(joint, approach, 4, y, works, slopes, why))
             return false;
-        if (pressure > largest) {
-            largest = pressure;
-            curve_at(curve, start - inputs[S_REL + 2], 1, y);
-            rates[X_P_MAX] = y[1] * approach;
+        if (!kind->memory) {
+            elastic_arguments(joint, i, y, inputs, at);
+            at[N_E + E_LIMIT] = kind->mu * carried[1] * tightening;
+            for (int d = 0; d < 4; d++)
+                at[N_E + E_CURVE + d] = y[d + 1] * rate;
+            at[N_E + E_SHIFT] = along_x(node, seed);
+            at[N_E + E_SHIFT + 1] = along_y(node, seed);
+            elastic_shear_seed(at, joint->c, e);
+            add_shear(dx, node, e, e + 2);
+        }
+        add_normal(dx, node, 1.0, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
+        for (int q = 0; q < N_LAW_STATE; q++)
+            dx[SUM_PLASTIC + q] += node[SHARE] * slopes[q] * rate;
+        const double force = node[SHARE] * carried[1] * tightening;
+        dx[SUM_TIGHTENED] += force;
+        dx[SUM_TIGHTENED_X] += force * node[PLACE_X];
+        dx[SUM_TIGHTENED_Y] += force * node[PLACE_Y];
+        if (y[0] > largest) {
+            largest = y[0];
+            dx[X_P_MAX] = y[1] * rate;
         }
     }
-    fill(&sums, 1, 1.0, rates);
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *seed,
+                        const double *bolts, double *dx)
 {
     const Kind *kind = &joint->kind;
-    const double apart = inputs[S_REL + 2];
-    double x[2 * N_X] = {0.0}, *rates = x + N_X, largest[2];
-    Sums sums;
+    for (int j = 0; j < N_PATCHES; j++) {
+        const double *patch = PATCHES[j];
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
+        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
+        const double ends[2] = {memory[BEGUN] != 0.0 ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
+        add_loop_rate(joint, patch, path.to, inputs, loop, dx);
+        if (!kind->memory)
+            continue;
+        Shear shear;
+        foundation_rates(&kind->foundation, &path, ends, shift, &shear);
+        add_shear(dx, patch, shear.traction, shear.tangent);
+        dx[SUM_LOSS] += patch[SHARE] * shear.loss;
+    }
+}
+
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
+{
+    const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
+    double x[2 * N_X] = {0.0}, *dx = x + N_X, bolts[4];
     Text ignored;
     text_clear(&ignored);
-    tighten(joint, inputs);
-    if (!press(joint, apart, 1, &sums, &ignored))
+    if (!sum_up(joint, inputs, memory, x, &ignored))
         return;
-    fill(&sums, 0, 1.0, x);
-    fill(&sums, 1, -seed[S_REL + 2], rates);
-    if ((seed[PRELOAD] != 0.0 || seed[MOMENT] != 0.0) && !add_tightening(joint, inputs, seed, rates, &ignored))
+    bolt_pressures(at, joint->c, bolts);
+    bolt_pressures_seed(at, joint->c, bolts + 2);
+    if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
         return;
-    x[SUM_TIGHTENED] = kind->tightened;
-    memcpy(x + X_S_REL, inputs + S_REL, 6 * sizeof *x);
-    memcpy(rates + X_S_REL, seed + S_REL, 6 * sizeof *x);
-    curve_at(&joint->curve, kind->start[kind->tightest] - apart, 1, largest);
-    x[X_P_MAX] = largest[0];
-    rates[X_P_MAX] -= largest[1] * seed[S_REL + 2];
+    patch_rates(joint, inputs, memory, seed, bolts, dx);
+    memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
+    memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
+    memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);
+    memcpy(dx + X_RATES + 3, seed + OMEGA, 3 * sizeof *dx);
     outputs_seed(x, joint->c, result);
 }

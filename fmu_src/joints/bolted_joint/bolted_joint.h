@@ -1,64 +1,36 @@
-/* Bolted joint: every node follows the curve of pressure over approach from its pressure at tightening.
- *
- * Sums over the nodes are exact polynomials of the normal displacement as long as no node passes from one
- * segment of the curve to the next. The displacements are divided into cells; a cell has the sum of the nodes
- * that pass nowhere in it as polynomials, and the list of the others. What a cell holds follows from
- * tightening and place alone, so it does not matter when it was made. */
+/* Bolted joint: every node follows the curve of pressure over approach from its pressure at tightening; fewer
+ * patches, which follow it as well, carry the friction. */
 #ifndef JOINTFMU_BOLTED_JOINT_H
 #define JOINTFMU_BOLTED_JOINT_H
 
 #include "approach.h"
+#include "energy.h"
+#include "friction.h"
 
-enum {
-    CELLS = 512,       /* kept at a time, by place modulo their number */
-    PASSING = 40,      /* nodes that pass in a cell, on average where the nodes are spread over the curve */
-    LIST = CELLS * 96, /* room for the lists of all cells */
-    SLOTS = 64         /* segments whose nodes are summed at a time */
-};
-_Static_assert(LIST >= (int)N_NODES, "the list of a cell holds all nodes");
-_Static_assert(N_NODES <= USHRT_MAX, "a list holds numbers of nodes");
-
-/* Sums of powers of t over nodes on one segment, times share and share times the squares of position. */
-typedef struct {
-    int segment; /* its number plus one; 0: none */
-    double share[6], x2[5], y2[5];
-} Moments;
-
-/* Polynomials of the approach from the middle of a cell, in halves of its width. */
-typedef struct {
-    double pressure[6];
-    double about_x[5], about_y[5];
-    double works[N_LAW_STATE][6];
-} Polynomials;
-
-/* A node, and the segment where it is at the end of the cell at which its approach is smallest. */
-typedef struct {
-    unsigned short node, segment;
-} Passing;
-
-typedef struct {
-    double place; /* displacement over width, rounded down */
-    unsigned long long tightening; /* 0: none */
-    int first, passing;            /* nodes that pass, in the list */
-    Polynomials sum;
-} Cell;
+/* The memory: 0 before it has begun, 1 after ways along x alone, 2 after others; heat so far, shift x, y and turn; then approaches, then forces. */
+enum { BEGUN, LOSS, RIGID, APPROACHES = RIGID + 3, FORCES = APPROACHES + N_PATCHES };
 
 typedef struct {
     Spots spots;
     Approach approach;
-    bool tight;             /* the values at tightening are those of this preload and moment */
+    Energy energy;
+    Foundation foundation;
+    bool memory;
+    double mu, ratio, area;
+    double weight[N_NODES][6]; /* share of a node alone, times x, y, y^2, x^2, x y */
+    bool tight; /* the values at tightening are those of this preload and moment */
     double preload, moment;
-    unsigned long long tightening; /* counted */
-    const double (*nodes)[5]; /* NODES, or without a moment the fewer EVEN_NODES */
-    int n_nodes;
-    double start[N_NODES];  /* approach of each node at tightening */
-    double tightened;       /* sum of the pressures times share */
-    int tightest;           /* node with the largest pressure */
-    double width;           /* of a cell [m] */
-    int listed;             /* places in the list that are taken */
-    Passing list[LIST];
-    Cell cells[CELLS];
-    Moments slots[SLOTS];
+    double start[N_NODES];           /* approach of each node at tightening */
+    double tightened[N_NODES];       /* its pressure */
+    double patch_start[N_PATCHES];   /* approach of each patch */
+    double sums[3];                  /* of the pressures at tightening: alone, times x, times y */
+    bool pressed;                    /* the normal sums below are those at tightening and this displacement */
+    double apart[3], normal[N_SUMS], p_max;
+    Point from[N_PATCHES], to[N_PATCHES]; /* of the last evaluation */
+    bool straight;                   /* the last evaluation moved along x alone, as all did before */
+    double loss;                     /* heat up to it [J] */
+    double force[N_PATCHES][2][SLIDERS];
+    Work work; /* of the patch at hand */
 } Kind;
 
 #endif

@@ -55,7 +55,7 @@ def pressure_map(preload: float) -> str:
     """Contact pressure of the box specimen, without and with the bending moment of the paper."""
 
     def draw(canvas: Canvas) -> None:
-        spring = BoltedJointSpring.of(default("bolted_joint").values)
+        spring = BoltedJointSpring.of_nodes(default("bolted_joint").values)
         share, xy = spring.shape.share, spring.shape.position * 1e3
         axes = canvas.subplots(1, 2, sharey=True)
         cases = ((preload, 0.0), (15e3, 4500.0))

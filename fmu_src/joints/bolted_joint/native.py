@@ -1,16 +1,16 @@
-"""The bolted joint in C: its functions and its nodes."""
+"""The bolted joint in C: its functions, its nodes and patches."""
 
 import casadi as ca
 import numpy as np
 
-from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.shape import MergedShape
-from jointfmu.joints.bolted_joint import law, spring
+from jointfmu import sliders
+from jointfmu.footprint.shape import PressureShape
+from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
 
 from ...native.c_text import number
 from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import APPROACH, Definitions, NativePart
+from ...native.part import ENERGY, Definitions, NativePart, column
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -19,38 +19,55 @@ def _functions(g: Graph, model: Model) -> None:
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
     add_closing(g)
+    head = [joint.memory, joint.mu, law.shear_ratio(joint), joint.A_0]
+    g.add("joint_head", "-> memory, mu, K_T/K_N, A_0", [], head)
+    _tightening(g)
+    _shear(g)
+    sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
+    shift, turn, rates = symbols("s", 3), symbols("t", 3), symbols("v", 6)
+    p_max = ca.SX.sym("p_max")
+    out = outputs.outputs(joint, sums, shift, turn, rates, p_max)
+    doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
+    y = [out[o.name] for o in model.outputs]
+    g.add_with_seed("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
+
+
+def _tightening(g: Graph) -> None:
     equal, tilt, mean, shift = symbols("node", 4)
-    preload, moment, *rest = symbols("v", 8)
+    preload, moment = symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
-    bolts = law.bolt_pressures(joint, preload, moment)
-    g.add_with_seed("bolt_pressures", doc, [preload, moment], bolts)
+    g.add_with_seed("bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment))
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.shaped_pressure(equal, tilt, mean, shift)
     g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)
-    s_rel, v_rel = rest[:3], rest[3:]
-    sums = dict(zip(spring.SUMS, symbols("sum", len(spring.SUMS)), strict=True))
-    p_max = ca.SX.sym("p_max")
-    out = spring.motion(joint, sums, s_rel, v_rel, p_max)
-    doc = f"sums over the nodes ({', '.join(sums)}), s_rel, v_rel, largest pressure -> outputs"
-    y = [out[o.name] for o in model.outputs]
-    g.add_with_seed("outputs", doc, [*sums.values(), *s_rel, *v_rel, p_max], y)
+
+
+def _shear(g: Graph) -> None:
+    x = symbols("x", 7)
+    doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
+    y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
+    g.add_with_seed("elastic_shear", doc, x, y)
+    x = symbols("x", 8)
+    doc = "force, part kept, gain, shift, limit, stiffness -> force, beyond, tangent xx, xy, yy"
+    g.add_with_seed("slide", doc, x, sliders.slide(*x), fixed=2)
+    doc = "force before, after, beyond, limit before, after, stiffness -> loss"
+    g.add_with_seed("slip_loss", doc, x, [sliders.slip_loss(*x)], fixed=2)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
-    shape = pressure_shape(g.joint.pattern)
-    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(spring.SUMS)} | {"N_SUMS": len(spring.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "SHARE_X2", "SHARE_Y2", "EQUAL", "TILT"))}
-    nodes = _nodes("NODES", shape.merged()) | _nodes("EVEN_NODES", shape.merged(moment=False))
-    return Definitions(counts) | nodes
+    counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
+    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
+    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in ("SMALL", "SPREAD", "LOBATTO")}
+    shape = spring.points(g.joint.pattern)
+    points = _points("NODES", shape) | _points("PATCHES", spring.patches(g.joint.pattern))
+    return Definitions(counts, numbers) | column("LEVELS", "N_LEVELS", spring.LEVELS) | points
 
 
-def _nodes(name: str, shape: MergedShape) -> Definitions:
-    """Rows (n, 5) of share, share times x2 and y2, equal, tilt; neighbours have similar pressures."""
-    share = shape.share
-    rows = np.column_stack([share, share * shape.x2, share * shape.y2, shape.equal, shape.tilt])
-    rows = rows[np.lexsort((shape.equal, shape.tilt > 0.0))]
+def _points(name: str, shape: PressureShape) -> Definitions:
+    """Rows (n, 5) of share, x, y, equal, tilt."""
+    rows = np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
     texts = ["{" + ", ".join(number(x) for x in row) + "}" for row in rows]
     return Definitions({f"N_{name}": len(rows)}, {}, {f"{name}[N_{name}][5]": texts})
 
 
-PART = NativePart(_functions, APPROACH, _definitions)
+PART = NativePart(_functions, ENERGY, _definitions)

@@ -1,34 +1,38 @@
-"""A mass on the joint: it rings along the joint's normal about the tightened state."""
+"""A mass on the joint: it rings about the tightened state, in shear along the rows of bolts."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from ...master import Slave
-from ...ringing import Axis, Body, Rest
+from ...ringing import Axis, Body, Pull, Rest
 
 PRELOADS = (3e3, 9e3, 15e3, 30e3)
 """Per bolt [N]."""
 _FMU = "BoltedJoint"
 
 
-def _rest(folder: Path, preload: float) -> Rest:
-    with Slave(folder / f"{_FMU}.fmu", {"preload": preload}, (), ("K_zz", "C_zz")) as law:
-        stiffness, damping = law.get()
-    if stiffness <= 0.0:
+def _rest(folder: Path, preload: float, parameters: Mapping[str, Any]) -> Rest:
+    start = {**parameters, "preload": preload, "v_rel_x": 1.0}
+    with Slave(folder / f"{_FMU}.fmu", start, (), ("K_xx", "f_x")) as law:
+        K, dashpot = law.get()
+    if K <= 0.0:
         raise ValueError(f"load = {preload:g} N: the joint has no stiffness there; allowed are preloads > 0")
-    return Rest(0.0, 0.0, stiffness, damping)
+    return Rest(0.0, 0.0, K, 0.0 - dashpot)
 
 
 RINGING = Body(
     fmu=_FMU,
-    motion=("s_rel_z", "v_rel_z"),
-    force="f_z",
+    motion=("s_rel_x", "v_rel_x"),
+    force="f_x",
     partner="TranslationalMass",
     loads=lambda folder: PRELOADS,
     start=lambda preload: {"preload": preload},
     rest=_rest,
     release=1.0,
     load=Axis("preload", "kN", 1e-3),
-    deflection=Axis("motion", "nm", 1e9),
-    doc="along the joint's normal",
-    stiffness="K_zz",
+    deflection=Axis("motion", "um", 1e6),
+    doc="in shear",
+    stiffness="K_xx",
+    pull=Pull(15e3, 8e-7, "half of the friction limit"),
 )

@@ -1,5 +1,10 @@
 """Flanges of the bolted joint."""
 
-from ...native.terminals import axis
+from ...native.terminals import axis, turn
 
-TERMINALS = {"BoltedJoint": (axis("x", 60.0), axis("y", 0.0), axis("z", -60.0))}
+TERMINALS = {
+    "BoltedJoint": (
+        *(axis(name, y) for name, y in zip("xyz", (75.0, 45.0, 15.0), strict=True)),
+        *(turn(name, y) for name, y in zip("xyz", (-15.0, -45.0, -75.0), strict=True)),
+    )
+}

@@ -5,7 +5,8 @@
 
 #include "tabulated.h"
 
-_Static_assert(N_LAW_STATE == 2, "real contact area and its elastic part");
+_Static_assert(N_LAW_STATE == 2 || N_LAW_STATE == 0, "real contact area and its elastic part, unless the "
+                                                       "law has them in closed form");
 
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
@@ -50,9 +51,10 @@ static bool look_up(const Joint *joint, double pressure, double *x, double *slop
            approach_exact(&kind->spots, joint->c, pressure, u, x + 2, slopes + 2, why);
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
     double pressure, x[1 + N_FOUND], slopes[N_FOUND];
+    (void)memory;
     argument(inputs, joint->c, &pressure);
     x[0] = inputs[0];
     if (!look_up(joint, pressure, &x[1], slopes, why))
@@ -61,12 +63,14 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
 {
     enum { N = 1 + N_FOUND };
     double pressure, rate, x[2 * N];
     const double at[2] = {inputs[0], seed[0]};
     Text ignored;
+    (void)memory;
     text_clear(&ignored);
     argument(inputs, joint->c, &pressure);
     argument_seed(at, joint->c, &rate);

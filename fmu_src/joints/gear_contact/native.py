@@ -1,12 +1,10 @@
 """The gear contact in C: its functions."""
 
-from typing import Any
-
 import numpy as np
 
+from jointfmu.asperity import yu2022
 from jointfmu.joints.gear_contact import spring
 from jointfmu.joints.model import Model
-from jointfmu.powerlaw import Spots
 
 from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import APPROACH, NativePart
@@ -14,19 +12,20 @@ from ...native.part import APPROACH, NativePart
 
 def _functions(g: Graph, model: Model) -> None:
     joint = g.joint
-
-    def state(spots: Spots, u: Any) -> list[Any]:
-        area = spots.total("area", u)
-        return [area, spots.total("elastic_area", u) / area]
-
-    law_functions(g, joint, ("normal",), state)
-    add_closing(g)
     f, approach, stiffness, area, elastic = symbols("x", 5)
-    g.add_with_seed("argument", "inputs -> pressure", [f], [np.maximum(f, 0.0) / joint.A_0])
+    pressure = np.maximum(f, 0.0) / joint.A_0
+    g.add_with_seed("argument", "inputs -> pressure", [f], [pressure])
+    x = [f, approach, stiffness]
+    if isinstance(joint, spring.RoughGearContact):
+        law_functions(g, joint, ("normal",), lambda spots, u: [])
+        area, elastic = joint.areas(pressure)
+    else:
+        law_functions(g, joint, ("normal",), yu2022.areas)
+        x += [area, elastic]
     out = spring.contact(joint, f, approach, stiffness, area, elastic)
-    doc = "inputs, approach, stiffness of the curve, real area, elastic part -> outputs"
-    y = [out[o.name] for o in model.outputs]
-    g.add_with_seed("outputs", doc, [f, approach, stiffness, area, elastic], y)
+    add_closing(g)
+    doc = "inputs, approach, stiffness of the curve, areas where the law sums them over spots -> outputs"
+    g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs])
 
 
 PART = NativePart(_functions, APPROACH)

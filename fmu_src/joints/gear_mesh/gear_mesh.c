@@ -108,19 +108,9 @@ static bool tabulate_pair(Joint *joint, int parts, Text *why)
     return true;
 }
 
-/* Energy of a pair from the beginning of a segment of its curve to a place t in it. */
-static double rise_of_energy(const Curve *curve, int i, double t)
-{
-    const double *a = curve->a[i];
-    const double mean = a[0] +
-        t * (a[1] / 2.0 + t * (a[2] / 3.0 + t * (a[3] / 4.0 + t * (a[4] / 5.0 + t * (a[5] / 6.0)))));
-    return (curve->x[i + 1] - curve->x[i]) * t * mean;
-}
-
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    const Curve *curve = &joint->curve;
     if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate_flanks, APPROACH_STEPS, why))
         return false;
     kind->flanks = joint->curve;
@@ -128,9 +118,7 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->closing = pair_node(joint, -kind->flanks.x[0], closed, 0.0).x;
     if (!refined(joint, tabulate_pair, 1, why))
         return false;
-    kind->energy[0] = 0.0;
-    for (int i = 0; i + 1 < curve->n; i++)
-        kind->energy[i + 1] = kind->energy[i] + rise_of_energy(curve, i, 1.0);
+    energy_tabulate(&kind->energy, &joint->curve);
     return true;
 }
 
@@ -142,7 +130,7 @@ static void look_up(const Joint *joint, double deflection, int order, double *x,
     const int i = curve_segment(curve, inside);
     const double t = (inside - curve->x[i]) * curve->per[i];
     curve_derivatives(curve, i, t, order, y);
-    x[2] = joint->kind.energy[i] + rise_of_energy(curve, i, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
+    x[2] = energy_inside(&joint->kind.energy, curve, i, t) + beyond * (y[0] + 0.5 * beyond * y[1]);
     y[0] += beyond * y[1];
     for (int k = 2; k <= order && beyond > 0.0; k++)
         y[k] = 0.0;
@@ -152,10 +140,10 @@ static void look_up(const Joint *joint, double deflection, int order, double *x,
 
 enum { N_PAIR = 3, N_GIVEN = 1 + N_INPUTS + N_PAIR }; /* closing, inputs, what look_up finds */
 
-bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
     double deflection, x[N_GIVEN], y[2];
-    (void)why;
+    (void)memory, (void)why;
     argument(inputs, joint->c, &deflection);
     x[0] = joint->kind.closing;
     for (int i = 0; i < N_INPUTS; i++)
@@ -165,10 +153,12 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
 {
     double deflection, rate, at[2 * N_INPUTS], x[2 * N_GIVEN - 1], y[3];
     double *moved = &x[N_GIVEN]; /* of all but the closing */
+    (void)memory;
     for (int i = 0; i < N_INPUTS; i++) {
         x[1 + i] = at[i] = inputs[i];
         moved[i] = at[N_INPUTS + i] = seed[i];

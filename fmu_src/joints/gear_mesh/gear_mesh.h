@@ -3,13 +3,14 @@
 #define JOINTFMU_MESH_H
 
 #include "approach.h"
+#include "energy.h"
 
 typedef struct {
     Spots spots;
     Approach approach;
     Curve flanks;               /* pressure over approach; the pair's table is made of it */
     double closing;             /* [m] deflection of a pair at which the closing of its contact ends */
-    double energy[CURVE_NODES]; /* [J] of a pair at each node of its table */
+    Energy energy;              /* [J] of a pair */
 } Kind;
 
 #endif

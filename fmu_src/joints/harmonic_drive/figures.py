@@ -3,9 +3,12 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
+from jointfmu.plots import published_mark
 from jointfmu.ramp import RampResult
+from jointfmu.reference import Point
 from jointfmu.validation import Row
 
 from ...drawing import BLUE, GREEN, GREY, RED, labels, svg
@@ -21,7 +24,7 @@ def figures(outcome: Any) -> list[Figure]:
         Figure(
             "Harmonic drive: stiffness over torque",
             "Left: K_WTS and its parts on the drive's scale, as the FMU gives them. Right: the contact "
-            "pair on the scale of the paper's figures. Open circles were used to calibrate.",
+            "pair on the scale of the paper's figures.",
             stiffness(result, outcome.rows),
             f"{_FMU}.csv",
         ),
@@ -48,28 +51,22 @@ def stiffness(result: RampResult, rows: list[Row]) -> str:
         x = [r.point.where["torque"] for r in most]
         pair.plot(x, [r.computed for r in most], "_", color=GREY, ms=14, label="largest and least over w")
         pair.plot(list(least), [r.computed for r in least.values()], "_", color=GREY, ms=14)
-        for row in rows:
-            target = {"K_WTS": drive, "K_TS": pair, "K_TS_least": pair}.get(row.point.quantity)
-            if target is None:
-                continue
-            filled = row.point.role == "validation"
-            scale = 1e-3 if target is drive else 1.0
-            target.plot(
-                row.point.where["torque"],
-                float(row.point.value) * scale,
-                "o",
-                color="black",
-                mfc="black" if filled else "white",
-                ms=5,
-            )
+        points = [row.point for row in rows]
+        _mark(drive, [p for p in points if p.quantity == "K_WTS"], 1e-3)
+        _mark(pair, [p for p in points if p.quantity in ("K_TS", "K_TS_least")], 1.0)
         for axes in (drive, pair):
-            axes.plot([], [], "o", color="black", mfc="white", ms=5, label="published, calibrates")
-            axes.plot([], [], "o", color="black", ms=5, label="published, validates")
             axes.legend(loc="best", fontsize=8)
         labels(drive, "torque [N m]", "stiffness [kN m/rad]")
         labels(pair, "torque [N m]", "K_TS [N m/rad]")
 
     return svg(draw, (9.6, 4.2))
+
+
+def _mark(axes: Axes, points: list[Point], scale: float) -> None:
+    """Published stiffness over torque, in the marks of the points' roles."""
+    for role in dict.fromkeys(p.role for p in points):
+        some = [p for p in points if p.role == role]
+        axes.plot([p.where["torque"] for p in some], [scale * p.value for p in some], **published_mark(role))
 
 
 def torque_angle(result: RampResult) -> str:

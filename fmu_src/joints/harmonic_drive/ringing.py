@@ -1,9 +1,12 @@
 """A link on the drive, motor held: it rings about the wind-up that a torque makes."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from scipy.optimize import brentq
+
 from ...master import Slave
-from ...ringing import Axis, Body, Rest
+from ...ringing import Axis, Body, Pull, Rest
 
 LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 """Torques over the rated torque [1]."""
@@ -17,25 +20,30 @@ def _torques(folder: Path) -> list[float]:
     return [share * rated for share in LOADING]
 
 
-def _rest(folder: Path, torque: float) -> Rest:
+def _rest(folder: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
     path = folder / f"{_FMU}.fmu"
-    with Slave(path, {"w2": 1.0}, ("w1",), ("tau",)) as dashpot:
+    with Slave(path, {**parameters, "w2": 1.0}, ("w1",), ("tau",)) as dashpot:
         (damping,) = dashpot.get()
-    with Slave(path, {}, ("phi2", "w2"), ("tau", "K_WTS")) as law:
+    with Slave(path, parameters, ("phi2", "w2"), ("tau", "K_WTS")) as law:
         angle, stiffness = _wound_up(law, torque)
     return Rest(torque, angle, stiffness, damping)
 
 
 def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
-    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m], by Newton's method."""
-    angle = 0.0
-    for _ in range(60):
+    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m].
+
+    The torque from rest grows at least as the midline, whose stiffness K_WTS grows with it.
+    """
+
+    def missing(angle: float) -> float:
         drive.set(angle, 0.0)
-        tau, stiffness = drive.get()
-        if abs(tau - torque) <= 1e-12 * abs(torque):
-            break
-        angle += (torque - tau) / stiffness
-    return angle, stiffness
+        return float(drive.get()[0] - torque)
+
+    drive.set(0.0, 0.0)
+    end = torque / drive.get()[1]
+    angle = brentq(missing, 0.0, end, xtol=1e-12 * abs(end), rtol=1e-13) if torque else 0.0
+    drive.set(angle, 0.0)
+    return angle, drive.get()[1]
 
 
 RINGING = Body(
@@ -51,4 +59,6 @@ RINGING = Body(
     deflection=Axis("wind-up", "urad", 1e6),
     doc="motor held",
     stiffness="K_WTS",
+    pull=Pull(0.0, 5e-4, "three lengths of its hysteresis"),
+    elastic={"hysteresis_loss": 0.0},
 )

@@ -19,7 +19,7 @@ typedef struct {
 static bool close(Approach *approach, Curve *curve, const Point *end)
 {
     for (int i = 0; i <= CLOSING_STEPS; i++) {
-        const double at[4] = {end->curve.y, end->curve.s, end->curve.bend, (double)i / CLOSING_STEPS};
+        const double at[4] = {end->curve.y, end->curve.s, end->curve.bend, (double)i / (double)CLOSING_STEPS};
         double y[4];
         closing(at, NULL, y);
         const Node node = {.x = y[0], .y = y[1], .s = y[2], .bend = y[3]};
@@ -76,7 +76,7 @@ static bool add_piece(Approach *approach, Curve *curve, const Spots *spots, cons
                       double right, int steps, double *x)
 {
     const double pairs = ceil(0.5 * steps * (right - left));
-    if (!(pairs < CURVE_NODES))
+    if (!(pairs < (double)CURVE_NODES))
         return false;
     const int n = 2 * (int)fmax(pairs, 1.0);
     const double step = (right - left) / n;

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "memory.h"
+
 /* Continuous states: a position and its speed, whose rate is the output after them. Joints have none. */
 
 #if N_STATES
@@ -19,7 +21,7 @@ static double rate_at_begin(Instance *m)
     if (now->last_size > 0.0)
         for (size_t i = 0; i < N_INPUTS; i++)
             at[FIRST_INPUT + i] += now->values[LAGS + i] * (at[FIRST_INPUT + i] - now->last_inputs[i]);
-    joint_evaluate(m->joint, at + FIRST_INPUT, at + FIRST_OUTPUT, &ignored);
+    joint_evaluate(m->joint, at + FIRST_INPUT, memory_of(m), at + FIRST_OUTPUT, &ignored);
     return at[RATE];
 }
 

@@ -115,10 +115,10 @@ void curve_finish(Curve *curve)
     const double first = curve->x[0], length = curve->x[curve->n - 1] - first;
     curve->first = node_of(curve, 0, 0.0);
     curve->end = node_of(curve, curve->n - 2, 1.0);
-    curve->per_bucket = CURVE_BUCKETS / length;
+    curve->per_bucket = (double)CURVE_BUCKETS / length;
     int segment = 0;
     for (int k = 0; k <= CURVE_BUCKETS; k++) {
-        while (segment < curve->n - 2 && curve->x[segment + 1] - first <= k * (length / CURVE_BUCKETS))
+        while (segment < curve->n - 2 && curve->x[segment + 1] - first <= k * (length / (double)CURVE_BUCKETS))
             segment++;
         curve->bucket[k] = (unsigned short)segment;
     }

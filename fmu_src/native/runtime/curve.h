@@ -76,8 +76,11 @@ void curve_polynomial(const Node *p, const Node *q, double *a);
 static inline int curve_segment(const Curve *curve, double x)
 {
     const double place = (x - curve->x[0]) * curve->per_bucket;
-    const int k = place < CURVE_BUCKETS ? (int)place : CURVE_BUCKETS - 1;
+    const int k = place < (double)CURVE_BUCKETS ? (int)place : CURVE_BUCKETS - 1;
     int low = curve->bucket[k], high = curve->bucket[k + 1];
+    const int near = low + ((low < high) & (x >= curve->x[low + 1])); /* most buckets hold one beginning or none */
+    if (x >= curve->x[near] && x < curve->x[near + 1])
+        return near;
     while (low > 0 && x < curve->x[low]) /* round-off at the beginning of a bucket */
         low--;
     while (low < high) {

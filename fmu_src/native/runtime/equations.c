@@ -25,10 +25,10 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
     double known[N_KNOWNS], found[N_OUTPUTS];
-    (void)why;
+    (void)memory, (void)why;
     memcpy(known, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
     memcpy(known + FIRST_OUTPUT, out, N_STATES * sizeof(double));
     outputs(known, joint->c, found);
@@ -36,9 +36,11 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *out, Text *why)
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
 {
     double x[2 * N_KNOWNS];
+    (void)memory;
     memcpy(x, inputs - FIRST_INPUT, N_KNOWNS * sizeof(double));
     x[N_KNOWNS] = 0.0; /* the time stands still */
     memcpy(x + N_KNOWNS + 1, seed, (N_KNOWNS - 1) * sizeof(double));

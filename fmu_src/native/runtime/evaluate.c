@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "memory.h"
+
 /* Refusals: the line says which value is wrong and what is allowed. */
 
 static Status refuse(const Instance *m, const Text *why)
@@ -140,7 +142,7 @@ Status instance_evaluate(Instance *m)
             return refuse_input(m, i);
     Text why;
     text_clear(&why);
-    if (!joint_evaluate(m->joint, inputs, outputs, &why))
+    if (!joint_evaluate(m->joint, inputs, memory_of(m), outputs, &why))
         return refuse(m, &why);
     bool finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)

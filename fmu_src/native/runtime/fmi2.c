@@ -127,7 +127,7 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
     if (!instance_can_set_booleans(c, __func__, vr, nvr, value))
         return fmi2Error;
     for (size_t i = 0; i < nvr; i++)
-        m->now.values[vr[i]] = value[i] != fmi2False ? 1.0 : 0.0;
+        instance_put(m, vr[i], value[i] != fmi2False ? 1.0 : 0.0);
     return fmi2OK;
 }
 
@@ -204,7 +204,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo)
         !instance_has(c, __func__, "the event information", eventInfo))
         return fmi2Error;
     *eventInfo = (fmi2EventInfo){fmi2False, fmi2False, fmi2False, fmi2False, fmi2False, 0.0};
-    return STATUS(instance_evaluate(c)); /* with parameters that were changed in the event */
+    return STATUS(instance_accept(c)); /* with parameters that were changed in the event */
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
@@ -221,7 +221,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
         !instance_has(c, __func__, "terminateSimulation", terminateSimulation))
         return fmi2Error;
     *enterEventMode = *terminateSimulation = fmi2False;
-    return fmi2OK;
+    return STATUS(N_MEMORY ? instance_accept(c) : OK);
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)

@@ -174,7 +174,7 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, References valueReferences, siz
         !instance_can_set_booleans(instance, __func__, valueReferences, nValueReferences, values))
         return fmi3Error;
     for (size_t i = 0; i < nValues; i++)
-        m->now.values[valueReferences[i]] = values[i] ? 1.0 : 0.0;
+        instance_put(m, valueReferences[i], values[i] ? 1.0 : 0.0);
     return fmi3OK;
 }
 
@@ -397,7 +397,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
     *discreteStatesNeedUpdate = *terminateSimulation = *nominalsOfContinuousStatesChanged = fmi3False;
     *valuesOfContinuousStatesChanged = *nextEventTimeDefined = fmi3False;
     *nextEventTime = 0.0;
-    return STATUS(instance_evaluate(instance)); /* with parameters that were changed in the event */
+    return STATUS(instance_accept(instance)); /* with parameters that were changed in the event */
 }
 
 /* Model exchange: no event indicators, and states in systems only */
@@ -416,7 +416,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetF
         !instance_has(instance, __func__, "terminateSimulation", terminateSimulation))
         return fmi3Error;
     *enterEventMode = *terminateSimulation = fmi3False;
-    return fmi3OK;
+    return STATUS(N_MEMORY ? instance_accept(instance) : OK);
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)

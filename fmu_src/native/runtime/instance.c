@@ -211,6 +211,7 @@ void instance_reset(Instance *m)
     now->warned = 0;
     now->logs = LOG_ERRORS | LOG_WARNINGS | (m->logging_on ? LOG_EVENTS : 0u);
     now->last_step = OK;
+    memset(&now->path, 0, sizeof now->path);
     m->dirty = m->parameters_changed = true;
     instance_enter(m, INSTANTIATED);
 }

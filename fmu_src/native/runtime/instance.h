@@ -48,6 +48,14 @@ struct Reporter {
     void *environment;
 };
 
+/* What a joint with memory went through. */
+typedef struct {
+    double memory[2][N_MEMORY + 1]; /* before and after the way to the accepted inputs; one more, for C */
+    double inputs[N_INPUTS];        /* accepted */
+    unsigned last;                  /* 1: memory[1] is the one after, else memory[0] */
+    unsigned accepted;              /* 0: no inputs are, and memory[last] is the only one */
+} Path;
+
 /* All that a host can save and restore; outputs and tables follow from it. */
 typedef struct {
     double values[N_VALUES]; /* by value reference; [0] is the time */
@@ -58,10 +66,12 @@ typedef struct {
     unsigned warned; /* bits of joint_outside that were reported */
     unsigned logs;   /* categories that are delivered */
     Status last_step;
+    Path path;
 } State;
 
 typedef struct {
     State now;
+    State kept;              /* to go back to where a step is refused */
     double tabulated[N_PARAMETERS]; /* parameters of the tables */
     Joint *joint;
     bool dirty;              /* outputs are not those of the present inputs and parameters */

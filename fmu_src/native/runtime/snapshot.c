@@ -52,6 +52,10 @@ static void pass_word(Cursor *c, unsigned *value)
 
 static void pass_doubles(Cursor *c, double values[], size_t n)
 {
+    if (!c->bytes && !c->from) {
+        c->at += 8 * n;
+        return;
+    }
     for (size_t i = 0; i < n; i++) {
         uint64_t number;
         memcpy(&number, &values[i], sizeof number);
@@ -104,16 +108,22 @@ static void pass(Cursor *c, State *s)
         pass_doubles(c, &s->last_rate, 1);
         pass_doubles(c, &s->last_size, 1);
     }
+    if (N_MEMORY) {
+        pass_doubles(c, s->path.memory[0], N_MEMORY);
+        pass_doubles(c, s->path.memory[1], N_MEMORY);
+        pass_doubles(c, s->path.inputs, N_INPUTS);
+        pass_word(c, &s->path.last);
+        pass_word(c, &s->path.accepted);
+    }
     s->last_step = (Status)last_step;
 }
 
-static size_t full_size(void)
+/* Bytes of a state; which one does not matter. */
+static size_t full_size(const State *any)
 {
     Cursor count = {NULL, NULL, 0};
-    State state;
-    memset(&state, 0, sizeof state);
     pass_head(&count, 0);
-    pass(&count, &state);
+    pass(&count, (State *)any); /* nothing is written when bytes are counted */
     return count.at + 8;
 }
 
@@ -159,13 +169,8 @@ static bool fits(const Instance *m, const char *function, const State *s)
     return false;
 }
 
-/* A place for a state: the host's, if it gives one back, or a new one. */
-static SavedState *place(const Instance *m, const char *function, void **saved)
+static SavedState *new_state(const Instance *m, const char *function)
 {
-    if (!instance_has(m, function, "the pointer to the FMU state", saved))
-        return NULL;
-    if (*saved)
-        return is_saved(m, function, *saved) ? *saved : NULL;
     SavedState *made = calloc(1, sizeof *made);
     if (!made) {
         instance_refuse(m, function, "no memory is left; expected some for a state");
@@ -176,13 +181,31 @@ static SavedState *place(const Instance *m, const char *function, void **saved)
     return made;
 }
 
+/* Give a state to the host: in its own, if it gives one back. */
+static Status hand_over(const Instance *m, const char *function, SavedState *made, void **saved)
+{
+    if (*saved && !is_saved(m, function, *saved)) {
+        free(made);
+        return ERROR;
+    }
+    if (*saved) {
+        ((SavedState *)*saved)->state = made->state;
+        free(made);
+    } else {
+        *saved = made;
+    }
+    return OK;
+}
+
 /* Entry points */
 
 Status state_save(const Instance *m, const char *function, void **saved)
 {
-    if (!instance_allows(m, function, BOTH | ANY_MODE))
+    if (!instance_allows(m, function, BOTH | ANY_MODE) ||
+        !instance_has(m, function, "the pointer to the FMU state", saved) ||
+        (*saved && !is_saved(m, function, *saved)))
         return ERROR;
-    SavedState *to = place(m, function, saved);
+    SavedState *to = *saved ? *saved : new_state(m, function);
     if (!to)
         return ERROR;
     to->state = m->now;
@@ -221,7 +244,7 @@ Status state_size(const Instance *m, const char *function, const void *saved, si
     if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
         !instance_has(m, function, "the size", size))
         return ERROR;
-    *size = full_size();
+    *size = full_size(&m->now);
     return OK;
 }
 
@@ -229,12 +252,11 @@ Status state_write(const Instance *m, const char *function, const void *saved, v
 {
     if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
         !instance_has(m, function, "the array of bytes", bytes) ||
-        !instance_counts(m, function, "bytes of room", size, full_size()))
+        !instance_counts(m, function, "bytes of room", size, full_size(&m->now)))
         return ERROR;
-    State state = ((const SavedState *)saved)->state;
     Cursor to = {bytes, NULL, 0};
     pass_head(&to, m->version);
-    pass(&to, &state);
+    pass(&to, (State *)&((const SavedState *)saved)->state); /* only read when bytes are written */
     uint64_t sum = checksum(bytes, to.at);
     pass_bytes(&to, &sum, 8);
     return OK;
@@ -244,23 +266,25 @@ Status state_read(const Instance *m, const char *function, const void *bytes, si
 {
     if (!instance_allows(m, function, BOTH | ANY_MODE) ||
         !instance_has(m, function, "the array of bytes", bytes) ||
-        !instance_counts(m, function, "bytes", size, full_size()))
+        !instance_counts(m, function, "bytes", size, full_size(&m->now)))
         return ERROR;
-    State state;
-    memset(&state, 0, sizeof state);
+    if (!instance_has(m, function, "the pointer to the FMU state", saved))
+        return ERROR;
     Cursor from = {NULL, bytes, 0};
     if (!pass_head(&from, m->version))
         return refuse_bytes(m, function, "of another FMU or FMI version, or no state at all");
-    pass(&from, &state);
-    const uint64_t sum = checksum(bytes, from.at);
+    Cursor end = {NULL, bytes, size - 8};
     uint64_t written = 0;
-    pass_bytes(&from, &written, 8);
-    if (written != sum)
+    pass_bytes(&end, &written, 8);
+    if (written != checksum(bytes, size - 8))
         return refuse_bytes(m, function, "corrupt: their checksum is wrong");
-    SavedState *to = fits(m, function, &state) ? place(m, function, saved) : NULL;
-    if (!to)
+    SavedState *made = new_state(m, function);
+    if (!made)
         return ERROR;
-    to->state = state;
-    *saved = to;
-    return OK;
+    pass(&from, &made->state);
+    if (!fits(m, function, &made->state)) {
+        free(made);
+        return ERROR;
+    }
+    return hand_over(m, function, made, saved);
 }

@@ -3,9 +3,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "memory.h"
+
+Status instance_accept(Instance *m)
+{
+    if (instance_evaluate(m) != OK)
+        return ERROR;
+    memory_accept(m);
+    return OK;
+}
+
 Status instance_initialize(Instance *m, const char *function)
 {
-    if (!instance_allows(m, function, BOTH | INITIALIZATION) || instance_evaluate(m) != OK)
+    if (!instance_allows(m, function, BOTH | INITIALIZATION) || instance_accept(m) != OK)
         return ERROR;
     instance_enter(m, m->now.kind == MODEL_EXCHANGE ? EVENT : STEP);
     return OK;
@@ -58,7 +68,7 @@ static Status refuse_step(const Instance *m, const char *function, const char *w
 static Status step_moving(Instance *m, double size, double end)
 {
     State *now = &m->now;
-    const State before = *now;
+    m->kept = *now;
     if (instance_evaluate(m) != OK)
         return ERROR;
     instance_advance(m, size);
@@ -66,11 +76,32 @@ static Status step_moving(Instance *m, double size, double end)
     m->dirty = true;
     const bool sloping = has_slopes(now);
     if ((sloping ? evaluate_moved(m, size) : instance_evaluate(m)) != OK) {
-        *now = before;
+        *now = m->kept;
         m->dirty = true;
         return ERROR;
     }
-    return now->last_step = OK;
+    return OK;
+}
+
+/* A step of a joint with memory whose inputs move: from where they are to where their derivatives lead; a
+ * refusal changes nothing. */
+static Status step_along(Instance *m, double size)
+{
+    m->kept = m->now;
+    if (instance_accept(m) == OK && evaluate_moved(m, size) == OK)
+        return OK;
+    m->now = m->kept;
+    m->dirty = true;
+    return ERROR;
+}
+
+static Status step_resting(Instance *m, double size, double end)
+{
+    const bool sloping = has_slopes(&m->now);
+    if ((!sloping ? instance_evaluate(m) : N_MEMORY ? step_along(m, size) : evaluate_moved(m, size)) != OK)
+        return ERROR;
+    m->now.values[0] = end;
+    return OK;
 }
 
 Status instance_step(Instance *m, const char *function, double time, double size)
@@ -89,11 +120,8 @@ Status instance_step(Instance *m, const char *function, double time, double size
     if (end > now->stop + slack)
         return refuse_step(m, function, "the step ends after the stop time", time, size, "an end until ",
                            now->stop);
-    if (MOVES)
-        return step_moving(m, size, end);
-
-    if ((has_slopes(now) ? evaluate_moved(m, size) : instance_evaluate(m)) != OK)
+    if ((MOVES ? step_moving(m, size, end) : step_resting(m, size, end)) != OK)
         return ERROR;
-    now->values[0] = end;
+    memory_accept(m);
     return now->last_step = OK;
 }

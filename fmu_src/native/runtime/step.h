@@ -6,6 +6,8 @@
 
 /* Check parameters and inputs and leave initialization mode. */
 Status instance_initialize(Instance *m, const char *function);
+/* Evaluate, and accept the inputs: the path of a joint with memory goes on from them. */
+Status instance_accept(Instance *m);
 Status instance_step(Instance *m, const char *function, double time, double size);
 
 #endif

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "memory.h"
+
 /* Every check below comes in two parts: a short loop for what hosts do in each step (inputs to set, outputs
  * to read), and a long way that takes everything else and finds the words for what is wrong. */
 
@@ -105,6 +107,13 @@ static bool can_set(Instance *m, const char *function, const uint32_t refs[], si
     return true;
 }
 
+void instance_put(Instance *m, uint32_t ref, double value)
+{
+    if (m->now.values[ref] != value)
+        memory_settle(m);
+    m->now.values[ref] = value;
+}
+
 Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n, const double values[])
 {
     const bool quick =
@@ -112,7 +121,10 @@ Status instance_set(Instance *m, const char *function, const uint32_t refs[], si
     if (!quick && !can_set(m, function, refs, n, values, false))
         return ERROR;
     for (size_t i = 0; i < n; i++)
-        m->now.values[refs[i]] = values[i];
+        if (N_MEMORY && !quick && is_parameter(refs[i]))
+            instance_put(m, refs[i], values[i]);
+        else
+            m->now.values[refs[i]] = values[i];
     m->dirty = true;
     return OK;
 }

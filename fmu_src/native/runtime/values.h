@@ -7,7 +7,9 @@
 Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
                     const double values[]);
 Status instance_get(Instance *m, const char *function, const uint32_t refs[], size_t n, double values[]);
-/* Booleans: FMI 2 and 3 hold them in different types; the caller moves them to or from now.values. */
+/* Give a parameter a value. */
+void instance_put(Instance *m, uint32_t ref, double value);
+/* Booleans: FMI 2 and 3 hold them in different types; the caller takes them from now.values or puts them. */
 bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
                                const void *values);
 bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,

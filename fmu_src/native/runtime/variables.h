@@ -14,6 +14,11 @@
 #define MOVES 0 /* 1: outputs change with time, while inputs rest */
 #endif
 
+/* Joints that remember the path of their inputs define it too. */
+#ifndef N_MEMORY
+#define N_MEMORY 0 /* numbers */
+#endif
+
 typedef struct {
     const char *name;
     const char *unit; /* SI; "" for a number without unit */

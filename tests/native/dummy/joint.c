@@ -29,9 +29,10 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, double *outputs, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why)
 {
     const double preload = inputs[0], phi = inputs[1];
+    (void)memory;
     if (phi == 42.0) {
         text_add(why, "phi = 42 rad is not possible, allowed is any other angle");
         return false;
@@ -42,8 +43,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, double *outputs, Text *w
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
 {
+    (void)memory;
     result[0] = joint->k * (1.0 + 3.0 * inputs[1] * inputs[1]) * seed[1] + seed[0];
     result[1] = 2.0 * inputs[0] * seed[0];
     result[2] = 0.0;

@@ -18,17 +18,18 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, double *outputs, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why)
 {
-    (void)why;
+    (void)memory, (void)why;
     for (int i = 0; i < N_OUTPUTS; i++)
         outputs[i] = joint->gain * inputs[i % N_INPUTS];
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *seed, double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
+                      double *result)
 {
-    (void)inputs;
+    (void)memory, (void)inputs;
     for (int i = 0; i < N_OUTPUTS; i++)
         result[i] = joint->gain * seed[i % N_INPUTS];
 }

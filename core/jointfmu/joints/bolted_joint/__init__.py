@@ -1,18 +1,17 @@
-"""Bolted joint: an interface under the uneven pressure of its bolts (Zhao 2018)."""
+"""Bolted joint: an interface under the uneven pressure of its bolts."""
 
-from ...asperity.zhao2018 import Zhao2018
 from ..kind import Kind, RoughSurface
-from .law import BoltedJoint
+from .law import BoltedJoint, RoughBoltedJoint, contradictions
 from .variables import MODELS
 
 KIND = Kind(
     name="bolted_joint",
     package=__name__,
     default="box_specimen",
-    parameters=BoltedJoint,
-    law=Zhao2018,
+    laws={"zhao2018": BoltedJoint, "roughness": RoughBoltedJoint},
     models=MODELS,
     surfaces=(RoughSurface("surface"),),
     working_point=("preload", "moment"),
+    contradictions=contradictions,
     papers=("zhao2018",),
 )

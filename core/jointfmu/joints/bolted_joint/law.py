@@ -1,74 +1,135 @@
-"""Bolted joint: its parameters, the pressure under its bolts, and the interface law's ratio (Zhao 2018)."""
+"""Bolted joint: its parameters and the pressure under its bolts (Zhao 2018, section 3)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...asperity.zhao2018 import Zhao2018, normal_stiffness, tangential_stiffness
-from ...footprint.bolts import BoltPattern
+from ...asperity.roughness import Roughness
+from ...asperity.zhao2018 import Zhao2018
+from ...footprint.bolts import BoltPattern, PressureSource
+from ...footprint.plate import BoltedPlate
 from ...footprint.shape import MergedShape, NodalField, PressureShape
-from ...quantity import Interval, Limit, Number, check_limits, group, quantity
+from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoltedJoint(Zhao2018):
-    """Parameters of the bolted joint: the interface law, the bolts and how they spread their force."""
+class Bolts:
+    """The bolts of a joint and how they spread their force."""
 
     n_bolts: float = quantity("1", "number of bolts", ge=1.0, whole=True)
     row_bolts: float = quantity(
         "1", "bolts in each of the two rows that carry the moment", ge=1.0, whole=True
     )
     row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
-    pattern: BoltPattern | NodalField = group(
-        "what gives the pressure: the decay around each bolt of a frame, or the points of a field",
+    bolt_stiffness: float = quantity("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
+    memory: bool = choice(
+        True, False, doc="friction with partial slip and memory; without it an elastic joint"
+    )
+    damping: bool = choice(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
+    pattern: PressureSource = group(
+        "what gives the pressure: the decay around each bolt of a frame, the cones of the bolts of a plate, "
+        "or the points of a field",
         pattern=BoltPattern,
+        plate=BoltedPlate,
         field=NodalField,
     )
 
     def __post_init__(self) -> None:
-        super().__post_init__()
+        check(self)
         check_limits(self, self.limits())
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
-        why = "two rows cannot hold more bolts than the joint has"
-        return [Limit("row_bolts", Interval.of(ge=1.0, le=0.5 * self.n_bolts), why)]
+        why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
+        return [Limit("row_bolts", Interval.of(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why)]
 
 
-def bolt_pattern(joint: BoltedJoint) -> BoltPattern:
-    """The frame of a joint whose pressure is that of a pattern of bolts.
+@dataclass(frozen=True, kw_only=True)
+class BoltedJoint(Bolts, Zhao2018):
+    """Parameters of the bolted joint with the law of Zhao 2018."""
 
-    Raises ValueError if the joint has a nodal field instead.
-    """
-    if isinstance(joint.pattern, BoltPattern):
-        return joint.pattern
-    count = len(joint.pattern.share)
-    raise ValueError(
-        f"the joint has [field], a nodal field of {count} points; expected [pattern], a frame of bolts"
+    plastic_damping: bool = choice(
+        False, True, doc="normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)"
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class RoughBoltedJoint(Bolts, Roughness):
+    """Parameters of the bolted joint with the law `roughness`, which has no plastic work."""
+
+    plastic_damping: ClassVar[bool] = False
+
+    mass: float = quantity("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+
+
+Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
+"""A bolted joint with any law."""
+
+
+def bolt_pattern(joint: Bolted) -> BoltPattern:
+    """The frame of a joint whose pressure is that of a pattern of bolts.
+
+    Raises ValueError if the joint has a plate or a nodal field instead.
+    """
+    if isinstance(joint.pattern, BoltPattern):
+        return joint.pattern
+    if isinstance(joint.pattern, BoltedPlate):
+        has = f"[plate], a plate with {len(joint.pattern.x)} bolts"
+    else:
+        has = f"[field], a nodal field of {len(joint.pattern.share)} points"
+    raise ValueError(f"the joint has {has}; expected [pattern], a frame of bolts")
+
+
+AREA = 0.01
+"""Largest difference of A_0 from the area that the plate or the frame has without its holes [1]."""
+LEVER = 1e-3
+"""Largest difference of row_distance from that of the bolts [1]."""
+
+
+def contradictions(joint: Bolted) -> Iterator[str]:
+    """One line for each parameter that the bolts of a parameter file contradict."""
+    if isinstance(joint.pattern, NodalField):
+        return
+    section, pattern = ("plate" if isinstance(joint.pattern, BoltedPlate) else "pattern"), joint.pattern
+    count, (row_bolts, row_distance) = len(pattern.bolts), pattern.rows
+    if joint.n_bolts != count:
+        yield f"n_bolts = {joint.n_bolts:g} contradicts [{section}], which has {count} bolts"
+    if abs(joint.A_0 / pattern.area - 1.0) > AREA:
+        yield (
+            f"A_0 = {joint.A_0:g} m2 contradicts [{section}], which has {pattern.area:.6g} m2 without its "
+            f"holes; allowed is within {AREA:.0%}"
+        )
+    if joint.row_bolts != row_bolts:
+        yield f"row_bolts = {joint.row_bolts:g} contradicts [{section}], whose rows have {row_bolts:g}"
+    if abs(joint.row_distance / row_distance - 1.0) > LEVER:
+        stated = f"row_distance = {joint.row_distance:g} m"
+        yield f"{stated} contradicts [{section}], where it is {row_distance:.6g} m"
+
+
 def pressures(
-    joint: BoltedJoint, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
+    joint: Bolted, shape: PressureShape | MergedShape, preload: ArrayLike, moment: ArrayLike
 ) -> Array:
     """Node pressures (..., n) [Pa] of the tightened joint, preload [N] per bolt, moment [N.m] (...).
 
     The moment raises the bolt forces of the row y > 0 by M/(L_a N_b) and lowers those of the row
-    y < 0 (Zhao 2018, section 3). Where the sum would be negative the node is open.
+    y < 0 (Zhao 2018, section 3); of other layouts see BoltedPlate.shape. Where the sum would be negative the
+    node is open.
     """
     force, bending = np.asarray(preload)[..., None], np.asarray(moment)[..., None]
     return np.asarray(node_pressure(joint, shape.equal, shape.tilt, force, bending))
 
 
-def node_pressure(joint: BoltedJoint, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
+def node_pressure(joint: Bolted, equal: Number, tilt: Number, preload: Number, moment: Number) -> Number:
     """Pressure [Pa] of a node of the pressure shape."""
     return shaped_pressure(equal, tilt, *bolt_pressures(joint, preload, moment))
 
 
-def bolt_pressures(joint: BoltedJoint, preload: Number, moment: Number) -> tuple[Number, Number]:
+def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
     """What `equal` and `tilt` of the pressure shape stand for [Pa]."""
     return preload * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
@@ -78,12 +139,12 @@ def shaped_pressure(equal: Number, tilt: Number, mean: Number, shift: Number) ->
     return np.maximum(mean * equal + shift * tilt, 0.0)
 
 
-def row_forces(joint: BoltedJoint, preload: float, moment: float) -> tuple[float, float]:
+def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, float]:
     """Bolt forces [N] of the two rows under a moment."""
     shift = moment / (joint.row_distance * joint.row_bolts)
     return preload + shift, preload - shift
 
 
-def shear_ratio(joint: BoltedJoint) -> Number:
-    """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
-    return tangential_stiffness(joint, 1.0) / normal_stiffness(joint, 1.0)
+def shear_ratio(joint: Bolted) -> Number:
+    """K_T/K_N [1], the same at every pressure."""
+    return joint.shear_ratio()

@@ -8,6 +8,7 @@ from ...asperity import mindlin
 from ...asperity import zhao2018 as zhao
 from ...footprint.bolts import cells, pressure_shape, unit_pressures
 from ...surface import domain_extension
+from ...topography.roughness import height
 from ..published import Fit, Published
 from .law import BoltedJoint, bolt_pattern, pressures, row_forces
 
@@ -44,6 +45,11 @@ def spot_stiffness_ratio(joint: BoltedJoint) -> float:
     return float(family / hertz)
 
 
+def rms_height(joint: BoltedJoint, longest_wave: float) -> float:
+    """Rms height h [m] of the waves of D and G up to a longest one [m]."""
+    return float(height(joint.surface.D, joint.surface.G, longest_wave))
+
+
 def mindlin_function(joint: BoltedJoint, function: str, x: float) -> float:
     """H1 (`loop`), H2 (`storage`) or W_d/W (`loss_ratio`) [1] at a traction ratio."""
     table = {"loop": mindlin.loop, "storage": mindlin.storage, "loss_ratio": mindlin.loss_ratio}
@@ -67,6 +73,7 @@ PUBLISHED = Published(
         "row_force": row_force,
         "critical_area": critical_area,
         "spot_stiffness_ratio": spot_stiffness_ratio,
+        "rms_height": rms_height,
         "mindlin": mindlin_function,
         "psi": psi,
         "frequency_error": frequency_error,

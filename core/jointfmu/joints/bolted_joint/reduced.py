@@ -7,7 +7,7 @@ one matrix for all of them.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -19,13 +19,12 @@ from ...asperity import mindlin
 from ...batch.approach import held, tabulate
 from ...batch.chebyshev import discrete_gauss
 from ...batch.samples import columns
-from ...footprint.bolts import BoltPattern, pressure_shape
-from ...footprint.shape import NodalField
+from ...footprint.bolts import PressureSource, pressure_shape
 from ...quantity import flatten
 from ..model import Variable
 from ..reduced import Reduced
 from . import KIND
-from .law import BoltedJoint, node_pressure, shear_ratio
+from .law import Bolted, node_pressure, shear_ratio
 from .spring import BoltedJointSpring
 
 Array = NDArray[np.float64]
@@ -36,12 +35,14 @@ CELL = 0.15
 """Places per unit of log-pressure of the table on which all samples share their matrices [1]."""
 _POWER = 0.8
 """The stiffness grows about like this power of the pressure; what is left is interpolated."""
+_PLAN = ("pattern.", "plate.")
+"""Prefixes of what decides the distribution of the pressure."""
 _BELOW = 1e-6
 """Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
 
 
 @lru_cache(maxsize=64)
-def equal_pressures(pattern: BoltPattern | NodalField) -> tuple[Array, Array]:
+def equal_pressures(pattern: PressureSource) -> tuple[Array, Array]:
     """Pressure over mean pressure (q) [1], ascending, and shares of the area (q) that stand for all nodes.
 
     Open nodes have no part in it.
@@ -83,27 +84,28 @@ class Places:
         return np.asarray(CubicSpline(self.force, np.eye(self.force.size)).antiderivative()(force).T)
 
 
-def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
+def evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
     """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m).
 
     The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
     values : by structured name, numbers or samples (n); samples of the pattern go one by one
     """
-    names = [name for name, value in values.items() if name.startswith("pattern.") and np.ndim(value)]
+    samples = {name for name, value in values.items() if isinstance(value, np.ndarray)}
+    names = [name for name in values if name.startswith(_PLAN) and name in samples]
     if not names:
-        return _evaluate(values, loads, factor)
+        return _evaluate(parameters, values, loads, factor)
     parts = []
     for i in range(factor.size):
         sample = {k: v[i : i + 1] if isinstance(v, np.ndarray) else v for k, v in values.items()}
         sample |= {name: float(values[name][i]) for name in names}
-        parts.append(_evaluate(sample, loads, factor[i : i + 1]))
+        parts.append(_evaluate(parameters, sample, loads, factor[i : i + 1]))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 @lru_cache(maxsize=8)
-def _matrices(
-    pattern: BoltPattern | NodalField, start: float, ramp: bytes
-) -> tuple[Places, Array, Array, Array]:
+def _matrices(pattern: PressureSource, start: float, ramp: bytes) -> tuple[Places, Array, Array, Array]:
     equal, shares = equal_pressures(pattern)
     places, force = Places.of(start, equal), np.frombuffer(ramp)
     ends = (places.force, force)
@@ -111,14 +113,16 @@ def _matrices(
     return places, to_force, to_ramp, places.integral(force)
 
 
-def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
-    joint = columns(BoltedJoint, values, 1)
+def _evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
+    joint = columns(parameters, values, 1)
     pattern = type(joint.pattern)(**flatten(joint.pattern))
     equal, shares = equal_pressures(pattern)
     touching = loads > 0.0
     ramp = np.log(loads[touching] / loads[-1])
     mean = np.broadcast_to(factor * loads[-1] * joint.n_bolts / joint.A_0, factor.shape)
-    works = ("plastic_work", "elastic_work")
+    works = ("plastic_work", "elastic_work") if joint.plastic_damping else ()
     rows, closed = tabulate(joint, 0.0 * mean, mean * equal[-1] * np.exp(2.0 * CELL), works)
     first = float(np.min(np.log(_BELOW * closed / mean))) - np.log(equal[-1])
     start = CELL * np.floor(min(first, ramp[0] - 1.0) / CELL / 10.0) * 10.0
@@ -139,20 +143,21 @@ def _evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[st
     compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
     K = joint.A_0 * total("k")
     rho = shear_ratio(joint)
-    C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
-    eta_t = mindlin.loss_factor(joint.traction_ratio)
+    C = 0.0 * K
+    if works:
+        C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
+    eta_t = joint.loss_factor()
     tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
     approach = 3.0 * compliance[:, :1] + compliance @ integral
     curves = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
-    if np.all(touching):
-        return curves
     zero = np.zeros((factor.size, int(np.sum(~touching))))
-    return {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
+    curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
+    return curves | {"K_zz": curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness}
 
 
-def exact(joint: BoltedJoint, loads: Array) -> dict[str, Array]:
-    """Stiffness, damping and approach (m) of the exported spring at preloads (m) [N]."""
-    spring, rest = BoltedJointSpring.of(joint), (0.0, 0.0, 0.0)
+def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
+    """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]."""
+    spring, rest = BoltedJointSpring.of_nodes(replace(joint, memory=False)), (0.0, 0.0, 0.0)
     states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     return curves | {"approach": approach(spring, loads)}

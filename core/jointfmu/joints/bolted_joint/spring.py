@@ -1,49 +1,91 @@
-"""The exported bolted joint: normal, tangential and rotational, under uneven pressure (Zhao 2018)."""
+"""The exported bolted joint: six degrees of freedom under uneven pressure, with friction that remembers."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...asperity import mindlin
 from ...curve import Curve, approach_curve
-from ...footprint.bolts import pressure_shape
+from ...footprint.bolts import PressureSource, pressure_shape
+from ...footprint.patches import few_points
 from ...footprint.shape import PressureShape
 from ...interface import largest_spot
 from ...quantity import Number
-from .law import BoltedJoint, pressures, shear_ratio
+from ...sliders import Foundation, levels
+from .contact import (
+    Place,
+    along,
+    elastic_shear,
+    loop_sums,
+    normal_sums,
+    over_plane,
+    shear_sums,
+)
+from .law import Bolted, pressures, shear_ratio
+from .outputs import outputs
 
 Array = NDArray[np.float64]
 
-SUMS = (
-    "tightened", "pressure", "stiffness", "bend", "twist", "about_x", "about_y", "plastic", "elastic",
-)  # fmt: skip
-"""Sums over the nodes, times their shares of the area: pressure [Pa] at tightening and now with three
-derivatives in the approach, stiffness [Pa/m] times y^2 and x^2, plastic and elastic work [J]."""
+POINTS = 120
+"""Points that carry the normal force [1], where a pattern has more nodes."""
+PATCHES = 24
+"""Points that carry the friction [1], each with the sliders of LEVELS."""
+LEVELS = levels(5e-6, (8e-5, 1.5e-2), 0.3)
+"""Pressures over the hardness between which sliders are taken together [1]."""
+REST = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@lru_cache(maxsize=8)
+def points(pattern: PressureSource) -> PressureShape:
+    """The points that carry the normal force of a joint."""
+    return few_points(pressure_shape(pattern), POINTS)
+
+
+@lru_cache(maxsize=8)
+def patches(pattern: PressureSource) -> PressureShape:
+    """The points that carry its friction."""
+    return few_points(pressure_shape(pattern), PATCHES)
+
+
+@dataclass(frozen=True)
 class BoltedJointSpring:
-    """The exported joint: relative motion of its two sides in, force out.
+    """The exported joint: relative motion of its two sides in, forces and moments out.
 
-    Every node follows the pressure-approach curve `p(delta)` of the interface from its own pressure
-    at tightening. Force and stiffness derive from the potential
+    Every node follows the pressure-approach curve `p(delta)` of the interface from its own pressure at
+    tightening: the normal traction is the gradient of a potential, V' = p. Shear is carried by the sliders of
+    `Foundation` on fewer points, which slip and remember, or without memory by the potential of
+    `elastic_shear`. The n bolts act beside the interface: they carry the joint once it is open, by their
+    tension alone.
 
-        U(s) = sum A (V(delta - s_z) + (rho/2) p'(delta - s_z) (s_x^2 + s_y^2)) + P_0 s_z,   V' = p,
-
-    with the ratio rho = K_T/K_N, so the tangential stiffness follows the normal approach, and shear
-    reacts on the normal force.
+    shape   : the points that carry the normal force
+    patches : the points that carry the friction
     """
 
-    joint: BoltedJoint
+    joint: Bolted
     curve: Curve
     shape: PressureShape
+    patches: PressureShape
 
     @classmethod
-    def of(cls, joint: BoltedJoint) -> "BoltedJointSpring":
-        """Tabulate a joint."""
-        return cls(joint, approach_curve(joint), pressure_shape(joint.pattern))
+    def of(cls, joint: Bolted) -> "BoltedJointSpring":
+        """Tabulate a joint, on as few points as its FMU has."""
+        return cls(joint, approach_curve(joint), points(joint.pattern), patches(joint.pattern))
+
+    @classmethod
+    def of_nodes(cls, joint: Bolted, nodes: PressureShape | None = None) -> "BoltedJointSpring":
+        """On all nodes of its pattern, or on given ones."""
+        shape = pressure_shape(joint.pattern) if nodes is None else nodes
+        return cls(joint, approach_curve(joint), shape, shape)
+
+    def on(self, nodes: PressureShape) -> "BoltedJointSpring":
+        """The same interface on other nodes."""
+        return replace(self, shape=nodes, patches=nodes)
+
+    @cached_property
+    def foundation(self) -> Foundation:
+        """The sliders of each of them."""
+        return Foundation.of(self.curve, float(shear_ratio(self.joint)), self.joint.mu, LEVELS)
 
     def tightened(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the nodes at tightening."""
@@ -66,28 +108,66 @@ class BoltedJointSpring:
         moment: float,
         s_rel: tuple[float, float, float],
         v_rel: tuple[float, float, float],
-    ) -> dict[str, float]:
-        """Forces [N], stiffnesses, damping and pressures at one state.
+        theta: tuple[float, float, float] = REST,
+        omega: tuple[float, float, float] = REST,
+    ) -> dict[str, Number]:
+        """Outputs of a joint that has not moved along its surface before.
 
-        preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s].
+        preload [N] per bolt, moment [N.m], s_rel [m] (z positive apart), v_rel [m/s], small turn theta [rad]
+        of side 2 about the joint's centre, omega [rad/s].
         """
-        start, shape = self.tightened(preload, moment), self.shape
-        p, k, bend, twist = self.curve.derivatives(start - s_rel[2], 3)
-        x2, y2 = shape.position.T**2
-        plastic, elastic = self.works(p)
-        each = {
-            "tightened": self.curve.derivatives(start, 0)[0],
-            "pressure": p,
-            "stiffness": k,
-            "bend": bend,
-            "twist": twist,
-            "about_x": k * y2,
-            "about_y": k * x2,
-            "plastic": plastic,
-            "elastic": elastic,
+        place = Place(s_rel, theta)
+        return self.evolve(preload, moment, place, (*v_rel, *omega), self.at_rest())[0]
+
+    def at_rest(self) -> Array:
+        """Memory of a joint that has not moved yet, see `_Memory`."""
+        patches = self.patches.share.size
+        return _Memory(0.0, 0.0, np.zeros(3), np.zeros(patches), self.foundation.at_rest(patches)).flat()
+
+    def evolve(
+        self, preload: float, moment: float, place: Place, rates: tuple[float, ...], memory: Array
+    ) -> tuple[dict[str, Number], Array]:
+        """Outputs at a place with rates (v_rel, omega), and the memory after the straight path there."""
+        joint, shape = self.joint, self.shape
+        start = self.tightened(preload, moment)
+        tight = self.curve.derivatives(start, 0)[0]
+        derivatives = self.curve.derivatives(start - place.apart(shape), 3)
+        approach = self.curve.inverse(pressures(joint, self.patches, preload, moment))
+        approach = approach - place.apart(self.patches)
+        if joint.memory:
+            shear, after = self._friction(approach, place, memory)
+            lifted = stiffer = np.zeros_like(tight)
+        else:
+            limit, rho = joint.mu * tight, shear_ratio(joint)
+            *parts, lifted, stiffer = elastic_shear(limit, rho, derivatives, *place.along(shape).T)
+            traction, tangent = np.stack(parts[:2], axis=-1), np.stack(parts[2:], axis=-1)
+            shear, after = shear_sums(shape, traction, tangent) | {"loss": 0.0}, memory
+        plastic, elastic = self.works(derivatives[0])
+        sums: dict[str, Number] = {
+            **over_plane(shape, "tightened", tight),
+            **normal_sums(shape, lifted, stiffer, derivatives),
+            "plastic": shape.share @ plastic,
+            "elastic": shape.share @ elastic,
+            **shear,
+            **loop_sums(
+                self.foundation, self.patches.share, approach, np.hypot(*place.along(self.patches).T)
+            ),
         }
-        sums = {name: np.sum(shape.share * each[name]) for name in SUMS}
-        return motion(self.joint, sums, s_rel, v_rel, np.max(p))
+        p_max = np.max(derivatives[0])
+        return outputs(joint, sums, place.shift, place.turn, rates, p_max), after
+
+    def _friction(self, approach: Array, place: Place, memory: Array) -> tuple[dict[str, Number], Array]:
+        """Sums of the shear at approaches (m) [m] of the patches, and the memory after the straight path."""
+        patches, area = self.patches, self.joint.A_0
+        before = _Memory.of(memory, patches.share.size)
+        rigid = np.array([*place.shift[:2], place.turn[2]])
+        first = before.approach if before.begun > 0.0 else approach
+        shift = along(patches, rigid - before.rigid)
+        moved = self.foundation.moved(before.force, first, approach, shift)
+        loss = before.loss + area * float(patches.share @ moved.loss)
+        straight = before.begun < 2.0 and np.array_equal(rigid[1:], before.rigid[1:])
+        after = _Memory(1.0 if straight else 2.0, loss, rigid, approach, moved.force)
+        return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after.flat()
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -99,42 +179,31 @@ class BoltedJointSpring:
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-def motion(
-    joint: BoltedJoint,
-    sums: Mapping[str, Number],
-    s_rel: Sequence[Number],
-    v_rel: Sequence[Number],
-    p_max: Number,
-) -> dict[str, Number]:
-    """What the joint exports, from the SUMS of its nodes.
+@dataclass(frozen=True, slots=True)
+class _Memory:
+    """What friction remembers.
 
-    A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
-    plane: Hu 2023, Eq. 45, corrected.
+    begun    : 0 before it has moved: the path begins at the present approach without a shift; 1 while it has
+               moved along x alone, 2 after it has along y or turned
+    loss     : [J] turned into heat so far
+    rigid    : (3) shift along x and y [m] and turn about the normal [rad]
+    approach : (m) [m] of the patches
+    force    : (m, 2, n) [Pa] of the sliders
     """
-    area, rho = joint.A_0, shear_ratio(joint)
-    shear = 0.5 * rho * (s_rel[0] * s_rel[0] + s_rel[1] * s_rel[1])
-    K_n = area * sums["stiffness"]
-    K_t = rho * K_n
-    eta_n = sums["plastic"] / sums["elastic"]
-    eta_t = mindlin.loss_factor(joint.traction_ratio)
-    C_n = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
-    C_t = mindlin.viscous_equivalent(eta_t, joint.mass, K_t)
-    K_rx, K_ry = area * sums["about_x"], area * sums["about_y"]
-    return {
-        "f_x": 0.0 - K_t * s_rel[0] - C_t * v_rel[0],
-        "f_y": 0.0 - K_t * s_rel[1] - C_t * v_rel[1],
-        "f_z": area * (sums["pressure"] - sums["tightened"] + shear * sums["bend"]) - C_n * v_rel[2],
-        "K_xx": K_t,
-        "K_yy": K_t,
-        "K_zz": area * (sums["stiffness"] + shear * sums["twist"]),
-        "C_xx": C_t,
-        "C_yy": C_t,
-        "C_zz": C_n,
-        "eta_t": eta_t,
-        "eta_n": eta_n,
-        "K_rx": K_rx,
-        "K_ry": K_ry,
-        "K_rz": rho * (K_rx + K_ry),
-        "p_mean": sums["pressure"],
-        "p_max": p_max,
-    }
+
+    begun: float
+    loss: float
+    rigid: Array
+    approach: Array
+    force: Array
+
+    @classmethod
+    def of(cls, flat: Array, patches: int) -> "_Memory":
+        """From an array as `flat` gives it."""
+        force = flat[5 + patches :].reshape(patches, 2, -1)
+        return cls(float(flat[0]), float(flat[1]), flat[2:5], flat[5 : 5 + patches], force)
+
+    def flat(self) -> Array:
+        """All in one array, in this order."""
+        head = [self.begun, self.loss]
+        return np.concatenate([head, self.rigid, self.approach, self.force.ravel()])

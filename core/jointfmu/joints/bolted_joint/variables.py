@@ -4,22 +4,30 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ...quantity import Number
+from ...quantity import Number, where
 from ..model import BEYOND, Model, Outside, Ramp, Values, Variable
+from .contact import Place
 from .law import BoltedJoint
 from .spring import BoltedJointSpring
 
-_TIGHT = ("preload", "moment")
-_SHIFT = ("s_rel_x", "s_rel_y", "s_rel_z")
+LINEAR = 0.5**0.5
+"""Friction force used [1] without memory, where the linear shear force would be the limit."""
+_APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+_PLACE = (*_APART, "s_rel_x", "s_rel_y", "theta_z")
+
+
+def _three(v: Values, name: str) -> tuple[float, float, float]:
+    return v[f"{name}_x"], v[f"{name}_y"], v[f"{name}_z"]
+
+
+def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[str, float], Any]:
+    place = Place(_three(v, "s_rel"), _three(v, "theta"))
+    rates = (*_three(v, "v_rel"), *_three(v, "omega"))
+    return spring.evolve(v["preload"], v["moment"], place, rates, memory)
 
 
 def _evaluate(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
-    return spring.motion(
-        v["preload"],
-        v["moment"],
-        (v["s_rel_x"], v["s_rel_y"], v["s_rel_z"]),
-        (v["v_rel_x"], v["v_rel_y"], v["v_rel_z"]),
-    )
+    return _evolve(spring, v, spring.at_rest())[0]
 
 
 def _row_moment(joint: Any, preload: Number) -> Number:
@@ -31,7 +39,7 @@ MODELS = (
     Model(
         name="BoltedJoint",
         joint="bolted_joint",
-        doc="Bolted joint under uneven pressure: motion in, force out (Zhao 2018)",
+        doc="Bolted joint under uneven pressure: motion in, force out",
         parameters=BoltedJoint,
         spring=BoltedJointSpring.of,
         inputs=(
@@ -43,26 +51,49 @@ MODELS = (
             Variable("v_rel_x", "m/s", "rate of s_rel_x", 1e-3),
             Variable("v_rel_y", "m/s", "rate of s_rel_y", 1e-3),
             Variable("v_rel_z", "m/s", "rate of s_rel_z", 1e-3),
+            *(
+                Variable(
+                    f"theta_{a}", "rad", f"small turn of side 2 about {a} through the joint's centre", 1e-5
+                )
+                for a in "xyz"
+            ),
+            *(Variable(f"omega_{a}", "rad/s", f"rate of theta_{a}", 1e-2) for a in "xyz"),
         ),
         outputs=(
             Variable("f_x", "N", "force on side 2 along x, restoring", 1e4),
             Variable("f_y", "N", "force on side 2 along y, restoring", 1e4),
             Variable("f_z", "N", "force on side 2 along the normal, negative when pulled apart", 1e4),
+            Variable("m_x", "N.m", "moment on side 2 about x through the joint's centre, restoring", 1e3),
+            Variable("m_y", "N.m", "moment on side 2 about y, same point", 1e3),
+            Variable("m_z", "N.m", "moment on side 2 about the normal, same point", 1e3),
             Variable("K_xx", "N/m", "tangential stiffness -df_x/ds_rel_x", 1e10),
             Variable("K_yy", "N/m", "tangential stiffness -df_y/ds_rel_y", 1e10),
             Variable("K_zz", "N/m", "normal stiffness -df_z/ds_rel_z", 1e10),
             Variable("C_xx", "N.s/m", "viscous-equivalent damping along x", 1e4),
             Variable("C_yy", "N.s/m", "viscous-equivalent damping along y", 1e4),
-            Variable("C_zz", "N.s/m", "viscous-equivalent damping along the normal", 1e4),
+            Variable(
+                "C_zz",
+                "N.s/m",
+                "viscous-equivalent damping along the normal, zero without plastic_damping",
+                1e4,
+            ),
             Variable("eta_t", "1", "tangential dissipation factor"),
-            Variable("eta_n", "1", "normal dissipation factor"),
-            Variable("K_rx", "N.m/rad", "rotational stiffness about x through the centroid", 1e8),
-            Variable("K_ry", "N.m/rad", "rotational stiffness about y through the centroid", 1e8),
-            Variable("K_rz", "N.m/rad", "rotational stiffness about the normal, same point", 1e8),
+            Variable(
+                "eta_n", "1", "plastic over elastic work of first loading; it damps with plastic_damping only"
+            ),
+            Variable("K_rx", "N.m/rad", "rotational stiffness -dm_x/dtheta_x", 1e8),
+            Variable("K_ry", "N.m/rad", "rotational stiffness -dm_y/dtheta_y", 1e8),
+            Variable("K_rz", "N.m/rad", "rotational stiffness -dm_z/dtheta_z", 1e8),
             Variable("p_mean", "Pa", "mean contact pressure", 1e6),
             Variable("p_max", "Pa", "largest contact pressure", 1e6),
+            Variable("slip", "1", "friction force used: shear force over mu times normal force"),
+            Variable("E_loss", "J", "work turned into heat by friction since initialization", 1e-3),
+            Variable("eta_loop", "1", "loss factor of the loop whose amplitude is the present shift"),
+            Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e4),
         ),
         evaluate=_evaluate,
+        rest=BoltedJointSpring.at_rest,
+        evolve=_evolve,
         outside=(
             Outside(
                 "moment",
@@ -70,31 +101,23 @@ MODELS = (
                 "a bolt force would be negative; the contact is open where the pressure would be",
             ),
             Outside("p_max", lambda j, end, v: (-math.inf, end[1]), BEYOND),
+            Outside(
+                "slip",
+                lambda j, end, v: (-math.inf, where(j.memory, 2.0, LINEAR)),
+                "the elastic joint is beyond its friction limit, where a real one slips as with memory",
+            ),
         ),
         ramp=Ramp("preload", 30e3, 100.0),
         dependencies={
-            "f_x": (*_TIGHT, "s_rel_x", "s_rel_z", "v_rel_x"),
-            "f_y": (*_TIGHT, "s_rel_y", "s_rel_z", "v_rel_y"),
-            "f_z": (*_TIGHT, *_SHIFT, "v_rel_z"),
-            "K_zz": (*_TIGHT, *_SHIFT),
+            "f_x": (*_PLACE, "v_rel_x", "omega_z"),
+            "f_y": (*_PLACE, "v_rel_y", "omega_z"),
+            "m_z": (*_PLACE, "v_rel_x", "v_rel_y", "omega_z"),
+            **dict.fromkeys(("f_z", "m_x", "m_y"), (*_PLACE, "v_rel_z", "omega_x", "omega_y")),
+            **dict.fromkeys(("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _PLACE),
+            **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _PLACE),
             "eta_t": (),
-            **dict.fromkeys(
-                (
-                    "K_xx",
-                    "K_yy",
-                    "C_xx",
-                    "C_yy",
-                    "C_zz",
-                    "eta_n",
-                    "K_rx",
-                    "K_ry",
-                    "K_rz",
-                    "p_mean",
-                    "p_max",
-                ),
-                (*_TIGHT, "s_rel_z"),
-            ),
+            **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _APART),
         },
-        hidden=("pattern", "field"),
+        hidden=("pattern", "plate", "field"),
     ),
 )

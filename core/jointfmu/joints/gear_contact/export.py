@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
 from . import KIND
-from .spring import GearContact, GearContactSpring
+from .spring import Contact, GearContactSpring
 
 if TYPE_CHECKING:
     from ...curve import Curve
     from ...export.tables import Table
 
 
-def _contact(gear: GearContact) -> "tuple[Curve, Sequence[str]]":
+def _contact(gear: Contact) -> "tuple[Curve, Sequence[str]]":
     return GearContactSpring.of(gear).curve, ()
 
 
-def _load(gear: GearContact, _: None, error: float) -> "Table":
+def _load(gear: Contact, _: None, error: float) -> "Table":
     from ...export.tables import load_table
 
     return load_table(GearContactSpring.of(gear).curve, gear.A_0, error)

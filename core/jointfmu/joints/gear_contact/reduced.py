@@ -10,17 +10,19 @@ from ...batch.approach import held, tabulate
 from ...batch.samples import columns
 from ..reduced import Reduced
 from . import KIND
-from .spring import GearContact, GearContactSpring
+from .spring import Contact, GearContactSpring
 
 Array = NDArray[np.float64]
 
 
-def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
+def evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
     """K_N [N/m] and s_rel [m] (n, m) at the forces factor (n, 1) times loads (m) [N], ascending.
 
     values : by structured name, numbers or samples (n)
     """
-    contact = columns(GearContact, values, 1)
+    contact = columns(parameters, values, 1)
     scale = factor / contact.A_0
     touching = loads > 0.0
     rows, _ = tabulate(contact, scale * np.min(loads[touching]), scale * loads[-1])
@@ -30,7 +32,7 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
     return {"K_N": K, "s_rel": s}
 
 
-def exact(joint: GearContact, loads: Array) -> dict[str, Array]:
+def exact(joint: Contact, loads: Array) -> dict[str, Array]:
     """K_N and s_rel (m) of the exported spring at forces (m) [N]; no stiffness without force."""
     state = GearContactSpring.of(joint).approach(loads)
     return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}

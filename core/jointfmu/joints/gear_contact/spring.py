@@ -1,10 +1,12 @@
-"""Tooth contact of a gear: uniform pressure on the rough flanks (Yu 2022)."""
+"""Tooth contact of a gear: uniform pressure on the rough flanks."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...asperity.roughness import Roughness
 from ...asperity.yu2022 import Yu2022
 from ...curve import Curve, approach_curve
 from ...interface import at_pressure
@@ -15,18 +17,27 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class GearContact(Yu2022):
-    """Parameters of the gear contact: those of the interface law."""
+    """Parameters of the gear contact: those of the law of Yu 2022."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoughGearContact(Roughness):
+    """The same with the law `roughness`."""
+
+
+Contact: TypeAlias = GearContact | RoughGearContact
+"""A gear contact with any law."""
 
 
 @dataclass(frozen=True, slots=True)
 class GearContactSpring:
     """The exported contact: force in, approach out."""
 
-    joint: GearContact
+    joint: Contact
     curve: Curve
 
     @classmethod
-    def of(cls, joint: GearContact) -> "GearContactSpring":
+    def of(cls, joint: Contact) -> "GearContactSpring":
         """Tabulate a contact."""
         return cls(joint, approach_curve(joint))
 
@@ -50,7 +61,7 @@ class GearContactSpring:
 
 
 def contact(
-    joint: GearContact, f: Number, approach: Number, stiffness: Number, area: Number, elastic: Number
+    joint: Contact, f: Number, approach: Number, stiffness: Number, area: Number, elastic: Number
 ) -> dict[str, Number]:
     """What the contact exports at a load [N].
 

@@ -9,7 +9,7 @@ MODELS = (
     Model(
         name="GearContact",
         joint="gear_contact",
-        doc="Tooth contact of a gear with elliptical asperities: force in, motion out (Yu 2022)",
+        doc="Tooth contact of a gear: force in, motion out",
         parameters=GearContact,
         spring=GearContactSpring.of,
         inputs=(Variable("f", "N", "normal load of the tooth contact", 1e3),),

@@ -8,17 +8,17 @@ import numpy as np
 from ...curve import Curve, approach_curve
 from ...export.exports import Exports, LoadCurve
 from . import KIND
-from .spring import GearMesh, pair_curve
+from .spring import Mesh, pair_curve
 
 if TYPE_CHECKING:
     from ...export.tables import Table
 
 
-def _contact(mesh: GearMesh) -> tuple[Curve, Sequence[str]]:
+def _contact(mesh: Mesh) -> tuple[Curve, Sequence[str]]:
     return approach_curve(mesh), ("the flanks alone; what the teeth give way comes on top",)
 
 
-def _load(mesh: GearMesh, _: None, error: float) -> "Table":
+def _load(mesh: Mesh, _: None, error: float) -> "Table":
     from ...export.tables import Table, law_table
 
     pair, closing = pair_curve(mesh)

@@ -15,7 +15,7 @@ from ...batch.samples import columns
 from ..reduced import Reduced
 from . import KIND
 from .pairs import pairs
-from .spring import GearMesh, GearMeshSpring, in_series, phase
+from .spring import GearMeshSpring, Mesh, in_series, phase
 
 Array = NDArray[np.float64]
 
@@ -23,12 +23,14 @@ RAMP_END = 0.05
 """Default end of the ramp: part of the angle at which the teeth alone carry the end of the table [1]."""
 
 
-def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str, Array]:
+def evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
     """K [N/m] and f [N] (n, m) at the angles factor (n, 1) times loads (m) [rad], ascending.
 
     values : by structured name, numbers or samples (n)
     """
-    mesh = columns(GearMesh, values, 1)
+    mesh = columns(parameters, values, 1)
     angle = factor * loads
     count, _ = pairs(mesh.contact_ratio, mesh.engagement, phase(mesh, (angle, 0.0, held(mesh), 0.0)))
     turned = loads > 0.0
@@ -40,7 +42,7 @@ def evaluate(values: Mapping[str, Any], loads: Array, factor: Array) -> dict[str
     return {"K": count * K, "f": count * f}
 
 
-def _pair(mesh: GearMesh, most: Array) -> Rows:
+def _pair(mesh: Mesh, most: Array) -> Rows:
     """Logs of K and f of one pair over the log of its deflection, up to a pressure (n, 1) [Pa]."""
     rows, _ = tabulate(mesh, np.zeros_like(most), most)
     p, (k, growth), approach = rows.pressure, rows.values["k"], rows.values["s"][0]
@@ -50,19 +52,19 @@ def _pair(mesh: GearMesh, most: Array) -> Rows:
     return Rows(np.log(s), {"K": (np.log(K), slope * s / K), "f": (np.log(f), K * s / f)})
 
 
-def held(mesh: GearMesh) -> Any:
+def held(mesh: Mesh) -> Any:
     """Angle of wheel 2 [rad] at which the driving flanks touch at phi1 = 0."""
     return 0.5 * mesh.backlash / mesh.r_b2
 
 
-def table_end(mesh: GearMesh) -> Any:
+def table_end(mesh: Mesh) -> Any:
     """Angle [rad] at which the teeth alone carry the end of the table, the hardness on A_0; the flanks'
     approach comes on top.
     """
     return mesh.hardness * mesh.A_0 / (mesh.K_tooth * mesh.r_b1)
 
 
-def exact(joint: GearMesh, loads: Array) -> dict[str, Array]:
+def exact(joint: Mesh, loads: Array) -> dict[str, Array]:
     """K and f (m) of the exported spring at angles (m) [rad]."""
     state = GearMeshSpring.of(joint).motion(loads, 0.0, held(joint), 0.0)
     return {name: state[name] for name in REDUCED.units}

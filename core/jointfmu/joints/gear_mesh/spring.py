@@ -1,12 +1,14 @@
-"""Gear mesh: rough flanks (Yu 2022) and bending teeth in series, for every tooth pair in contact."""
+"""Gear mesh: rough flanks and bending teeth in series, for every tooth pair in contact."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...asperity.roughness import Roughness
 from ...asperity.yu2022 import Yu2022
 from ...curve import Curve, approach_curve, assemble, refined
 from ...quantity import Number, quantity
@@ -19,8 +21,8 @@ CLOSING_STEPS = 96
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearMesh(Yu2022):
-    """Parameters of the gear mesh: the interface law of a tooth pair's flanks, the wheels and the teeth."""
+class Wheels:
+    """The wheels of a gear mesh and their teeth."""
 
     r_b1: float = quantity("m", "base radius of wheel 1", gt=0.0)
     r_b2: float = quantity("m", "base radius of wheel 2", gt=0.0)
@@ -37,12 +39,26 @@ class GearMesh(Yu2022):
     d: float = quantity("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
 
 
-def base_pitch(mesh: GearMesh) -> Number:
+@dataclass(frozen=True, kw_only=True)
+class GearMesh(Wheels, Yu2022):
+    """Parameters of the gear mesh; its flanks obey the law of Yu 2022."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoughGearMesh(Wheels, Roughness):
+    """The same with the law `roughness`."""
+
+
+Mesh: TypeAlias = GearMesh | RoughGearMesh
+"""A gear mesh with any law of its flanks."""
+
+
+def base_pitch(mesh: Mesh) -> Number:
     """Distance of two teeth along the line of action [m]."""
     return 2.0 * np.pi * mesh.r_b1 / mesh.teeth1
 
 
-def deflection(mesh: GearMesh, motion: Sequence[Number]) -> Number:
+def deflection(mesh: Mesh, motion: Sequence[Number]) -> Number:
     """s_rel [m] for phi1, w1, phi2, w2: beyond half the backlash, 0 inside it."""
     phi1, _, phi2, _ = motion
     along = mesh.r_b1 * phi1 + mesh.r_b2 * phi2
@@ -50,14 +66,14 @@ def deflection(mesh: GearMesh, motion: Sequence[Number]) -> Number:
     return along - np.minimum(np.maximum(along, 0.0 - half), half)
 
 
-def phase(mesh: GearMesh, motion: Sequence[Number]) -> Number:
+def phase(mesh: Mesh, motion: Sequence[Number]) -> Number:
     """Place in the mesh cycle [1] for phi1, w1, phi2, w2: mean way of both wheels over the base pitch."""
     phi1, _, phi2, _ = motion
     return 0.5 * (mesh.r_b1 * phi1 - mesh.r_b2 * phi2) / base_pitch(mesh)
 
 
 def in_series(
-    mesh: GearMesh, approach: Number, pressure: Number, stiffness: Number, bend: Number
+    mesh: Mesh, approach: Number, pressure: Number, stiffness: Number, bend: Number
 ) -> tuple[Number, Number, Number, Number]:
     """Deflection [m], load [N], stiffness [N/m] and its derivative [N/m2] of a tooth pair.
 
@@ -69,7 +85,7 @@ def in_series(
     return approach + load / mesh.K_tooth, load, contact * share, mesh.A_0 * bend * share**3
 
 
-def pair_curve(mesh: GearMesh) -> tuple[Curve, float]:
+def pair_curve(mesh: Mesh) -> tuple[Curve, float]:
     """Load [N] over deflection [m] of a tooth pair from first touch, and the deflection [m] where the
     closing of the contact ends.
 
@@ -84,7 +100,7 @@ def pair_curve(mesh: GearMesh) -> tuple[Curve, float]:
     return refined(lambda parts: _tabulate(mesh, flanks, parts), 1), float(closing)
 
 
-def _tabulate(mesh: GearMesh, flanks: Curve, parts: int) -> Curve:
+def _tabulate(mesh: Mesh, flanks: Curve, parts: int) -> Curve:
     """The table of a pair with every step in so many parts."""
     nodes = flanks.displacement
     closed = int(np.searchsorted(nodes, 0.0))
@@ -118,12 +134,12 @@ class GearMeshSpring:
     closing : [m] deflection at which the closing of the contact ends
     """
 
-    joint: GearMesh
+    joint: Mesh
     curve: Curve
     closing: float
 
     @classmethod
-    def of(cls, mesh: GearMesh) -> "GearMeshSpring":
+    def of(cls, mesh: Mesh) -> "GearMeshSpring":
         """Tabulate a mesh."""
         return cls(mesh, *pair_curve(mesh))
 
@@ -136,7 +152,7 @@ class GearMeshSpring:
 
 
 def torques(
-    mesh: GearMesh,
+    mesh: Mesh,
     motion: Sequence[Number],
     load: Number,
     stiffness: Number,

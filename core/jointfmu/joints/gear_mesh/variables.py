@@ -9,7 +9,7 @@ MODELS = (
     Model(
         name="GearMesh",
         joint="gear_mesh",
-        doc="Mesh of two gear wheels with rough flanks and backlash: motion in, torque out (Yu 2022)",
+        doc="Mesh of two gear wheels with rough flanks and backlash: motion in, torque out",
         parameters=GearMesh,
         spring=GearMeshSpring.of,
         inputs=(

@@ -1,16 +1,14 @@
-"""Harmonic drive: the contact of flexspline and flexible bearing (Hu 2023)."""
+"""Harmonic drive: the contact of flexspline and flexible bearing."""
 
-from ...asperity.hu2023 import Hu2023
 from ..kind import Kind, RoughSurface
-from .law import HarmonicDrive
+from .law import HarmonicDrive, RoughHarmonicDrive
 from .variables import MODELS
 
 KIND = Kind(
     name="harmonic_drive",
     package=__name__,
     default="cd_14_100",
-    parameters=HarmonicDrive,
-    law=Hu2023,
+    laws={"hu2023": HarmonicDrive, "roughness": RoughHarmonicDrive},
     law_of=lambda drive: drive.law,
     models=MODELS,
     surfaces=(RoughSurface("surface", areal=True),),

@@ -4,14 +4,14 @@ from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
 from . import KIND
-from .law import HarmonicDrive
+from .law import Drive
 from .spring import HarmonicDriveSpring
 
 if TYPE_CHECKING:
     from ...export.tables import Table
 
 
-def _torque(drive: HarmonicDrive, _: None, error: float) -> "Table":
+def _torque(drive: Drive, _: None, error: float) -> "Table":
     from ...export.tables import odd_table
 
     return odd_table(HarmonicDriveSpring.of(drive).curve, error)
@@ -24,7 +24,5 @@ EXPORTS = Exports(
         name="torque",
         table=_torque,
     ),
-    lacks={
-        "contact": "only with pair_scale and drive_scale does it give the drive's stiffness; export its curve"
-    },
+    lacks={"contact": "its stiffness is a sum over the nodes of a mesh, not over an area; export its curve"},
 )

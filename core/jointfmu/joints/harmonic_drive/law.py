@@ -1,37 +1,33 @@
 """Harmonic drive: its parameters, and the stiffness of flexspline and flexible bearing (Hu 2023)."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ...asperity.hu2023 import Hu2023
-from ...footprint import lobes
-from ...footprint.lobes import Lobe, Piece, lobe, lobe_pieces, two_lobes
-from ...footprint.nodes import Footprint
-from ...interface import checked_spots, largest_spot
+from ...asperity.hu2023 import Hu2023, elastic_pressure
+from ...asperity.roughness import Roughness, RoughSurfaces
 from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
 from ...surface import ArealSurface, Elastic, ElasticPlastic
 
-Array = NDArray[np.float64]
-
-_AXIS = (0.0, 0.0, 1.0)
+SETTLED = 2.0
+"""Torque over rated torque [1] at whose pressure the pair settles under any larger torque."""
+_SCANNED = 0.5e-3
+"""Length [m] that Hu 2023 scanned, section 2.3."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicDrive:
-    """Parameters of the harmonic drive; what `calibration` marks was fitted to published points."""
+class Drive(ABC):
+    """Parameters of a harmonic drive but for the law of its contact pair.
 
-    surface: ArealSurface = group("equivalent rough surface of the contact pair")
-    flexspline: ElasticPlastic = group("flexspline")
-    bearing: ElasticPlastic = group("outer ring of the flexible bearing")
+    What `calibration` marks was fitted to published points.
+    """
+
     mu: float = quantity("1", "coefficient of static friction, if traction is real_area", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
-    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
     A_0: float = quantity("m2", "nominal area of the contact pair", gt=0.0)
+    mean_over_peak: float = quantity("1", "mean contact pressure over peak pressure", gt=0.0, le=1.0)
     radius: float = quantity("m", "mean radius of the contact pair", gt=0.0)
-    cup_length: float = quantity("m", "length over which the radial deformation tapers to zero", gt=0.0)
     radial_deformation: float = quantity("m", "radial deformation w of the flexspline", gt=0.0, lt=2e-3)
     eccentricity: float = quantity(
         "m", "installation eccentricity of flexspline and bearing", ge=0.0, lt=1e-3
@@ -49,8 +45,7 @@ class HarmonicDrive:
     rated_pressure: float = quantity(
         "Pa", "peak contact pressure at rated torque, at the optimum deformation", gt=0.0, calibration=True
     )
-    torque_smoothing: float = quantity("N.m", "torque below which the lobes do not grow yet", gt=0.0)
-    mismatch_pressure: float = quantity("Pa", "pressure lost from the major to the minor axis", gt=0.0)
+    torque_smoothing: float = quantity("N.m", "torque below which the pressure does not grow yet", gt=0.0)
     optimum_deformation: float = quantity("m", "radial deformation of the largest pressure", gt=0.0)
     deformation_loss: float = quantity(
         "Pa/m2", "loss of peak pressure per square of the deformation's offset", ge=0.0, calibration=True
@@ -58,15 +53,34 @@ class HarmonicDrive:
     eccentricity_loss: float = quantity(
         "Pa/m", "loss of peak pressure per eccentricity", ge=0.0, calibration=True
     )
-    traction: str = choice(
-        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+    hysteresis_loss: float = quantity(
+        "rad", "angle between the branches at zero torque, after rated torque; 0: none", ge=0.0, default=0.0
     )
-    pair_scale: float = quantity("1", "published K_TS over the sum of Eq. 45", gt=0.0, calibration=True)
-    drive_scale: float = quantity("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0, calibration=True)
+    hysteresis_stiffness: float = quantity(
+        "N.m/rad",
+        "extra stiffness of tiny motions, before friction slips; 0: as K_WTS at zero torque or as needed",
+        ge=0.0,
+        default=0.0,
+    )
 
     def __post_init__(self) -> None:
         check(self)
         check_limits(self, self.limits())
+
+    @property
+    @abstractmethod
+    def pair_law(self) -> Hu2023 | Roughness:
+        """Interface law of the contact pair; its load is a power of its u."""
+
+    @property
+    @abstractmethod
+    def twist(self) -> Number:
+        """K_TS on the drive's scale over the tangential stiffness of the pair's law [m2]."""
+
+    @property
+    def pair_units(self) -> Number:
+        """K_TS on the drive's scale over that of the paper's figures [1]."""
+        return 1.0
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
@@ -77,24 +91,41 @@ class HarmonicDrive:
             reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
         return [
             Limit("rated_pressure", Interval.of(gt=zero), "it must exceed zero_torque_pressure"),
-            Limit(
-                "A_0",
-                Interval.of(gt=0.0, lt=2.0 * np.pi * self.radius * self.cup_length),
-                "the contact must be shorter than the cup (2 pi radius cup_length)",
-            ),
             Limit("radial_deformation", Interval.of(gt=best - reach, lt=best + reach), no_contact),
             Limit("eccentricity", Interval.of(ge=0.0, lt=reserve), no_contact),
         ]
 
     def table_limits(self) -> list[Limit]:
         """Intervals that the tabulated law needs beside."""
-        highest = peak_pressure(self, self.max_torque)[0]
-        meet = "the two lobes would meet below max_torque"
-        return [Limit("mismatch_pressure", Interval.of(gt=highest), meet)]
+        return []
 
     @property
-    def law(self) -> Hu2023:
-        """Interface law of the pair; `side1` is the body with the lower yield strength."""
+    def _deformation_loss(self) -> float:
+        return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
+
+    @property
+    def pressure_loss(self) -> float:
+        """Loss of peak pressure [Pa] by deformation off its optimum and by eccentricity."""
+        return self._deformation_loss + self.eccentricity_loss * self.eccentricity
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicDrive(Drive):
+    """Parameters of the harmonic drive with the law of Hu 2023, read as printed."""
+
+    surface: ArealSurface = group("equivalent rough surface of the contact pair")
+    flexspline: ElasticPlastic = group("flexspline")
+    bearing: ElasticPlastic = group("outer ring of the flexible bearing")
+    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    node_area: float = quantity("m2", "nominal area with one set of spots: a mesh node of Eq. 45", gt=0.0)
+    drive_scale: float = quantity("1", "K_TS in Eq. 46 over the published K_TS", gt=0.0)
+    traction: str = choice(
+        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+    )
+
+    @property
+    def pair_law(self) -> Hu2023:
+        """Law of one node's set of spots, as printed; `side1` is the body with the lower yield strength."""
         cup, ring = self.flexspline, self.bearing
         swap = ring.sigma_y < cup.sigma_y
         E, nu = where(swap, ring.E, cup.E), where(swap, ring.nu, cup.nu)
@@ -107,121 +138,127 @@ class HarmonicDrive:
             traction_ratio=self.traction_ratio,
             shear_traction=self.shear_traction,
             traction=self.traction,
-            A_0=self.A_0,
+            A_0=self.node_area,
+            reading="printed",
         )
 
     @property
-    def _deformation_loss(self) -> float:
-        return self.deformation_loss * (self.radial_deformation - self.optimum_deformation) ** 2
+    def law(self) -> Hu2023:
+        """The corrected law of the whole pair, which the drive does not use.
+
+        Its base radius is half of the scanned length: with the paper's no spot would be stiff.
+        """
+        surface = replace(self.surface, r_m=0.5 * _SCANNED)
+        return replace(self.pair_law, surface=surface, A_0=self.A_0, reading="corrected")
 
     @property
-    def pressure_loss(self) -> float:
-        """Loss of peak pressure [Pa] by deformation off its optimum and by eccentricity."""
-        return self._deformation_loss + self.eccentricity_loss * self.eccentricity
+    def twist(self) -> Number:
+        """drive_scale times the sum of Eq. 45 as printed over K_T of a node: nodes times the diameter.
+
+        The sum is in newtons; the paper reads it as N.m/rad, and so does the drive.
+        """
+        return self.drive_scale * 2.0 * self.radius * self.A_0 / self.node_area
+
+    @property
+    def pair_units(self) -> Number:
+        """drive_scale [1]."""
+        return self.drive_scale
+
+    def table_limits(self) -> list[Limit]:
+        """Every spot stays elastic, as the reading has it."""
+        highest = peak_pressure(self, self.max_torque)[0]
+        law = self.pair_law
+        least = highest * law.sigma_y / elastic_pressure(law)
+        why = "spots of the contact pair would yield below max_torque"
+        return [Limit(f"{side}.sigma_y", Interval.of(gt=least), why) for side in ("flexspline", "bearing")]
 
 
-def peak_pressure(drive: HarmonicDrive, torque: Number) -> tuple[Number, Number]:
+@dataclass(frozen=True, kw_only=True)
+class RoughHarmonicDrive(RoughSurfaces, Drive):
+    """Parameters of the harmonic drive with the law `roughness`: no scale, energy of a unit twist."""
+
+    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
+    flexspline: Elastic = group("flexspline")
+    bearing: Elastic = group("outer ring of the flexible bearing")
+
+    @property
+    def pair_law(self) -> Roughness:
+        """Law of the whole pair under its mean pressure."""
+        return Roughness(
+            h=self.h,
+            gamma=self.gamma,
+            longest_wave=self.longest_wave,
+            hurst=self.hurst,
+            slope=self.slope,
+            side1=self.flexspline,
+            side2=self.bearing,
+            H=self.H,
+            mu=self.mu,
+            traction_ratio=self.traction_ratio,
+            A_0=self.A_0,
+        )
+
+    law = pair_law
+
+    @property
+    def twist(self) -> Number:
+        """Square of the radius [m2]: the energy of a unit twist, of which the normal part is below 1e-3."""
+        return self.radius**2
+
+
+def peak_pressure(drive: Drive, torque: Number) -> tuple[Number, Number]:
     """Peak contact pressure (...) [Pa] at the major axis and opening, and its torque derivative [Pa/(N.m)].
 
-    `sqrt(p_0^2 + (p_r^2 - p_0^2) g(T)/g(T_r)) - loss` with `g(T) = sqrt(T^2 + T_s^2) - T_s`: the peak
+    `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`: the peak
     pressure of a line contact grows with the square root of its load, here a part without torque and
-    a part in proportion to |T|, even and smooth through T = 0.
+    a part in proportion to |T|, even and smooth through T = 0. `t(T) = T/(1 + (T/T_m)^4)^(1/4)` tends to
+    T_m, SETTLED times the rated torque, where the stiffness of catalogue drives has become constant: an
+    extrapolation beyond rated torque.
     """
-    T, smoothing = torque, drive.torque_smoothing
+    smoothing, most = drive.torque_smoothing, SETTLED * drive.rated_torque
 
-    def growth(x: Number) -> Number:
-        return x * x / (np.hypot(x, smoothing) + smoothing)
+    def settled(T: Number) -> tuple[Number, Number]:
+        """t^2 and t dt/dT."""
+        x = np.minimum(np.maximum(T / most, -1e3), 1e3)
+        bend = 1.0 + x**4
+        root = np.sqrt(bend)
+        return (most * x) ** 2 / root, most * x / (bend * root)
+
+    def distance(square: Number) -> Number:
+        return np.maximum(np.sqrt(square + smoothing**2), smoothing)  # where its square is no number
+
+    def growth(square: Number) -> Number:
+        return square / (distance(square) + smoothing)
 
     zero, rated = drive.zero_torque_pressure, drive.rated_pressure
-    factor = (rated**2 - zero**2) / growth(drive.rated_torque)
-    free = np.sqrt(zero**2 + factor * growth(T))
-    return free - drive.pressure_loss, 0.5 * factor * T / np.hypot(T, smoothing) / free
+    factor = (rated**2 - zero**2) / growth(settled(drive.rated_torque)[0])
+    square, turn = settled(torque)
+    free = np.sqrt(zero**2 + factor * growth(square))
+    return free - drive.pressure_loss, 0.5 * factor * turn / distance(square) / free
 
 
-def footprint(drive: HarmonicDrive, torque: ArrayLike) -> Footprint:
-    """Nodes of one quarter of the contact pair at torques (...) [N.m]; shares stand for the whole."""
-    law = drive.law
-    spots = checked_spots(law)
-    breaks = spots.total("load", np.array(spots.breaks)) / law.A_0
-    return two_lobes(peak_pressure(drive, torque)[0], breaks, **_lobe_sizes(drive))
+def pair_log_area(drive: Drive, torque: Number) -> Number:
+    """u (...) [1] of the pair's law at its mean pressure under a torque: the load is a power of exp(u)."""
+    law = drive.pair_law
+    start, power = law.spots().log_total("load", 0.0)
+    return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
-def pieces(drive: HarmonicDrive, peak: Array, breaks: Array) -> Iterator[Piece]:
-    """The same nodes at peak pressures (...) [Pa], between breaks of the law [Pa], see `lobe_pieces`."""
-    return lobe_pieces(peak, breaks, **_lobe_sizes(drive))
+def pair_stiffness(drive: Drive, torque: Number) -> tuple[Number, Number]:
+    """K_TS (...) [N.m/rad] of the contact pair on the drive's scale, and dK_TS/dT [1/rad].
 
-
-def _lobe_sizes(drive: HarmonicDrive) -> dict[str, float]:
-    return {
-        "mismatch": drive.mismatch_pressure,
-        "radius": drive.radius,
-        "deformation": drive.radial_deformation,
-        "length": contact_length(drive),
-        "cup": drive.cup_length,
-    }
-
-
-def pair_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
-    """K_TS (...) [N.m/rad] of the contact pair on the paper's scale (Eq. 45), and dK_TS/dT [1/rad].
-
-    The derivative is exact: at a fixed place the pressure grows with the peak in proportion to the
-    taper, and at the lobe's edge, which moves, the stiffness is zero.
+    Every point of the pair has a tangential stiffness in proportion to its pressure, or nearly so; the
+    mean pressure stands for all of them.
     """
-    nodes, law = footprint(drive, torque), drive.law
-    spots, u = law.spots(), largest_spot(law, nodes.pressure)
-    per_pressure = law.A_0 / spots.slope("load", u)
-    value = nodes.rotation(spots.total("normal", u), spots.total("tangential", u), _AXIS)
-    taper = 1.0 - nodes.position[..., 2] / drive.cup_length
-    growth = nodes.rotation(
-        spots.slope("normal", u) * per_pressure * taper,
-        spots.slope("tangential", u) * per_pressure * taper,
-        _AXIS,
-    )
-    return drive.pair_scale * value, drive.pair_scale * growth * peak_pressure(drive, torque)[1]
+    peak, rise = peak_pressure(drive, torque)
+    spots, u = drive.pair_law.spots(), pair_log_area(drive, torque)
+    power = spots.log_total("load", 0.0)[1]
+    slope = spots.slope("tangential", u) / (power * peak)
+    return drive.twist * spots.total("tangential", u), drive.twist * slope * rise
 
 
-def drive_stiffness(drive: HarmonicDrive, torque: ArrayLike) -> tuple[Array, Array]:
+def drive_stiffness(drive: Drive, torque: Number) -> tuple[Number, Number]:
     """K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
-    total, growth = in_series(drive, *pair_stiffness(drive, np.abs(torque)))
-    return total, growth * np.sign(torque)
-
-
-def in_series(drive: HarmonicDrive, pair: Number, growth: Number) -> tuple[Number, Number]:
-    """K_WTS [N.m/rad] by Eq. 46 and its derivative, from K_TS on the paper's scale and its derivative."""
-    contact = drive.drive_scale * pair
-    total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / contact)
-    return total, (total / contact) ** 2 * drive.drive_scale * growth
-
-
-def lobe_point(drive: HarmonicDrive, sine_t: Number, cosine_t: Number, z: Number, axis: Number) -> Lobe:
-    """The point of the contact pair at a height [m] and an angle, see `lobe`."""
-    return lobe(
-        sine_t,
-        cosine_t,
-        z,
-        axis,
-        mismatch=drive.mismatch_pressure,
-        radius=drive.radius,
-        deformation=drive.radial_deformation,
-        cup=drive.cup_length,
-    )
-
-
-def contact_length(drive: HarmonicDrive) -> Number:
-    """Length [m] of the contact along the drive's axis."""
-    return drive.A_0 / (2.0 * np.pi * drive.radius)
-
-
-def local(drive: HarmonicDrive, peak: Number, z: Number) -> Number:
-    """Pressure [Pa] on the major axis at a height [m]."""
-    return peak * (1.0 - z / drive.cup_length)
-
-
-def height_at(drive: HarmonicDrive, peak: Number, pressure: Number) -> Number:
-    """Height [m] at which the major axis has a pressure [Pa], see `lobes.height_at`."""
-    return lobes.height_at(peak, pressure, contact_length(drive), drive.cup_length)
-
-
-def angle_at(drive: HarmonicDrive, axis: Number, pressure: Number) -> Number:
-    """Where a lobe with a pressure [Pa] on its axis has another pressure, see `lobes.angle_at`."""
-    return lobes.angle_at(axis, pressure, drive.mismatch_pressure)
+    pair, growth = pair_stiffness(drive, torque)
+    total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
+    return total, (total / pair) ** 2 * growth

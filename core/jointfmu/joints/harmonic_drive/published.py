@@ -18,7 +18,7 @@ def K_TS(
     """K_TS [N.m/rad] on the paper's scale at a torque [N.m], radial deformation and eccentricity [m]."""
     w = drive.radial_deformation if deformation is None else deformation
     there = replace(drive, radial_deformation=w, eccentricity=eccentricity)
-    return float(pair_stiffness(there, torque)[0])
+    return float(pair_stiffness(there, torque)[0] / drive.drive_scale)
 
 
 def K_TS_least(drive: HarmonicDrive, torque: float, lower: float, upper: float) -> float:
@@ -90,26 +90,22 @@ PUBLISHED = Published(
     calibration=(
         Fit(
             {
-                "zero_torque_pressure": 45e6,
+                "zero_torque_pressure": 30e6,
                 "rated_pressure": 101e6,
-                "pair_scale": 1.5e-4,
-                "deformation_loss": 2e16,
+                "deformation_loss": 3e16,
                 "radial_deformation": 0.196e-3,
-                "eccentricity_loss": 4e11,
+                "eccentricity_loss": 5e11,
+                "K_FTS0": 2e4,
             },
             (
-                "K_TS.max.1",
+                "K_WTS.theory.0.5",
                 "K_TS.max.5",
-                "p_max.5",
-                "K_TS.min.1",
+                "K_TS.min.5",
                 "K_TS.nominal.5",
-                "K_TS.eccentricity.3",
+                "K_TS.eccentricity.5",
+                "K_WTS.measured.5",
             ),
-        ),
-        Fit(
-            {"drive_scale": 4.0, "K_FTS0": 2e4},
-            ("K_WTS.theory.0.5", "K_WTS.measured.5"),
         ),
     ),
 )
-"""{quantity of a reference file: function}, and the fits."""
+"""{quantity of a reference file: function}, and the fit."""

@@ -5,11 +5,12 @@ from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
 _CONTACT = (
-    Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi at the present torque", 5e3),
+    Variable("K_WTS", "N.m/rad", "tangent stiffness dT/dphi of the midline at the present wind-up", 5e3),
     Variable("K_TS", "N.m/rad", "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS", 5e3),
     Variable("K_FTS", "N.m/rad", "its part of circular spline and flexspline", 2e4),
-    Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale: the scale of Hu 2023, Fig. 11", 1e3),
+    Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11", 1e3),
     Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
+    Variable("E_loss", "J", "work turned into heat by hysteresis since initialization", 1e-3),
 )
 
 _MOTION = ("phi1", "phi2")
@@ -20,7 +21,7 @@ MODELS = (
     Model(
         name="HarmonicDriveSpring",
         joint="harmonic_drive",
-        doc="Torsional spring and damper of a harmonic drive: motion in, torque out (Hu 2023)",
+        doc="Torsional spring and damper of a harmonic drive: motion in, torque out",
         parameters=HarmonicDrive,
         spring=HarmonicDriveSpring.of,
         inputs=(
@@ -33,10 +34,14 @@ MODELS = (
             Variable("tau1", "N.m", "torque of the element on flange 1, tau/ratio", 0.1),
             Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
             Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio", 1e-3),
-            Variable("tau", "N.m", "T(phi_rel) + d der(phi_rel)", 5.0),
+            Variable(
+                "tau", "N.m", "T(phi_rel) + T_h + d der(phi_rel), T_h the friction of the hysteresis", 5.0
+            ),
             *_CONTACT,
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        rest=lambda s: s.hysteresis.rest(),
+        evolve=lambda s, v, memory: s.driven((v["phi1"], v["w1"], v["phi2"], v["w2"]), memory),
         outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
         dependencies={
@@ -46,6 +51,7 @@ MODELS = (
             "K_FTS": (),
             "K_TS_pair": _MOTION,
             "p_max": _MOTION,
+            "E_loss": _MOTION,
         },
         linear={
             "phi_rel": {"phi1": "parameters", "phi2": "constant"},
@@ -58,12 +64,14 @@ MODELS = (
     Model(
         name="HarmonicDriveCompliance",
         joint="harmonic_drive",
-        doc="Wind-up of a harmonic drive with the wave generator locked: torque in, motion out (Hu 2023)",
+        doc="Wind-up of a harmonic drive with the wave generator locked: torque in, motion out",
         parameters=HarmonicDrive,
         spring=HarmonicDriveSpring.of,
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
-        outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau)", 1e-3), *_CONTACT),
+        outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3), *_CONTACT),
         evaluate=lambda s, v: s.windup(v["tau"]),
+        rest=lambda s: s.hysteresis.rest(),
+        evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
         ramp=Ramp("tau", 5.0, 0.01),
         dependencies={"K_FTS": ()},

@@ -7,14 +7,14 @@ from jointfmu.parameters import ParameterFile
 
 from ....modelica.records import Component, Record, WorkingPoint, numbers
 from ....modelica.text import identifier, matrix
-from .tight import DAMPING_TOLERANCE, STRONGEST, tightened
+from .tight import ABOVE, BELOW, DAMPING_TOLERANCE, STRONGEST, tightened
 
 TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
 """Preload [N] per bolt and moment [N.m]: Zhao 2018, Table 3."""
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
-    spring = BoltedJointSpring.of(file.values)
+    spring = BoltedJointSpring.of_nodes(file.values)
     return [_record(file.name, spring, *point) for point in points]
 
 
@@ -25,6 +25,12 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
         "preload": preload,
         "moment": moment,
         "mass": spring.joint.mass,
+        "bolts": float(spring.joint.n_bolts * spring.joint.bolt_stiffness),
+        "plastic_damping": spring.joint.plastic_damping,
+        "memory": spring.joint.memory,
+        "damping": spring.joint.damping,
+        "mu": spring.joint.mu,
+        "tight": tight.force,
         "shear": tight.shear,
         "eta_t": float(rest["eta_t"]),
     }
@@ -33,7 +39,7 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
         name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.table,
-        values=numbers(values) | {"damping": matrix(tight.damping)},
+        values=numbers(values) | {"heights": matrix(tight.heights), "eta_n": matrix(tight.damping)},
         more="; where the force is below the one at tightening, relative to that",
     )
 
@@ -46,5 +52,6 @@ COMPONENT = Component(
     texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{STRONGEST:g}",
+        "sliders": f"{2 * (BELOW + len(ABOVE))}",
     },
 )

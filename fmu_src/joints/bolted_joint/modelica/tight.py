@@ -14,7 +14,12 @@ DAMPING_TOLERANCE = 1e-3
 """Largest relative error of a dissipation factor [1], which is interpolated linearly."""
 STRONGEST = 10.0
 """End of the table: the total force over the one at tightening [1]."""
-_FINE, _COARSE = 800, 120
+BELOW, EARLIEST = 12, 2e-3
+"""Pairs of sliders that touch at tightening, and the shift at which the first of them slip over that of gross
+slip [1]; the shifts at which the others do are in geometric sequence."""
+ABOVE = (2.0, 5.0)
+"""Forces over that at tightening [1] at which further pairs are complete, when side 2 is pressed on."""
+_FINE, _COARSE = 800, 200
 """Nodes of the total on either side of the tightened state: of its force, before thinning, and of its
 damping."""
 
@@ -25,19 +30,23 @@ class Tightened(NamedTuple):
     table   : force above the tightening force [N] over the approach from the tightened state [m]
     damping : rows (n, 2) of approach [m] and dissipation factor eta_n [1]
     shear   : K_T/K_N [1]
+    force   : of the interface at tightening [N]
+    heights : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m], between which the springs of
+              friction are taken together
     """
 
     table: Table
     damping: Array
     shear: float
+    force: float
+    heights: Array
 
 
 def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tightened:
     """Sum up a joint at a preload [N] per bolt and a moment [N.m].
 
-    With one curve g(c) of the total force over the approach c, the joint's potential is
-    G(c) + (rho/2) g'(c) (s_x^2 + s_y^2) at c = -s_z, less the work of the preload: force and stiffness of all
-    three axes follow from g and its derivatives.
+    With one curve g(c) of the total force over the approach c = -s_z, friction follows as for one patch: the
+    patches of a rigid side that does not turn share the shift, and their curves add.
     """
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
@@ -65,7 +74,11 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     table = thinned(whole, reference=zero, keep=(zero,), fits=linear)
     damping = np.column_stack([table.rows[:, 0], np.interp(table.rows[:, 0], c, eta)])
     table.rows[:, 1] -= load[zero]
-    return Tightened(table, damping, float(shear_ratio(spring.joint)))
+    levels = [np.interp(factor * at_rest, load, c) for factor in ABOVE]
+    heights = np.concatenate([[first], first * np.geomspace(1.0, EARLIEST, BELOW)[1:], [0.0], levels])
+    force, normal, _ = total(heights)
+    rows = np.column_stack([heights, force, normal])
+    return Tightened(table, damping, float(shear_ratio(spring.joint)), at_rest, rows)
 
 
 def _dissipation(spring: BoltedJointSpring, approach: Array) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh
 from jointfmu.parameters import ParameterFile
 
 from ....modelica.records import Component, Record, WorkingPoint, numbers
@@ -21,7 +21,7 @@ def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record
     ]
 
 
-def _wheels(mesh: GearMesh) -> dict[str, float]:
+def _wheels(mesh: Mesh) -> dict[str, float]:
     names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d")
     return {name: getattr(mesh, name) for name in names}
 

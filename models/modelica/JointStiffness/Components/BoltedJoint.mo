@@ -3,6 +3,9 @@ model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
   parameter JointStiffness.Data.BoltedJoint data = JointStiffness.Data.Box_specimen_of_Zhao_2018_9_kN() "The tightened joint"
     annotation (choicesAllMatching=true);
   parameter Modelica.Units.SI.Mass mass(min=0) = data.mass "mass of the structure, for the viscous equivalent";
+  parameter Boolean memory = data.memory "friction with partial slip and memory; without it an elastic joint";
+  parameter Boolean damping = data.damping "the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";
+  parameter Boolean plastic_damping = data.plastic_damping "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
   parameter StateSelect stateSelect=StateSelect.default "Priority to use s_rel and v_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
   Modelica.Mechanics.Translational.Interfaces.Flange_b flange_x "Side 2 along x, along the rows of bolts"
@@ -15,26 +18,86 @@ model BoltedJoint "Bolted joint at a fixed preload: three axes, side 1 fixed"
     "Displacement x, y, z of side 2 from the tightened state";
   Modelica.Units.SI.Velocity v_rel[3](each start=0, each nominal=1e-3, each stateSelect=stateSelect) "Its rate";
   Modelica.Units.SI.Force f[3](each nominal=1e4) "Force x, y, z on side 2, restoring";
-  Modelica.Units.SI.TranslationalSpringConstant K_n(nominal=1e10) "Normal stiffness without shear";
-  Modelica.Units.SI.TranslationalSpringConstant K_t(nominal=1e10) "tangential stiffness -df_x/ds_rel_x";
-  Modelica.Units.SI.TranslationalDampingConstant C_n(nominal=1e4) "viscous-equivalent damping along the normal";
+  Modelica.Units.SI.TranslationalSpringConstant K_n(nominal=1e10) "Normal stiffness of the interface without shear";
+  Modelica.Units.SI.TranslationalSpringConstant K_t(nominal=1e10) "Tangential stiffness while nothing slips";
+  Modelica.Units.SI.TranslationalDampingConstant C_n(nominal=1e4) "viscous-equivalent damping along the normal, zero without plastic_damping";
   Modelica.Units.SI.TranslationalDampingConstant C_t(nominal=1e4) "Viscous-equivalent damping along x and y";
-  Real eta_n "normal dissipation factor";
+  Real eta_n "plastic over elastic work of first loading; it damps with plastic_damping only";
+  Modelica.Units.SI.Power lossPower "Power dissipated by friction and dashpots";
+protected
+  parameter Integer n=size(data.heights, 1) - 1 "Pairs of sliders";
+  parameter Real h[n + 1]=data.heights[:, 1] "Approach at which the springs of a pair begin to touch [m]";
+  parameter Real g[n + 1]=data.heights[:, 2] "Normal force there [N]";
+  parameter Real k[n + 1]=data.heights[:, 3] "Normal stiffness there [N/m]";
+  constant Real layer=1e-3 "Width over friction of the layer beyond the circle in which a slider ceases to stick";
+  constant Real spread=0.288675134594813 "1/sqrt(12)";
+  Real c "Approach from the tightened state [m]";
+  Real v_c "Its rate [m/s]";
+  Real bend "Derivative of the normal stiffness [N/m2]";
+  Real G "Normal force of the interface [N]";
+  Real S[n] "Normal stiffness of the springs of a pair [N/m]";
+  Real grow[n] "Its derivative in the approach [N/m2]";
+  Real N[n] "Their normal force [N]";
+  Real apart[n] "Half the difference of what the two sliders of a pair carry [N]";
+  Real widen[n] "Its derivative in the approach [N/m]";
+  Real K[2*n] "Stiffness of the sliders [N/m]";
+  Real K_rate[2*n] "Its rate [N/m/s]";
+  Real Q[2*n] "Their friction [N]";
+  Real Q_rate[2*n] "Its rate [N/s]";
+  Real q[2, 2*n](each start=0, each fixed=true, each nominal=100) "Their forces along x and y [N]";
+  Real trial[2, 2*n] "Rates of their forces while they stick [N/s]";
+  Real size_q[2*n] "Size of their forces [N]";
+  Real slip[2*n] "What friction takes from the rate of that size [N/s]";
+  Real held[2*n] "Part of their forces inside the friction circle";
+  Real heat[2*n] "Power that they dissipate [W]";
 equation
+  c = -s_rel[3];
+  v_c = -v_rel[3];
+  bend = JointStiffness.Functions.bend(c, data.table);
+  G = data.tight + JointStiffness.Functions.load(c, data.table);
+  for i in 1:n loop
+    S[i] = noEvent(if c > h[i] then max(min(K_n, k[i + 1]) - k[i], 0) else 0);
+    grow[i] = noEvent(if c > h[i] and c < h[i + 1] then bend else 0);
+    N[i] = noEvent(if c > h[i] then max(min(G, g[i + 1]) - g[i] - k[i]*(min(c, h[i + 1]) - h[i]) + S[i]*max(c - h[i + 1], 0), 0) else 0);
+    apart[i] = noEvent(min(S[i]*spread*(min(max(c, h[i]), h[i + 1]) - h[i]), N[i]));
+    widen[i] = noEvent(if c > h[i] and c < h[i + 1] then min(spread*(S[i] + grow[i]*(c - h[i])), S[i]) else 0);
+    K[i] = 0.5*data.shear*S[i];
+    K[n + i] = K[i];
+    K_rate[i] = 0.5*data.shear*grow[i]*v_c;
+    K_rate[n + i] = K_rate[i];
+    Q[i] = 0.5*data.mu*(N[i] - apart[i]);
+    Q[n + i] = 0.5*data.mu*(N[i] + apart[i]);
+    Q_rate[i] = 0.5*data.mu*(S[i] - widen[i])*v_c;
+    Q_rate[n + i] = 0.5*data.mu*(S[i] + widen[i])*v_c;
+  end for;
+  for j in 1:2*n loop
+    // springs that lift off take their force along; beyond the friction circle the force only turns
+    for a in 1:2 loop
+      trial[a, j] = K[j]*v_rel[a] + noEvent(if K_rate[j] < 0 then q[a, j]*K_rate[j]/max(K[j], 1) else 0);
+      der(q[a, j]) = if memory then trial[a, j] - slip[j]*q[a, j]/max(size_q[j], Modelica.Constants.small) else 0;
+    end for;
+    size_q[j] = noEvent(sqrt(max(q[1, j]^2 + q[2, j]^2, 0)));
+    slip[j] = noEvent(if size_q[j] > Q[j] then min((size_q[j] - Q[j])/(layer*Q[j] + 1e-9), 1)*max((q[1, j]*trial[1, j] + q[2, j]*trial[2, j])/max(size_q[j], Modelica.Constants.small) - Q_rate[j], 0) else 0);
+    held[j] = noEvent(if size_q[j] > Q[j] then Q[j]/size_q[j] else 1);
+    heat[j] = (Q[j]*slip[j] + 0.5*size_q[j]^2*abs(K_rate[j])/max(K[j], 1))/max(K[j], 1);
+  end for;
+  lossPower = sum(heat) + C_t*(v_rel[1]^2 + v_rel[2]^2) + C_n*v_rel[3]^2;
   s_rel[1] = flange_x.s;
   s_rel[2] = flange_y.s;
   s_rel[3] = flange_z.s;
   v_rel = der(s_rel);
   K_n = JointStiffness.Functions.stiffness(-s_rel[3], data.table);
   K_t = data.shear*K_n;
-  eta_n = JointStiffness.Functions.linear(-s_rel[3], data.damping);
+  eta_n = JointStiffness.Functions.linear(-s_rel[3], data.eta_n);
   // repeats mindlin.viscous_equivalent and spring.motion of the package; tests hold both together
-  C_n = eta_n*sqrt(mass*max(K_n, 0));
-  C_t = data.eta_t*sqrt(mass*max(K_t, 0));
-  f[1] = -K_t*s_rel[1] - C_t*v_rel[1];
-  f[2] = -K_t*s_rel[2] - C_t*v_rel[2];
+  C_n = if damping and plastic_damping then eta_n*sqrt(mass*max(K_n, 0)) else 0;
+  C_t = if damping then data.eta_t*sqrt(mass*max(K_t, 0)) else 0;
+  for a in 1:2 loop
+    f[a] = -(if memory then q[a, :]*held else K_t*s_rel[a]) - C_t*v_rel[a];
+  end for;
   f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
-    + 0.5*data.shear*JointStiffness.Functions.bend(-s_rel[3], data.table)*(s_rel[1]^2 + s_rel[2]^2) - C_n*v_rel[3];
+    + (if memory then 0 else 0.5*data.shear*bend*(s_rel[1]^2 + s_rel[2]^2))
+    - data.bolts*s_rel[3] - C_n*v_rel[3];
   flange_x.f = -f[1];
   flange_y.f = -f[2];
   flange_z.f = -f[3];
@@ -49,27 +112,29 @@ equation
       Rectangle(extent={{-28,-44},{28,-68}}, lineColor={43,58,74}, fillColor={31,95,168}, fillPattern=FillPattern.Solid),
       Text(extent={{-150,120},{150,80}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
-<p>The interface of a bolted joint: a frame pressed together by bolts, whose pressure is high around each bolt and low between them. Bolts count as soft springs: their own stiffness is not part of the joint.</p>
+<p>The interface of a bolted joint: a contact pressed together by bolts, whose pressure is high around each bolt and low between them. The bolts act as springs of stiffness <code>bolt_stiffness</code> beside the interface; with the default 0 they only press.</p>
 <h4>Flanges</h4>
 <p>The three flanges are side 2 along x, y and z, from the tightened state; z is the normal, positive apart. Side 1 is fixed. Hold a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
 <h4>Law</h4>
-<p>All nodes i of the frame, with shares A<sub>i</sub> of the nominal area, follow one curve p(δ) of pressure over approach, from their own pressure at tightening. Force and stiffness derive from one potential:</p>
-<p>U(s) = Σ A<sub>i</sub> [ V(δ<sub>i</sub> − s<sub>z</sub>) + ½ ρ p′(δ<sub>i</sub> − s<sub>z</sub>) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>) ] + P<sub>0</sub> s<sub>z</sub>, &emsp; V′ = p, &emsp; ρ = K<sub>T</sub>/K<sub>N</sub></p>
+<p>All nodes i of the contact, with shares A<sub>i</sub> of the nominal area, follow one curve p(δ) of pressure over approach, from their own pressure at tightening. Force and stiffness derive from one potential:</p>
+<p>U(s) = Σ A<sub>i</sub> [ V(δ<sub>i</sub> − s<sub>z</sub>) + ½ ρ p′(δ<sub>i</sub> − s<sub>z</sub>) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>) ] + P<sub>0</sub> s<sub>z</sub> + ½ n k s<sub>z</sub><sup>2</sup>, &emsp; V′ = p, &emsp; ρ = K<sub>T</sub>/K<sub>N</sub></p>
 <p>f = −∂U/∂s − C v, &emsp; K<sub>zz</sub> = ∂<sup>2</sup>U/∂s<sub>z</sub><sup>2</sup>, &emsp; K<sub>xx</sub> = K<sub>yy</sub> = ∂<sup>2</sup>U/∂s<sub>x</sub><sup>2</sup></p>
-<p>so a closed path returns its energy, the tangential stiffness follows the normal approach, and shear reacts on the normal force. <code>K_rx</code>, <code>K_ry</code> and <code>K_rz</code> project the stiffness of the nodes on rotations about their centroid. The pressure at tightening spreads each bolt force by 1/(1 + (r/decay_length)<sup>2</sup>)<sup>decay_exponent</sup>; the moment M changes the bolt forces of its two rows by ±M/(L<sub>a</sub> N<sub>b</sub>) (Zhao 2018, section 3). The curve comes from sums over contact spots of truncated area a′ up to the largest one, a′<sub>L</sub>, whose load is p A<sub>0</sub>:</p>
+<p>so a closed path returns its energy, the tangential stiffness follows the normal approach, and shear reacts on the normal force. <code>K_rx</code>, <code>K_ry</code> and <code>K_rz</code> project the stiffness of the nodes on rotations about their centroid; the n bolts of stiffness k = <code>bolt_stiffness</code> add n k to <code>K_zz</code> and their part to <code>K_rx</code> and <code>K_ry</code>, and carry the joint once it is open. The pressure at tightening is that of the bolts. A frame spreads each bolt force by 1/(1 + (r/decay_length)<sup>2</sup>)<sup>decay_exponent</sup>; a plate by Fernlund's polynomial, (R − r)<sup>3</sup> (3r + R − 4a) from the hole's edge a to R, over the disc that the deformation cone of VDI 2230 gives; a field brings its own pressures. The moment M changes the bolt forces of its two rows by ±M/(L<sub>a</sub> N<sub>b</sub>) (Zhao 2018, section 3).</p>
+<p>The curve comes from sums over contact spots of truncated area a′ up to the largest one, a′<sub>L</sub>, whose load is p A<sub>0</sub>:</p>
 <p>n(a′) = ½ D ψ<sup>1−D/2</sup> a′<sub>L</sub><sup>D/2</sup> a′<sup>−(D+2)/2</sup> (Zhao 2018, Eq. 2)</p>
 <p>F = ∫ f n da′, &emsp; f = H a′ below a′<sub>c</sub>, &emsp; f = (4/3) E* R<sup>1/2</sup> δ<sup>3/2</sup> above (Eqs. 4-10, 4 and 9 corrected)</p>
 <p>K<sub>N</sub> = ∫ k<sub>n</sub> n da′, &emsp; K<sub>T</sub> = ∫ 8 G′ r (1 − x)<sup>1/3</sup> n da′, &emsp; dp/dδ = K<sub>N</sub>/A<sub>0</sub> (Eqs. 14, 22)</p>
-<p>C<sub>n</sub> = η<sub>n</sub> (m K<sub>N</sub>)<sup>1/2</sup>, &emsp; η<sub>n</sub> = Σ W<sub>plastic</sub> / Σ W<sub>elastic</sub> (Eqs. 16-20, corrected)</p>
+<p>C<sub>n</sub> = η<sub>n</sub> (m K<sub>N</sub>)<sup>1/2</sup> if plastic_damping, else 0, &emsp; η<sub>n</sub> = Σ W<sub>plastic</sub> / Σ W<sub>elastic</sub> (Eqs. 16-20, corrected)</p>
 <p>C<sub>t</sub> = η<sub>t</sub> (m K<sub>T</sub>)<sup>1/2</sup>, &emsp; 1/η<sub>t</sub> = (5π/12) H<sub>2</sub>/H<sub>1</sub> − 1, &emsp; of Mindlin's loop at x = traction_ratio (Eq. 29, corrected)</p>
-<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, so force and stiffness of all three axes follow from this one table, the reaction of shear on the normal force included:</p>
-<p>f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>, &emsp; f<sub>y</sub> = -&rho; g'(c) s<sub>y</sub>, &emsp; f<sub>z</sub> = g(c) - g(0) + &frac12; &rho; g''(c) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>)</p>
+<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of 28 sliders, whose forces along x and y are states; each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
+<p>With <code>memory=false</code> shear is elastic without a friction limit and reacts on the normal force, far below slip as in the FMU: f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>, f<sub>z</sub> as above and &frac12; &rho; g''(c) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>).</p>
 <h4>Not in this table</h4>
 <ul>
 <li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>
-<li>Rotational stiffness and contact pressures are not given; the FMU gives them.</li>
+<li>Side 2 does not turn: rotations, moments and contact pressures are the FMU's.</li>
+<li>The FMU has sliders of its own on each of its patches: where few of them slip, at a small part of the friction limit, the two differ in what a loop loses.</li>
 <li>The normal dissipation factor is interpolated linearly, within 0.001.</li>
-<li>The table ends at 10 times the total preload; beyond, the last tangent continues without a warning. With side 2 lifted off, force and stiffness are zero.</li>
+<li>The table ends at 10 times the total preload; beyond, the last tangent continues without a warning. With side 2 lifted off, only the bolts' stiffness n k is left.</li>
 </ul>
 <h4>How far to trust it</h4>
 <ul>
@@ -77,9 +142,10 @@ equation
 <li><b>Estimates.</b> Size of the frame, nominal area <code>A_0</code>, mass, friction and traction ratio are not published. The stiffness depends on <code>A_0</code>: 72 kN over the published pressures bounds it to 0.009 to 0.116 m².</li>
 <li><b>Critical area.</b> The printed Eq. 4 makes the force of a spot jump. The default is the area without a jump; the printed one gives a stiffness 6 times lower, the onset of yield one 37 times lower.</li>
 <li><b>Closing contact.</b> Below 4 kPa (default parameters) the law has hardly a stiff spot; the curve is continued smoothly to zero and leaves the law.</li>
-<li><b>Range.</b> Stiffness is zero once the joint is separated. Beyond the hardness on the whole area the last tangent is continued. A moment that would need a negative bolt force opens the contact there, with a warning.</li>
-<li><b>Not inside:</b> slip (the tangential force is not limited to μP), hysteresis in the force, the bolts' own stiffness, the flanges' bending. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
+<li><b>Normal damping is off.</b> η<sub>n</sub> is the plastic work of first loading. A joint in service has been loaded before and does not lose it again at each vibration; <code>plastic_damping</code> switches the paper's value on.</li>
 <li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
+<li><b>Range.</b> Once the joint is separated, only the bolts' stiffness is left. Beyond the hardness on the whole area the last tangent is continued. A moment that would need a negative bolt force opens the contact there, with a warning.</li>
+<li><b>Not inside:</b> slip (the tangential force is not limited to μP), hysteresis in the force, the compliance of the clamped parts, the flanges' bending. Damping is the viscous equivalent at the resonance of <code>mass</code>.</li>
 </ul>
 <p>Y. Zhao, C. Yang, L. Cai, W. Shi, Y. Hong: <em>Stiffness and Damping Model of Bolted Joints with Uneven Surface Contact Pressure Distribution.</em> 2018.</p>
 </html>"));

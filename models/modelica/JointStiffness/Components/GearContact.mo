@@ -18,7 +18,7 @@ equation
       Line(points={{0,24},{-4,16},{4,8},{-4,0},{4,-8},{-4,-16},{0,-24}}, color={209,67,43}, thickness=0.75),
       Text(extent={{-150,110},{150,70}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
-<p>The contact of two rough tooth flanks under a normal load. Asperities are elliptical; the pressure is uniform over the nominal area <code>A_0</code>.</p>
+<p>The contact of two rough tooth flanks under a normal load.  Asperities are elliptical. The pressure is uniform over the nominal area <code>A_0</code>.</p>
 <h4>Flanges</h4>
 <p>The flanks touch when flange_b is <code>s_rel0</code> from flange_a and press as they come closer; apart there is no force. The contact has no damping: the law gives none.</p>
 <h4>Law</h4>
@@ -39,9 +39,9 @@ equation
 <li><b>Estimates.</b> The nominal area <code>A_0</code> and <code>surface.gamma</code> are not published; the contact coefficient <code>lambda</code> is an input, because the printed one depends on the unit of length.</li>
 <li><b>Closing contact.</b> Below 21 kPa (2 N with the default parameters) the law has hardly a stiff spot; the curve is continued smoothly to zero and leaves the law.</li>
 <li><b>Elastic-plastic spots.</b> With the default <code>plastic_area</code>, geometric, the mean pressure of a spot overshoots the hardness by up to 1.8; the alternative makes the contact 27 % stiffer at 20 MPa.</li>
+<li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
 <li><b>Range.</b> The table ends where the hardness presses on the whole nominal area.</li>
 <li><b>Not inside:</b> bending of the teeth, lubrication, sliding, damping, change of the contact along the path of action.</li>
-<li><b>Trend.</b> An elastic boundary-element solution of rough surfaces finds a stiffness close to proportional to the pressure and hardly dependent on D. The fractal law has lower powers of the pressure, which depend on D.</li>
 </ul>
 <p>G. Yu, H. Mao, L. Jiang, W. Liu, T. Valerii: <em>Fractal Contact Mechanics Model for the Rough Surface of a Beveloid Gear with Elliptical Asperities.</em> Applied Sciences 12, 4071, 2022. <a href=\"https://doi.org/10.3390/app12084071\">doi:10.3390/app12084071</a></p>
 </html>"));

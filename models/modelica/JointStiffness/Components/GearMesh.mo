@@ -141,7 +141,8 @@ equation
 <p>ξ = (r<sub>b1</sub> φ<sub>1</sub> − r<sub>b2</sub> φ<sub>2</sub>) / (2 p<sub>b</sub>), &emsp; p<sub>b</sub> = 2π r<sub>b1</sub> / teeth1</p>
 <p>Flanks and teeth of a pair are in series; δ(F) is the law of the flanks:</p>
 <p>s = δ(F) + F / K<sub>tooth</sub>, &emsp; V(s) = ∫<sub>0</sub><sup>s</sup> F(s′) ds′</p>
-<p>δ(F) = ∫<sub>0</sub><sup>F</sup> dF′ / k(F′), &emsp; F = ∫ F(a) n da, &emsp; k = ∫ k(a) n da (Yu 2022, Eqs. 42-79, corrected)</p>
+<p>δ(F) = ∫<sub>0</sub><sup>F</sup> dF′ / k(F′)</p>
+<p>F = ∫ F(a) n da, &emsp; k = ∫ k(a) n da (Yu 2022, Eqs. 42-79, corrected)</p>
 <p>N(ξ) pairs have this deflection. Of the <code>contact_ratio</code> the whole part is always in contact, one pair more during the rest of every cycle; it comes and goes by a smooth step, the faster the smaller <code>engagement</code>. The torques are the gradient of one potential, so that no cycle creates or destroys energy:</p>
 <p>U = N(ξ) V(|s<sub>rel</sub>|), &emsp; τ<sub>1</sub> = −∂U/∂φ<sub>1</sub> − r<sub>b1</sub> f<sub>d</sub>, &emsp; τ<sub>2</sub> = −∂U/∂φ<sub>2</sub> − r<sub>b2</sub> f<sub>d</sub> (after Oh, Grosh, Barber 2005)</p>
 <p>f = N F(|s<sub>rel</sub>|) sign(s<sub>rel</sub>) + f<sub>d</sub>, &emsp; f<sub>d</sub> = d g(|s<sub>rel</sub>|) (r<sub>b1</sub> w<sub>1</sub> + r<sub>b2</sub> w<sub>2</sub>), &emsp; K = N dF/ds</p>

@@ -4,9 +4,17 @@ record BoltedJoint "A bolted joint at a fixed preload and moment"
   parameter Modelica.Units.SI.Force preload(min=0) "Pre-tightening force of each bolt";
   parameter Modelica.Units.SI.Torque moment "Bending moment on the joint";
   parameter Modelica.Units.SI.Mass mass(min=0) "mass of the structure, for the viscous equivalent";
+  parameter Modelica.Units.SI.TranslationalSpringConstant bolts(min=0) "Stiffness of all bolts, beside the interface";
+  parameter Boolean plastic_damping = false "normal damping by the plastic work of first loading (Zhao 2018, Eqs. 19-20)";
+  parameter Boolean memory = true "friction with partial slip and memory; without it an elastic joint";
+  parameter Boolean damping = false "the dashpots C_xx, C_yy, C_zz of Zhao 2018 act";
+  parameter Real mu(min=0) "coefficient of static friction";
+  parameter Modelica.Units.SI.Force tight(min=0) "Normal force of the tightened interface";
   parameter Real shear(min=0) "Tangential over normal stiffness";
   parameter Real eta_t(min=0) "Tangential dissipation factor";
   parameter Real table[:, 5]
     "Approach from the tightened state [m], force above tightening [N], stiffness [N/m], its derivative before and after [N/m2]";
-  parameter Real damping[:, 2] "Approach from the tightened state [m], normal dissipation factor";
+  parameter Real heights[:, 3]
+    "Approach from the tightened state [m], normal force [N] and stiffness [N/m] there: between them the springs of a slider";
+  parameter Real eta_n[:, 2] "Approach from the tightened state [m], normal dissipation factor";
 end BoltedJoint;

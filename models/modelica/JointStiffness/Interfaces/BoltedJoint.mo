@@ -1,57 +1,83 @@
 within JointStiffness.Interfaces;
-partial block BoltedJoint "Bolted joint under uneven pressure: motion in, force out (Zhao 2018)"
+partial block BoltedJoint "Bolted joint under uneven pressure: motion in, force out"
   extends Modelica.Blocks.Icons.Block;
   Modelica.Blocks.Interfaces.RealInput preload(unit="N", min=0) "pre-tightening force of each bolt"
-    annotation (Placement(transformation(extent={{-140,59},{-100,99}})));
+    annotation (Placement(transformation(extent={{-140,64},{-100,104}})));
   Modelica.Blocks.Interfaces.RealInput moment(unit="N.m") "bending moment on the joint"
-    annotation (Placement(transformation(extent={{-140,36},{-100,76}})));
+    annotation (Placement(transformation(extent={{-140,51},{-100,91}})));
   Modelica.Blocks.Interfaces.RealInput s_rel_x(unit="m") "displacement from the tightened state, along the rows"
-    annotation (Placement(transformation(extent={{-140,14},{-100,54}})));
+    annotation (Placement(transformation(extent={{-140,38},{-100,78}})));
   Modelica.Blocks.Interfaces.RealInput s_rel_y(unit="m") "displacement from the tightened state, across the rows"
-    annotation (Placement(transformation(extent={{-140,-9},{-100,31}})));
+    annotation (Placement(transformation(extent={{-140,25},{-100,65}})));
   Modelica.Blocks.Interfaces.RealInput s_rel_z(unit="m") "displacement from the tightened state, positive apart"
-    annotation (Placement(transformation(extent={{-140,-31},{-100,9}})));
+    annotation (Placement(transformation(extent={{-140,12},{-100,52}})));
   Modelica.Blocks.Interfaces.RealInput v_rel_x(unit="m/s") "rate of s_rel_x"
-    annotation (Placement(transformation(extent={{-140,-54},{-100,-14}})));
+    annotation (Placement(transformation(extent={{-140,-1},{-100,39}})));
   Modelica.Blocks.Interfaces.RealInput v_rel_y(unit="m/s") "rate of s_rel_y"
-    annotation (Placement(transformation(extent={{-140,-76},{-100,-36}})));
+    annotation (Placement(transformation(extent={{-140,-14},{-100,26}})));
   Modelica.Blocks.Interfaces.RealInput v_rel_z(unit="m/s") "rate of s_rel_z"
-    annotation (Placement(transformation(extent={{-140,-99},{-100,-59}})));
+    annotation (Placement(transformation(extent={{-140,-26},{-100,14}})));
+  Modelica.Blocks.Interfaces.RealInput theta_x(unit="rad") "small turn of side 2 about x through the joint's centre"
+    annotation (Placement(transformation(extent={{-140,-39},{-100,1}})));
+  Modelica.Blocks.Interfaces.RealInput theta_y(unit="rad") "small turn of side 2 about y through the joint's centre"
+    annotation (Placement(transformation(extent={{-140,-52},{-100,-12}})));
+  Modelica.Blocks.Interfaces.RealInput theta_z(unit="rad") "small turn of side 2 about z through the joint's centre"
+    annotation (Placement(transformation(extent={{-140,-65},{-100,-25}})));
+  Modelica.Blocks.Interfaces.RealInput omega_x(unit="rad/s") "rate of theta_x"
+    annotation (Placement(transformation(extent={{-140,-78},{-100,-38}})));
+  Modelica.Blocks.Interfaces.RealInput omega_y(unit="rad/s") "rate of theta_y"
+    annotation (Placement(transformation(extent={{-140,-91},{-100,-51}})));
+  Modelica.Blocks.Interfaces.RealInput omega_z(unit="rad/s") "rate of theta_z"
+    annotation (Placement(transformation(extent={{-140,-104},{-100,-64}})));
   Modelica.Blocks.Interfaces.RealOutput f_x(unit="N") "force on side 2 along x, restoring"
-    annotation (Placement(transformation(extent={{100,74},{120,94}})));
+    annotation (Placement(transformation(extent={{100,76},{120,96}})));
   Modelica.Blocks.Interfaces.RealOutput f_y(unit="N") "force on side 2 along y, restoring"
-    annotation (Placement(transformation(extent={{100,63},{120,83}})));
+    annotation (Placement(transformation(extent={{100,68},{120,88}})));
   Modelica.Blocks.Interfaces.RealOutput f_z(unit="N") "force on side 2 along the normal, negative when pulled apart"
-    annotation (Placement(transformation(extent={{100,52},{120,72}})));
+    annotation (Placement(transformation(extent={{100,60},{120,80}})));
+  Modelica.Blocks.Interfaces.RealOutput m_x(unit="N.m") "moment on side 2 about x through the joint's centre, restoring"
+    annotation (Placement(transformation(extent={{100,53},{120,73}})));
+  Modelica.Blocks.Interfaces.RealOutput m_y(unit="N.m") "moment on side 2 about y, same point"
+    annotation (Placement(transformation(extent={{100,45},{120,65}})));
+  Modelica.Blocks.Interfaces.RealOutput m_z(unit="N.m") "moment on side 2 about the normal, same point"
+    annotation (Placement(transformation(extent={{100,37},{120,57}})));
   Modelica.Blocks.Interfaces.RealOutput K_xx(unit="N/m") "tangential stiffness -df_x/ds_rel_x"
-    annotation (Placement(transformation(extent={{100,41},{120,61}})));
-  Modelica.Blocks.Interfaces.RealOutput K_yy(unit="N/m") "tangential stiffness -df_y/ds_rel_y"
     annotation (Placement(transformation(extent={{100,29},{120,49}})));
+  Modelica.Blocks.Interfaces.RealOutput K_yy(unit="N/m") "tangential stiffness -df_y/ds_rel_y"
+    annotation (Placement(transformation(extent={{100,21},{120,41}})));
   Modelica.Blocks.Interfaces.RealOutput K_zz(unit="N/m") "normal stiffness -df_z/ds_rel_z"
-    annotation (Placement(transformation(extent={{100,18},{120,38}})));
+    annotation (Placement(transformation(extent={{100,13},{120,33}})));
   Modelica.Blocks.Interfaces.RealOutput C_xx(unit="N.s/m") "viscous-equivalent damping along x"
-    annotation (Placement(transformation(extent={{100,7},{120,27}})));
+    annotation (Placement(transformation(extent={{100,6},{120,26}})));
   Modelica.Blocks.Interfaces.RealOutput C_yy(unit="N.s/m") "viscous-equivalent damping along y"
-    annotation (Placement(transformation(extent={{100,-4},{120,16}})));
-  Modelica.Blocks.Interfaces.RealOutput C_zz(unit="N.s/m") "viscous-equivalent damping along the normal"
-    annotation (Placement(transformation(extent={{100,-16},{120,4}})));
+    annotation (Placement(transformation(extent={{100,-2},{120,18}})));
+  Modelica.Blocks.Interfaces.RealOutput C_zz(unit="N.s/m") "viscous-equivalent damping along the normal, zero without plastic_damping"
+    annotation (Placement(transformation(extent={{100,-10},{120,10}})));
   Modelica.Blocks.Interfaces.RealOutput eta_t(unit="1") "tangential dissipation factor"
-    annotation (Placement(transformation(extent={{100,-27},{120,-7}})));
-  Modelica.Blocks.Interfaces.RealOutput eta_n(unit="1") "normal dissipation factor"
-    annotation (Placement(transformation(extent={{100,-38},{120,-18}})));
-  Modelica.Blocks.Interfaces.RealOutput K_rx(unit="N.m/rad") "rotational stiffness about x through the centroid"
+    annotation (Placement(transformation(extent={{100,-18},{120,2}})));
+  Modelica.Blocks.Interfaces.RealOutput eta_n(unit="1") "plastic over elastic work of first loading; it damps with plastic_damping only"
+    annotation (Placement(transformation(extent={{100,-26},{120,-6}})));
+  Modelica.Blocks.Interfaces.RealOutput K_rx(unit="N.m/rad") "rotational stiffness -dm_x/dtheta_x"
+    annotation (Placement(transformation(extent={{100,-33},{120,-13}})));
+  Modelica.Blocks.Interfaces.RealOutput K_ry(unit="N.m/rad") "rotational stiffness -dm_y/dtheta_y"
+    annotation (Placement(transformation(extent={{100,-41},{120,-21}})));
+  Modelica.Blocks.Interfaces.RealOutput K_rz(unit="N.m/rad") "rotational stiffness -dm_z/dtheta_z"
     annotation (Placement(transformation(extent={{100,-49},{120,-29}})));
-  Modelica.Blocks.Interfaces.RealOutput K_ry(unit="N.m/rad") "rotational stiffness about y through the centroid"
-    annotation (Placement(transformation(extent={{100,-61},{120,-41}})));
-  Modelica.Blocks.Interfaces.RealOutput K_rz(unit="N.m/rad") "rotational stiffness about the normal, same point"
-    annotation (Placement(transformation(extent={{100,-72},{120,-52}})));
   Modelica.Blocks.Interfaces.RealOutput p_mean(unit="Pa") "mean contact pressure"
-    annotation (Placement(transformation(extent={{100,-83},{120,-63}})));
+    annotation (Placement(transformation(extent={{100,-57},{120,-37}})));
   Modelica.Blocks.Interfaces.RealOutput p_max(unit="Pa") "largest contact pressure"
-    annotation (Placement(transformation(extent={{100,-94},{120,-74}})));
+    annotation (Placement(transformation(extent={{100,-65},{120,-45}})));
+  Modelica.Blocks.Interfaces.RealOutput slip(unit="1") "friction force used: shear force over mu times normal force"
+    annotation (Placement(transformation(extent={{100,-73},{120,-53}})));
+  Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "work turned into heat by friction since initialization"
+    annotation (Placement(transformation(extent={{100,-80},{120,-60}})));
+  Modelica.Blocks.Interfaces.RealOutput eta_loop(unit="1") "loss factor of the loop whose amplitude is the present shift"
+    annotation (Placement(transformation(extent={{100,-88},{120,-68}})));
+  Modelica.Blocks.Interfaces.RealOutput C_loop(unit="N.s/m") "its viscous equivalent, as C_xx is that of eta_t"
+    annotation (Placement(transformation(extent={{100,-96},{120,-76}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),
     Documentation(info="<html>
-<p>Inputs and outputs of the FMU BoltedJoint: Bolted joint under uneven pressure: motion in, force out (Zhao 2018).</p>
+<p>Inputs and outputs of the FMU BoltedJoint: Bolted joint under uneven pressure: motion in, force out.</p>
 </html>"));
 end BoltedJoint;

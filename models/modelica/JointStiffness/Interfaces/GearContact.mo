@@ -1,5 +1,5 @@
 within JointStiffness.Interfaces;
-partial block GearContact "Tooth contact of a gear with elliptical asperities: force in, motion out (Yu 2022)"
+partial block GearContact "Tooth contact of a gear: force in, motion out"
   extends Modelica.Blocks.Icons.Block;
   Modelica.Blocks.Interfaces.RealInput f(unit="N") "normal load of the tooth contact"
     annotation (Placement(transformation(extent={{-140,-20},{-100,20}})));
@@ -14,6 +14,6 @@ partial block GearContact "Tooth contact of a gear with elliptical asperities: f
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),
     Documentation(info="<html>
-<p>Inputs and outputs of the FMU GearContact: Tooth contact of a gear with elliptical asperities: force in, motion out (Yu 2022).</p>
+<p>Inputs and outputs of the FMU GearContact: Tooth contact of a gear: force in, motion out.</p>
 </html>"));
 end GearContact;

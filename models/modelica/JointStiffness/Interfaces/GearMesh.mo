@@ -1,5 +1,5 @@
 within JointStiffness.Interfaces;
-partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: motion in, torque out (Yu 2022)"
+partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: motion in, torque out"
   extends Modelica.Blocks.Icons.Block;
   Modelica.Blocks.Interfaces.RealInput phi1(unit="rad") "angle of wheel 1; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"
     annotation (Placement(transformation(extent={{-140,48},{-100,88}})));
@@ -26,6 +26,6 @@ partial block GearMesh "Mesh of two gear wheels with rough flanks and backlash: 
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),
     Documentation(info="<html>
-<p>Inputs and outputs of the FMU GearMesh: Mesh of two gear wheels with rough flanks and backlash: motion in, torque out (Yu 2022).</p>
+<p>Inputs and outputs of the FMU GearMesh: Mesh of two gear wheels with rough flanks and backlash: motion in, torque out.</p>
 </html>"));
 end GearMesh;

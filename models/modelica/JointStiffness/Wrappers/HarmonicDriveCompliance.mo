@@ -16,7 +16,7 @@ equation
   connect(reaction_flange.u, fmu.tau)
     annotation (Line(points={{51,-25},{13.5,-25},{13.5,0},{-24,0}}, color={0,0,127}));
   connect(fmu.phi_rel, adaptor_flange.p)
-    annotation (Line(points={{22,15},{49.5,15},{49.5,8},{77,8}}, color={0,0,127}));
+    annotation (Line(points={{22,15.4},{49.5,15.4},{49.5,8},{77,8}}, color={0,0,127}));
   annotation (
     Icon(graphics={
       Rectangle(extent={{-90,80},{90,-80}}, lineColor={43,58,74}, fillColor={255,255,255}, fillPattern=FillPattern.Solid, radius=10),

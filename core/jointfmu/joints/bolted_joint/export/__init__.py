@@ -8,7 +8,7 @@ from ....export.exports import Exports, LoadCurve
 from ....quantity import quantity
 from ...model import Variable
 from .. import KIND
-from ..law import BoltedJoint, shear_ratio
+from ..law import Bolted, shear_ratio
 from ..spring import BoltedJointSpring
 
 if TYPE_CHECKING:
@@ -31,11 +31,11 @@ class State:
 
 
 def _springs(
-    joint: BoltedJoint, state: State | None, mesh: "Mesh | None", placing: "Placing"
+    joint: Bolted, state: State | None, mesh: "Mesh | None", placing: "Placing"
 ) -> "tuple[Springs, str]":
     from . import springs
 
-    spring = BoltedJointSpring.of(joint)
+    spring = BoltedJointSpring.of_nodes(joint)
     if state is None:
         if mesh is None:
             raise ValueError("springs need a preload, or node pairs with their pressure")
@@ -46,18 +46,18 @@ def _springs(
     return there, f"{state}, on the nodes of {mesh.path.name}"
 
 
-def _contact(joint: BoltedJoint) -> "tuple[Curve, Sequence[str]]":
+def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
     ratio = float(shear_ratio(joint))
     more = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
-    return BoltedJointSpring.of(joint).curve, [more]
+    return BoltedJointSpring.of_nodes(joint).curve, [more]
 
 
-def _pull(joint: BoltedJoint, state: State | None, error: float) -> "Table":
+def _pull(joint: Bolted, state: State | None, error: float) -> "Table":
     from .pull import pull_table
 
     if state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")
-    return pull_table(BoltedJointSpring.of(joint), state.preload, state.moment, error)
+    return pull_table(BoltedJointSpring.of_nodes(joint), state.preload, state.moment, error)
 
 
 _VARIABLES = KIND.variables

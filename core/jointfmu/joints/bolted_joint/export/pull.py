@@ -19,16 +19,17 @@ _BLOCK = 100_000
 def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> Table:
     """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
 
-    From STRONGEST times the force at tightening, pressed together, to where the last node opens; from
-    there on the force stays the preload's. The errors refer to the force at tightening where the
-    load is smaller, and to the stiffness there. Raises ValueError if nothing is in contact or the
-    hardness is reached.
+    The bolts' own stiffness acts beside the interface. From STRONGEST times the force at tightening, pressed
+    together, to where the last node opens; from there on only the bolts' force grows. The errors refer to the
+    force at tightening where the load is smaller, and to the stiffness there. Raises ValueError if nothing is
+    in contact or the hardness is reached.
     """
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     shape = spring.shape.merged(moment=moment != 0.0)
     alike = spring.curve.inverse(pressures(spring.joint, shape, preload, moment))
     weight = spring.joint.A_0 * shape.share
+    bolts = float(spring.joint.n_bolts * spring.joint.bolt_stiffness)
 
     def total(separation: Array) -> Array:
         blocks = np.array_split(separation[:, None], max(separation.size * alike.size // _BLOCK, 1))
@@ -41,5 +42,7 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     opening = float(np.max(start) - low)
     s = np.concatenate([np.linspace(-end, 0.0, _FINE), np.linspace(0.0, opening, _FINE)[1:]])
     force, stiffness = total(s)
-    table = thinned(s, held - force, stiffness, error, (held, stiff), keep=(_FINE - 1,))
-    return Table(np.vstack([table.rows, [2.0 * opening, held, 0.0]]), table.straight, table.monotone)
+    pull = held - force + bolts * s
+    table = thinned(s, pull, stiffness + bolts, error, (held, stiff), keep=(_FINE - 1,))
+    last = [2.0 * opening, held + 2.0 * bolts * opening, bolts]
+    return Table(np.vstack([table.rows, last]), table.straight, table.monotone)

@@ -1,4 +1,7 @@
-"""The bolted joint at a working point as springs and dashpots between node pairs (Zhao 2018, section 2)."""
+"""The bolted joint at a working point as springs and dashpots between node pairs (Zhao 2018, section 2).
+
+The springs are the interface: the bolts are a part of the structure around it.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,7 +67,7 @@ def on_mesh(spring: BoltedJointSpring, mesh: Mesh, preload: float, moment: float
         )
     equal /= force
     tilt -= (share @ tilt) * equal
-    there = BoltedJointSpring(spring.joint, spring.curve, PressureShape(share, place, equal, tilt))
+    there = spring.on(PressureShape(share, place, equal, tilt))
     return _split(there, mesh.nodes, preload, moment, _sums(spring, preload, moment))
 
 
@@ -79,7 +82,7 @@ def under_pressure(spring: BoltedJointSpring, mesh: Mesh) -> Springs:
     share = mesh.area / mesh.area.sum()
     mean = float(share @ mesh.pressure)
     shape = PressureShape(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
-    there = BoltedJointSpring(spring.joint, spring.curve, shape)
+    there = spring.on(shape)
     return _split(there, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
 
 
@@ -95,7 +98,8 @@ def _check_area(spring: BoltedJointSpring, mesh: Mesh) -> None:
 def _sums(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
     rest = (0.0, 0.0, 0.0)
     state = spring.motion(preload, moment, rest, rest)
-    return {name: float(state[name]) for name in SUMS}
+    sums = {name: float(state[name]) for name in SUMS}
+    return sums | {"K_zz": sums["K_zz"] - float(spring.joint.n_bolts * spring.joint.bolt_stiffness)}
 
 
 def _split(

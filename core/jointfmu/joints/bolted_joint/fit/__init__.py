@@ -1,10 +1,10 @@
-"""What fits the bolted joint: a curve over preload."""
+"""What fits the bolted joint: a curve over preload, loops in shear."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....fitting.procedure import Option, Procedure
+from ....fitting.procedure import DAMPING_RATIO, Option, Procedure
 from ....parameters import ParameterFile
 
 if TYPE_CHECKING:
@@ -22,6 +22,19 @@ def _preload(
     from . import preload
 
     return preload.fit(path, start, free, direction=direction, modal_mass=modal_mass, series=series_stiffness)
+
+
+def _loop(
+    path: Path,
+    start: ParameterFile | None,
+    free: Sequence[str] | None,
+    preload: float | None,
+    modal_mass: float | None,
+    damping_ratio: float,
+) -> "Outcome":
+    from . import loop
+
+    return loop.fit(path, start, free, preload=preload, modal_mass=modal_mass, damping_ratio=damping_ratio)
 
 
 FITS = (
@@ -44,5 +57,17 @@ FITS = (
             ),
         ),
         run=_preload,
+    ),
+    Procedure(
+        name="loop",
+        text="loops, decays or responses in shear to the bolted joint",
+        file=True,
+        column="displacement",
+        options=(
+            Option(name="preload", text="of each bolt in the test [N] (default: of the start's inputs)"),
+            Option(name="modal_mass", text="what vibrates on the joint [kg]; with decays and responses"),
+            DAMPING_RATIO,
+        ),
+        run=_loop,
     ),
 )

@@ -23,12 +23,12 @@ from .... import columns
 from ....curve import approach_curve
 from ....fitting.least_squares import Array, Solution, Unknown, solve
 from ....fitting.outcome import Outcome, Picture, fitted, unknowns
-from ....footprint.bolts import BoltPattern, pressure_shape
-from ....footprint.shape import MergedShape, NodalField
+from ....footprint.bolts import PressureSource, pressure_shape
+from ....footprint.shape import MergedShape
 from ....interface import stiffness_curve
 from ....parameters import ParameterFile, default
 from ....units import Sizes, factor, sizes
-from ..law import BoltedJoint, pressures, shear_ratio
+from ..law import Bolted, pressures, shear_ratio
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -47,20 +47,22 @@ STARTS: Mapping[str, tuple[float, ...]] = {
 """Where the fit looks for a start, beside the start file's values."""
 
 
-def joint_stiffness(joint: BoltedJoint, preload: Array, direction: str = "normal") -> Array:
+def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
     """K_zz or K_xx (...) [N/m] of the tightened joint at preloads (...) [N]: exactly the exported ones."""
-    shape = _shape(joint.pattern)
+    shape = even_shape(joint.pattern)
     p = pressures(joint, shape, preload, 0.0)
     curve = approach_curve(joint)
     k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
     closing = p < curve.closed  # what the curve continues to zero pressure
     k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
     normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
-    return np.asarray(normal if direction == "normal" else shear_ratio(joint) * normal)
+    if direction == "normal":
+        return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness)
+    return np.asarray(shear_ratio(joint) * normal)
 
 
 @cache
-def _shape(pattern: BoltPattern | NodalField) -> MergedShape:
+def even_shape(pattern: PressureSource) -> MergedShape:
     """The pressure shape, nodes of equal pressure without a moment put together."""
     return pressure_shape(pattern).merged(moment=False)
 
@@ -126,7 +128,7 @@ class Measured:
     preload: Array
     value: Array
 
-    def predicted(self, joint: BoltedJoint, series: float | None, direction: str) -> Array:
+    def predicted(self, joint: Bolted, series: float | None, direction: str) -> Array:
         """The same quantity of a joint, with a stiffness [N/m] in series if there is one."""
         K = joint_stiffness(joint, self.preload, direction)
         K = K if series is None else 1.0 / (1.0 / K + 1.0 / series)

@@ -1,4 +1,4 @@
-"""What fits the harmonic drive: a measured torque-angle curve, a catalogue row."""
+"""What fits the harmonic drive: a measured torque-angle curve, its loops, a catalogue row."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,6 +19,12 @@ def _torque_angle(
     from . import torque_angle
 
     return torque_angle.fit(path, start, free, rated_torque)
+
+
+def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "Outcome":
+    from . import hysteresis
+
+    return hysteresis.fit(path, start, free, inertia)
 
 
 def _catalogue(
@@ -42,6 +48,16 @@ FITS = (
         file=True,
         options=(Option(name="rated_torque", text="of the drive [N.m]; scales max_torque with it"),),
         run=_torque_angle,
+    ),
+    Procedure(
+        name="loop",
+        text="loops, decays or responses to the hysteresis of the harmonic drive",
+        file=True,
+        column="angle",
+        options=(
+            Option(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
+        ),
+        run=_loop,
     ),
     Procedure(
         name="catalogue",

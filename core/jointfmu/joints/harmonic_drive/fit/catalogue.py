@@ -7,7 +7,7 @@ beyond,
 
 The law keeps the angle at T1, T2 and the rated torque; between them and up to max_torque it follows
 the polygon as well as a smooth curve can. The unknowns are those of a measured curve.
-`torque_smoothing`, the torque below which the lobes do not grow yet, is T1, where the catalogue's
+`torque_smoothing`, the torque below which the pressure does not grow yet, is T1, where the catalogue's
 stiffness starts to rise; it becomes a fourth unknown if three do not keep the angles.
 """
 
@@ -22,6 +22,7 @@ from ....fitting.least_squares import Array, Solution, solve
 from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
 from ....parameters import ParameterFile, default
 from ....quantity import check, quantity
+from ....units import factor
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -36,6 +37,20 @@ LOOSE = 0.2
 MAX_OVER_RATED = 4.0
 """max_torque over rated torque [1]: about the repeated peak torque of catalogue drives."""
 ARCMIN = np.pi / 10800.0
+
+
+PRINTED = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
+"""Units in which catalogues print stiffness."""
+
+
+def _likely(angle: float) -> str:
+    """The unit that brings a wind-up [rad] nearest to what is usual, the middle of WINDUP."""
+    usual = np.sqrt(np.prod(drive.WINDUP))
+    sizes = {u: factor(u.split()[-1], "N.m/rad") * (1e4 if " " in u else 1.0) for u in PRINTED}
+    best = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / usual)))
+    if not 0.1 < angle / sizes[best] / usual < 10.0:
+        return "no usual unit explains it"
+    return f"likely they are in {best}: times {sizes[best]:g}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,6 +74,12 @@ class Row:
                 )
         if not self.T1 < self.T2:
             raise ValueError(f"T2 = {self.T2:g} N.m is outside ({self.T1:g}, inf): T2 exceeds T1")
+        least, most = drive.WINDUP
+        if not least <= (angle := float(self.angle(self.rated))) <= most:
+            raise ValueError(
+                f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque {self.rated:g} N.m, "
+                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? {_likely(angle)}"
+            )
 
     def angle(self, torque: ArrayLike) -> Array:
         """theta (...) [rad] at torques (...) >= 0 [N.m]."""

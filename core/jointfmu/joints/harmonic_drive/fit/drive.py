@@ -7,7 +7,7 @@ import numpy as np
 
 from ....fitting.least_squares import Array
 from ....parameters import ParameterFile
-from ..law import HarmonicDrive
+from ..law import Drive
 from ..spring import torque_curve
 
 LEVEL = ("K_FTS0", "drive_scale")
@@ -16,7 +16,11 @@ LEAST_PRESSURE = 0.05
 """Least peak pressure without torque over that at rated torque [1] that a fit may find."""
 
 
-def windup(drive: HarmonicDrive, torque: Array) -> Array:
+WINDUP = (1e-5, 0.1)
+"""Wind-up at rated torque [rad] that a drive may have: a hundredth to a hundred times the usual 1e-3."""
+
+
+def windup(drive: Drive, torque: Array) -> Array:
     """phi (...) [rad] at torques (...) [N.m]: exactly the exported curve."""
     return np.asarray(np.copysign(torque_curve(drive).inverse(np.abs(torque)), torque))
 
@@ -47,7 +51,7 @@ def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: A
 
 
 def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
-    """Intervals of the pressures that keep the lobes in contact without torque."""
+    """Intervals of the pressures that keep the pair in contact without torque."""
     drive: Any = start.values
     rated, loss = drive.rated_pressure, drive.pressure_loss
     least = loss + LEAST_PRESSURE * rated

@@ -1,9 +1,9 @@
 """A measured torque-angle curve to the harmonic drive's parameters.
 
 The curve fixes its level at small torque, its level at large torque and how fast it goes from one to
-the other: `drive_scale` (K_TS), `K_FTS0` and `zero_torque_pressure` (how little the lobes are pressed
-before they grow). `pair_scale` does the same as `drive_scale`, the surface and the materials act
-through the same level and rise; they stay as they are unless asked for.
+the other: `drive_scale` (K_TS), `K_FTS0` and `zero_torque_pressure` (how little the pair is pressed
+before the torque counts). The surface and the mean over the peak pressure do the same as `drive_scale`;
+they stay as they are unless asked for.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,6 +28,8 @@ COLUMNS: Mapping[str, Sizes] = {
 LEAST = 10
 """Fewest points of a curve."""
 ARCMIN = COLUMNS["angle"]["arcmin"]
+CREATED = 0.01
+"""Energy that a loop may create, as noise and drift do, over that of its box [1]."""
 ALIKE = 0.5
 """Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
@@ -54,6 +56,7 @@ def fit(
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
     file = _sized(start or default("harmonic_drive"), line.torque, rated_torque, table.path)
+    _check_size(line, file, table.path)
     centred = line.angle - np.interp(0.0, line.torque, line.angle)
     file = drive.scaled(file, names, line.torque, centred)
     weight = np.sqrt(line.count)
@@ -103,6 +106,28 @@ def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path)
             "rated_torque",
         )
     return start
+
+
+def _check_size(line: loop.Backbone, start: ParameterFile, path: Path) -> None:
+    """Refuse a wind-up that no drive of this size has, before a long fit; and a loop that creates energy."""
+    turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
+    rated = start.values.rated_torque
+    low, high = drive.WINDUP
+    if not low <= turned * rated / span <= high:
+        raise Refusal(
+            f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
+            f"{turned * rated / span:.3g} rad at the rated torque {rated:g} N.m, "
+            f"allowed are {low:g} to {high:g}: check the units of both columns, or "
+            "state the drive's rated torque",
+            "rated_torque",
+        )
+    if line.loop_area is not None:
+        area, deviation = line.loop_area
+        if area < -max(3.0 * deviation, CREATED * span * turned):
+            raise ValueError(
+                f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected is 0 or more: the "
+                "angle has to lag behind the torque; reverse the order of the rows if they run back in time"
+            )
 
 
 def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> dict[str, tuple[float, str, str]]:

@@ -7,11 +7,11 @@ model RobotJoint "Motor, harmonic drive and a link in gravity"
     annotation (Placement(transformation(extent={{-76,-10},{-56,10}})));
   Modelica.Mechanics.Rotational.Sources.Torque torque
     annotation (Placement(transformation(extent={{-42,-10},{-22,10}})));
-  Modelica.Mechanics.Rotational.Components.Inertia motor(J=<< v["motor.J"] >>, phi(fixed=true, start=0), w(fixed=true, start=0))
+  Modelica.Mechanics.Rotational.Components.Inertia motor(J=<< v["motor.J"] >>, phi(fixed=true, start=0, nominal=0.1), w(fixed=true, start=0, nominal=10))
     annotation (Placement(transformation(extent={{-14,-10},{6,10}})));
-  JointStiffness.Components.HarmonicDriveSpring drive(stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring drive(friction=<< own["friction"] >>, stick=<< own["stick"] >>, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{14,-10},{34,10}})));
-  Modelica.Mechanics.Rotational.Components.Inertia link(J=<< v["link.J"] >>, phi(fixed=true, start=0), w(fixed=true, start=0))
+  Modelica.Mechanics.Rotational.Components.Inertia link(J=<< v["link.J"] >>, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{42,-10},{62,10}})));
   JointStiffness.Components.LinkWeight weight(m=<< v["link.m"] >>, l=<< v["link.l"] >>)
     annotation (Placement(transformation(extent={{72,-10},{92,10}})));
@@ -29,7 +29,7 @@ equation
   annotation (
     experiment(StopTime=<< v["experiment.stop_time"] >>, Interval=<< v["experiment.interval"] >>, Tolerance=1e-8),
     Documentation(info="<html>
-<p>A motor torque rises and lifts the link against its weight; then a short pulse makes the joint ring. Look at <code>drive.tau</code>, <code>drive.phi_rel</code> and <code>drive.K_WTS</code>: the joint is stiffer under torque.</p>
+<p>A motor torque rises and lifts the link against its weight; then a short pulse makes the joint ring. Look at <code>drive.tau</code>, <code>drive.phi_rel</code> and <code>drive.K_WTS</code>: the joint is stiffer under torque. The drive has 1 arcmin of hysteresis (<code>drive.tau_h</code>): the ringing dies out the faster, the wider it is.</p>
 << sources >>
 </html>"));
 end RobotJoint;

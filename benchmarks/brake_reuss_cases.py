@@ -1,0 +1,74 @@
+"""The Brake-Reuss beam as its sources have it, and what is published of its first mode."""
+
+from dataclasses import dataclass, replace
+
+import interface_laws as compare
+import numpy as np
+import roughness_cases as cases
+from lap_beam import LapBeam
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
+
+
+def data():
+    """The entries of models/reference/brake_reuss.toml."""
+    return compare.measured("brake_reuss")
+
+
+def beam():
+    """Geometry and material."""
+    entries = data()
+    known = {name: value for name, value in entries["beam"].items() if name != "preload"}
+    return LapBeam(**known | {"bolts": tuple(known["bolts"]), "E": entries["E"], "nu": entries["nu"]})
+
+
+def laws():
+    """{name: law}: from the deviation of the gap, and the same form at the published level."""
+    entries = data()
+    ours = cases.joint_law(entries | {"Rq": entries["h"] / np.sqrt(2.0)}, H=entries["H"])
+
+    def excess(h):
+        return cases.level(replace(ours, h=h), entries["pressure"]) / entries["normal"] - 1.0
+
+    return {"roughness": ours, "published": replace(ours, h=brentq(excess, 0.5 * ours.h, 2.0 * ours.h))}
+
+
+def solid_bar(one):
+    """First bending frequency [Hz] of a free bar without a joint (Timoshenko; shear by Cowper)."""
+    area, inertia = one.side**2, one.side**4 / 12.0
+    shear = 10.0 * (1.0 + one.nu) / (12.0 + 11.0 * one.nu) * one.E / (2.0 * (1.0 + one.nu)) * area
+    bend, heavy, turned, half = one.E * inertia, one.density * area, one.density * inertia, 0.5 * one.length
+
+    def ends(omega):
+        """Zero where an even motion, of cos(k x) and cosh(m x), leaves the ends free."""
+        slow = heavy * omega**2 / shear
+        parts = [bend, -(turned * omega**2 + bend * slow), -heavy * omega**2 + turned * omega**2 * slow]
+        m, k = np.sqrt(np.abs(np.sort(np.roots(parts))))
+        left = (slow - k**2) * np.cos(k * half) * np.sinh(m * half) / m
+        return left - (slow + m**2) * np.cosh(m * half) * np.sin(k * half) / k
+
+    euler = (4.7300 / one.length) ** 2 * np.sqrt(bend / heavy)
+    return brentq(ends, 0.9 * euler, 1.01 * euler) / (2.0 * np.pi)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """First mode over the modal amplitude q (k) [m kg^0.5]: frequency (k) [Hz], damping ratio (k) [1]."""
+
+    q: np.ndarray
+    frequency: np.ndarray
+    damping: np.ndarray
+
+    def at(self, q):
+        """Frequency and damping ratio at other amplitudes, by monotone cubics in the logarithm of q.
+
+        Below the range the damping ratio falls with q: the loss of small motions with its third power.
+        """
+        values = np.column_stack([self.frequency, np.log(self.damping)])
+        f, loss = PchipInterpolator(np.log(self.q), values)(np.log(np.maximum(q, self.q[0]))).T
+        return f, np.exp(loss) * np.minimum(q / self.q[0], 1.0)
+
+
+def published(name):
+    """What the authors computed, `flat` or `curved`."""
+    return Curves(**{key: np.array(values) for key, values in data()["published"][name].items()})

@@ -1,0 +1,111 @@
+"""Friction of the bolted joint on few patches with few sliders: how far from what its normal law says?
+
+python benchmarks/friction_foundation.py
+
+Under constant load the force along one direction is mu [F_N(s_z) - F_N(s_z + K_T/K_N u/mu)] (Jaeger 1995,
+Ciavarella 1998), the loop's area follows from it by Masing's rule; F_N is that of all nodes of the contact.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default
+
+Array = NDArray[np.float64]
+
+PRELOADS = (2e3, 4.3e3, 9e3, 13e3, 25e3)
+"""Of a bolt [N]."""
+MOMENTS = (0.0, 1200.0)
+"""Of the joint [N.m]."""
+AMPLITUDES = (0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
+"""Force of the loops over the friction [1]."""
+ALONG = 20
+"""Displacements up to gross slip at which the force is compared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Theorem:
+    """The joint under one preload and moment, by all its nodes.
+
+    share, approach : (n) of the nodes [1], [m]
+    """
+
+    spring: BoltedJointSpring
+    share: Array
+    approach: Array
+
+    @classmethod
+    def of(cls, spring: BoltedJointSpring, preload: float, moment: float) -> "Theorem":
+        """Tightened."""
+        shape = pressure_shape(spring.joint.pattern)
+        return cls(spring, shape.share, spring.curve.inverse(pressures(spring.joint, shape, preload, moment)))
+
+    def force(self, along: float) -> float:
+        """Per area [Pa], at a displacement [m] from rest."""
+        law = self.spring.foundation
+        return float(self.share @ law.backbone(self.approach, along))
+
+    @property
+    def gross(self) -> float:
+        """Displacement [m] from which on all of it slips."""
+        law = self.spring.foundation
+        return float(law.friction * (np.max(self.approach) - self.spring.curve.displacement[0]) / law.ratio)
+
+    def displacement(self, part: float) -> float:
+        """At which the force is a part of the friction [m]."""
+        limit = self.force(self.gross)
+        return float(brentq(lambda u: self.force(u) - part * limit, 0.0, self.gross))
+
+    def area(self, size: float) -> float:
+        """Loss of a loop of an amplitude [m], per area [J/m2]."""
+        work = float(self.share @ self.spring.foundation.work(self.approach, size))
+        return 8.0 * (work - 0.5 * self.force(size) * size)
+
+
+def deviations(spring: BoltedJointSpring, preload: float, moment: float) -> tuple[float, Array]:
+    """Largest deviation of the force over the friction [1], and of the areas (m) of the loops [1]."""
+    theorem, patches, law = Theorem.of(spring, preload, moment), spring.patches, spring.foundation
+    approach = spring.curve.inverse(pressures(spring.joint, patches, preload, moment))
+
+    def along(*ways: float) -> tuple[float, float]:
+        force, loss = law.at_rest(approach.size), 0.0
+        for way in ways:
+            moved = law.moved(force, approach, approach, np.tile([way, 0.0], (approach.size, 1)))
+            force, loss = moved.force, float(patches.share @ moved.loss)
+        return float(patches.share @ moved.traction[:, 0]), loss
+
+    ways, limit = np.linspace(0.0, theorem.gross, ALONG + 1)[1:], theorem.force(theorem.gross)
+    worst = max(abs(along(u)[0] - theorem.force(u)) for u in ways.tolist()) / limit
+    sizes = [theorem.displacement(part) for part in AMPLITUDES]
+    areas = [2.0 * along(u, -2.0 * u, 2.0 * u)[1] / theorem.area(u) for u in sizes]
+    return worst, np.abs(np.array(areas) - 1.0)
+
+
+def joints() -> Iterator[tuple[str, Bolted]]:
+    """The box specimen with both laws."""
+    yield "zhao2018", default("bolted_joint").values
+    yield "roughness", default("bolted_joint", "roughness").values
+
+
+def main() -> None:
+    """Print the largest deviations over preloads and moments."""
+    print("| law | patches | sliders | force | " + " | ".join(f"loop {x:g}" for x in AMPLITUDES) + " |")
+    print("|---" * (4 + len(AMPLITUDES)) + "|")
+    for name, joint in joints():
+        spring = BoltedJointSpring.of(joint)
+        found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
+        areas = np.max([a for _, a in found], axis=0)
+        row = [name, str(spring.patches.share.size), str(spring.foundation.sliders)]
+        cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
+        print("| " + " | ".join([*row, *cells]) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,241 @@
+"""Few patches for all nodes of a bolted contact: how far are force, stiffness and friction from those of all?
+
+python benchmarks/patch_reduction.py
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from jointfmu.curve import Curve
+from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.footprint.patches import few_points
+from jointfmu.footprint.plate import BoltedPlate
+from jointfmu.footprint.shape import NodalField, PressureShape
+from jointfmu.joints.bolted_joint.law import shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default
+from jointfmu.sliders import Foundation, Moved, levels
+
+Array = NDArray[np.float64]
+
+COUNTS = (28, 48, 120, 160)
+PRELOAD = 9e3
+"""Of a bolt of the default joint [N]."""
+ROUND = 400
+"""Nodes of the field."""
+SEED = 3
+PATCHES = (28, 48)
+HEIGHTS, STEP, FINE = (1e-6, (1e-5, 2e-2)), 0.5, 0.12
+"""Loads of the heights over the hardness as in the spring, and their finer step for all nodes."""
+WAYS = 1.5 * np.linspace(0.0, 1.0, 25)[1:] ** 2
+AMPLITUDES = (0.15, 0.3, 0.6, 1.2)
+"""Ways over that of gross slip under the largest pressure [1]: 0.6 to 1 of the friction."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """States of a joint: the largest of each.
+
+    moment : factor of tilt in the shape [1]
+    apart  : least and largest normal motion over the largest approach [1]
+    tilt   : motion of the edge by each rotation over the largest approach [1]
+    """
+
+    moment: float
+    apart: tuple[float, float] = (-0.05, 0.05)
+    tilt: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """Along y or about the normal; factor of tilt in the shape [1], and motion by a tilt at the radius of
+    gyration over the largest approach [1]."""
+
+    turns: bool = False
+    moment: float = 0.0
+    tilt: float = 0.0
+
+
+MOTIONS = {
+    "along": Motion(),
+    "along, moment": Motion(moment=0.3),
+    "along, tilt 0.1": Motion(tilt=0.1),
+    "turning": Motion(turns=True),
+    "turning, tilt 0.1": Motion(turns=True, tilt=0.1),
+}
+"""Columns of the table of the friction."""
+
+
+def ranges(moment: float) -> dict[str, Range]:
+    """What the table has columns for; at `moment` the first nodes that touch open."""
+    return {
+        "no tilt": Range(0.9 * moment),
+        "tilt 0.1": Range(0.9 * moment, tilt=0.1),
+        "tilt 0.2": Range(0.9 * moment, tilt=0.2),
+        "opening": Range(1.2 * moment, (0.0, 0.4), 0.4),
+    }
+
+
+def opening_moment(shape: PressureShape) -> float:
+    """Factor of tilt [1] at which the first node that touches opens."""
+    touches = (shape.equal > 0.0) & (shape.tilt != 0.0)
+    return float(np.min(shape.equal[touches] / np.abs(shape.tilt[touches])))
+
+
+def deviation(
+    curve: Curve, mean: float, shape: PressureShape, points: PressureShape, states: Range, count: int = 64
+) -> tuple[float, float]:
+    """Largest deviations [1] of forces and moments, and of stiffnesses, of points from those of a shape.
+
+    The sums of share times p, p x, p y and k, k x, k y, k x^2, k x y, k y^2, each over the sum of its sizes
+    now or at tightening, whichever is larger, at `count` random states with 0.5 to 1.5 times the mean
+    pressure [Pa].
+    """
+    worst, reach = np.zeros(9), np.max(np.abs(shape.position), axis=0)
+    low = [0.5, -states.moment, states.apart[0], -states.tilt, -states.tilt]
+    high = [1.5, states.moment, states.apart[1], states.tilt, states.tilt]
+    unit = qmc.Sobol(5, rng=SEED).random(count)
+    for preload, moment, *motion in low + unit * (np.array(high) - low):
+        load = preload * mean, moment
+        start = tightened(curve, shape, load)
+        scale = (np.max(start) - curve.displacement[0]) * np.array(motion) / [1.0, reach[1], reach[0]]
+        there, size = sums(curve, shape, start, scale, reach)
+        few, _ = sums(curve, points, tightened(curve, points, load), scale, reach)
+        worst = np.maximum(worst, np.abs(few - there) / size)
+    return float(np.max(worst[:3])), float(np.max(worst[3:]))
+
+
+def tightened(curve: Curve, shape: PressureShape, load: tuple[float, float]) -> Array:
+    """Approaches (n) [m] under a mean pressure [Pa] and a factor of tilt [1]."""
+    return curve.inverse(load[0] * np.maximum(shape.equal + load[1] * shape.tilt, 0.0))
+
+
+def sums(
+    curve: Curve, shape: PressureShape, start: Array, motion: Array, reach: Array
+) -> tuple[Array, Array]:
+    """The nine sums and their sizes, of nodes that begin at approaches (n) [m] and move by normal motion [m]
+    and rotations [rad] about x and y."""
+    x, y = shape.position.T
+    now = curve.derivatives(start - (motion[0] + motion[1] * y - motion[2] * x))
+    x, y = x / reach[0], y / reach[1]
+    factors = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y])
+    values = [np.concatenate([p * factors[:3], k * factors]) for p, k in (now, curve.derivatives(start))]
+    sizes = [np.abs(each) @ shape.share for each in values]
+    return values[0] @ shape.share, np.maximum(*sizes)
+
+
+def field() -> PressureShape:
+    """A nodal field without symmetry: one half of a plate that touches around three bolts."""
+    unit = qmc.Sobol(2, rng=SEED).random(512)[:ROUND] - 0.5
+    x, y = 0.2 * unit[:, 0], 0.1 * unit[:, 1]
+    bolts = ((-0.06, 0.02), (0.01, -0.025), (0.07, 0.015))
+    near = [np.exp(-((x - a) ** 2 + (y - b) ** 2) / 0.03**2) for a, b in bolts]
+    share = np.full(ROUND, 1.0 / ROUND)
+    x, y = x - share @ x, y - share @ y
+    equal = sum(near) / np.mean(sum(near))
+    tilt = near[0] - near[1] + near[2]
+    tilt = tilt - np.mean(tilt)
+    rows = (tuple(values.tolist()) for values in (share, x, y, equal, tilt))
+    return NodalField(**dict(zip(("share", "x", "y", "equal", "tilt"), rows, strict=True))).shape()
+
+
+def plate(*bolts: tuple[float, float], size: tuple[float, float], hole: float, cone: float) -> PressureShape:
+    """Of a plate with bolts [m]."""
+    x, y = zip(*bolts, strict=True)
+    return BoltedPlate(
+        length=size[0], width=size[1], x=x, y=y, hole_diameter=hole, cone_diameter=cone
+    ).shape()
+
+
+def contacts() -> Iterator[tuple[str, PressureShape]]:
+    """Contacts of the table."""
+    yield "frame, 8 bolts", pressure_shape(default("bolted_joint").values.pattern)
+    four = ((-0.1, 0.02), (0.0, -0.03), (0.1, 0.02), (0.1, -0.02))
+    yield "plate, 4 bolts", plate(*four, size=(0.3, 0.1), hole=0.011, cone=0.03)
+    three = ((-0.03, 0.0), (0.0, 0.0), (0.03, 0.0))
+    yield "plate, a row", plate(*three, size=(0.12, 0.025), hole=0.0085, cone=0.02)
+    yield "field", field()
+
+
+def friction(
+    spring: BoltedJointSpring, shape: PressureShape, step: float, largest: float, motion: Motion
+) -> tuple[Array, Array]:
+    """Force or moment on 1 m2 [N], [N.m] from rest to the WAYS, and losses [J] of loops of the AMPLITUDES.
+
+    The joint's sliders with heights of a step stand on a shape under the preload; `largest` [m] is the
+    largest approach, over which the ways and the tilt are.
+    """
+    ratio = float(shear_ratio(spring.joint))
+    sliders = Foundation.of(spring.curve, ratio, spring.joint.mu, levels(*HEIGHTS, step))
+    (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
+    start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
+    approach = start - motion.tilt * largest * x / gyration
+    along = np.column_stack([-y, x]) / gyration if motion.turns else np.column_stack([0.0 * x, 1.0 + 0.0 * x])
+    gross = spring.joint.mu / ratio * largest * along
+
+    def moved(force: Array, way: float) -> Moved:
+        return sliders.moved(force, approach, approach, way * gross)
+
+    rest, losses = sliders.at_rest(approach.size), []
+    forces = [shape.share @ np.sum(moved(rest, way).traction * along, axis=1) for way in WAYS]
+    for size in AMPLITUDES:
+        back = moved(moved(rest, size).force, -2.0 * size)
+        losses.append(shape.share @ (back.loss + moved(back.force, 2.0 * size).loss))
+    return np.array(forces), np.array(losses)
+
+
+def mean_pressure(spring: BoltedJointSpring) -> float:
+    """Of the tightened joint [Pa]."""
+    return float(PRELOAD * spring.joint.n_bolts / spring.joint.A_0)
+
+
+def print_normal(spring: BoltedJointSpring) -> None:
+    """Deviation of forces and of stiffnesses from those of all nodes."""
+    names = list(ranges(1.0))
+    print("| contact | nodes | points | s | " + " | ".join(names) + " |\n" + "|---" * (4 + len(names)) + "|")
+    for name, shape in contacts():
+        for count in COUNTS:
+            start = time.perf_counter()
+            points = few_points(shape, count)
+            took = time.perf_counter() - start
+            cells = [
+                "{:.0e}, {:.0e}".format(
+                    *deviation(spring.curve, mean_pressure(spring), shape, points, states)
+                )
+                for states in ranges(opening_moment(shape)).values()
+            ]
+            row = [name, str(shape.share.size), str(points.share.size), f"{took:.1f}", *cells]
+            print("| " + " | ".join(row) + " |", flush=True)
+
+
+def print_friction(spring: BoltedJointSpring) -> None:
+    """Deviation of friction, over gross slip, and of loops from all nodes with fine heights."""
+    print("| contact | patches | " + " | ".join(MOTIONS) + " |\n" + "|---" * (2 + len(MOTIONS)) + "|")
+    for name, shape in contacts():
+        largest = float(np.max(tightened(spring.curve, shape, (mean_pressure(spring), 0.0))))
+        largest -= float(spring.curve.displacement[0])
+        exact = [friction(spring, shape, FINE, largest, motion) for motion in MOTIONS.values()]
+        for count in PATCHES:
+            points, cells = few_points(shape, count), []
+            for (force, loss), motion in zip(exact, MOTIONS.values(), strict=True):
+                few, lost = friction(spring, points, STEP, largest, motion)
+                worst = np.max(np.abs(few - force)) / np.max(np.abs(force))
+                cells.append(f"{worst:.1e}, {np.max(np.abs(lost / loss - 1.0)):.1%}")
+            print(f"| {name} | {points.share.size} | " + " | ".join(cells) + " |", flush=True)
+
+
+def main() -> None:
+    """Print the tables."""
+    spring = BoltedJointSpring.of(default("bolted_joint").values)
+    print_normal(spring)
+    print()
+    print_friction(spring)
+
+
+if __name__ == "__main__":
+    main()

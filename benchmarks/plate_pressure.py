@@ -1,0 +1,93 @@
+"""Pressure of two bolted plates: the cones of VDI 2230 beside finite elements of the same plates.
+
+    python benchmarks/plate_pressure.py
+
+For every plate the share of the force inside circles around the bolts, and the stiffness of the joint.
+"""
+
+import tempfile
+from contextlib import redirect_stdout
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu import cli
+from jointfmu.curve import approach_curve
+from jointfmu.drawing.tables import threads
+from jointfmu.fem.bolted_contact import BoltedContact
+from jointfmu.fem.bolts import BoltList
+from jointfmu.fem.geometry import Assembly, Plate
+from jointfmu.fields.joint_parameters import pressure_shape
+from jointfmu.footprint import plate
+from jointfmu.footprint.shape import PressureShape
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import ParameterFile, load
+
+PLATES = {
+    "four M12, 2 x 20 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --preload 30e3",
+    "four M12, 2 x 10 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 20 --preload 30e3",
+    "one M16, 2 x 20 mm": "--plate 100x100 --bolts M16 --grip 40 --preload 60e3",
+}
+"""{name: drawing} of steel plates, Ra 0.8 um."""
+RADII = (0.010, 0.0125, 0.015, 0.02, 0.025)
+"""Of the circles [m]."""
+OUTPUTS = ("K_zz", "K_rx", "K_ry", "K_rz", "p_max")
+FINE = 20
+"""Cells from a bolt's axis to the edge of its pressure, finer than in a joint, to tell the circles apart."""
+
+
+def made(options: str, folder: Path) -> ParameterFile:
+    """The joint of a drawing, its bolts without stiffness."""
+    path = folder / "plate.toml"
+    words = f"new bolted-joint {options} --material steel --Ra 0.8 --out {path}"
+    with redirect_stdout(StringIO()):
+        if cli.main(words.split()):
+            raise SystemExit(f"{words} failed")
+    return load(path).with_values({"bolt_stiffness": 0.0}, "user", "the interface alone")
+
+
+def computed(file: ParameterFile, options: str) -> PressureShape:
+    """The pressure of two elastic plates."""
+    pattern, words = file.values.pattern, options.split()
+    head = threads()[words[words.index("--bolts") + 1].rpartition("x")[2]].hexagon
+    thickness = 0.5e-3 * float(words[words.index("--grip") + 1])
+    side = Plate(
+        length=pattern.length, width=pattern.width, thickness=thickness, E=210e9, nu=0.3, density=7850.0
+    )
+    bolts = BoltList(x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=head)
+    contact, preload = BoltedContact.of(Assembly(file.name, side, side, bolts)), file.start("preload")
+    field = contact.solve(approach_curve(file.values), preload).field
+    return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
+
+
+def shown(file: ParameterFile, shape: PressureShape, fine: PressureShape) -> str:
+    """Two lines: the shares inside the circles, and the joint's stiffness."""
+    bolts = file.values.pattern.bolts
+    apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
+    force, rest = fine.share * fine.equal, (0.0, 0.0, 0.0)
+    shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
+    spring = BoltedJointSpring.of_nodes(file.values, shape)
+    state = spring.motion(file.start("preload"), 0.0, rest, rest)
+    return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)
+
+
+def main() -> None:
+    """Print both."""
+    usual = plate.ACROSS
+    for name, options in PLATES.items():
+        print(name)
+        with tempfile.TemporaryDirectory() as folder:
+            file = made(options, Path(folder))
+        cones = file.values.pattern.shape()
+        plate.ACROSS = FINE
+        fine = file.values.pattern.shape()
+        plate.ACROSS = usual
+        elastic = computed(file, options)
+        for what, shape, finer in (("cones", cones, fine), ("computed", elastic, elastic)):
+            print(f"  {what:9} {shown(file, shape, finer)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+"""Print every figure of docs/validity.md on the law `roughness`, six minutes.
+
+`python benchmarks/roughness_law.py`
+"""
+
+from dataclasses import replace
+
+import interface_laws as compare
+import numpy as np
+import roughness_cases as cases
+from scipy.optimize import least_squares
+from validity_laws import CHOICES
+from validity_tables import heading, row, spread
+
+from jointfmu.interface import stiffness_curve
+from jointfmu.progress import track
+
+WAVES = (5e-3, 40e-3)
+"""Longest waves [m] that are tried beside the usual one; the second is the side of the joints."""
+HEIGHTS = (0.3e-6, 1e-6, 3e-6)
+"""Heights [m] of a second scale."""
+FITTED = slice(0, 4)
+"""Pressures of `cases.MEASURED` that a second scale is fitted to: 0.1 to 2 MPa."""
+
+
+def name(roll_off):
+    """A band of waves in words."""
+    return "side" if roll_off == 1 else f"side/{roll_off}"
+
+
+def ratios(values):
+    """Numbers of two digits behind the point, as cells."""
+    return (f"{value:.2f}" for value in values)
+
+
+def elastic():
+    """The law over boundary elements on surfaces whose seeds were not used before."""
+    print(f"\nseeds of development {list(cases.DEVELOPMENT)}, here {cases.SEEDS}")
+    kinds = [(H, roll_off) for H in cases.HURST for roll_off in cases.LOADS]
+    found = {kind: cases.pressed(*kind) for kind in track(kinds, "surfaces")}
+    beyond = all_cases = 0
+    for roll_off, loads in cases.LOADS.items():
+        title = f"law over boundary elements, mean (least to largest), waves up to {name(roll_off)}, at y (x)"
+        heading(title, "H", *(f"{y:g} ({y * roll_off**2:.2g})" for y in loads), "beyond 30 %")
+        for H in cases.HURST:
+            one = found[H, roll_off]
+            ratio, use = one["law"] / one["k"], cases.held(roll_off, one["area"])
+            mean = one["law"].mean(axis=0) / one["k"].mean(axis=0)
+            cells = [f"{m:.2f} ({r.min():.2f} to {r.max():.2f})" for m, r in zip(mean, ratio.T, strict=True)]
+            missed = int((np.abs(ratio - 1.0) > 0.3)[use].sum())
+            row(H, *cells, f"{missed} of {use.sum()}")
+            beyond, all_cases = beyond + missed, all_cases + int(use.sum())
+    print(f"\nbeyond 30 %: {beyond} of {all_cases} single cases with x >= {cases.FEWEST:g}")
+    heading("the same with the tail of the heights, mean, waves up to side/16", "H", *cases.LOADS[16])
+    for H in cases.HURST:
+        one = found[H, 16]
+        row(H, *ratios(one["tail"].mean(axis=0) / one["k"].mean(axis=0)))
+    heading("exponent d ln k/d ln p", "H", "longest wave", "boundary elements", "law", "difference of means")
+    for (H, roll_off), one in found.items():
+        k, law = cases.exponents(one, roll_off)
+        row(H, name(roll_off), spread(k), f"{law.mean():.2f}", f"{(law - k).mean():+.2f}")
+
+
+def plastic():
+    """The law with a hardness over boundary elements."""
+    names = ("longest wave", "H over E* h'", "p/H", "K_loading", "K_N", "A_r")
+    heading("law over boundary elements with a hardness, H = 0.3 and 0.8", *names)
+    for roll_off in track((1, 4), "hardness"):
+        for hardness, load in ((0.5, 0.03), (0.5, 0.1), (0.15, 0.03), (0.15, 0.1), (0.05, 0.1), (0.05, 0.3)):
+            both = [cases.plastic(H, roll_off, hardness, load, seeds=cases.SEEDS[16]) for H in (0.3, 0.8)]
+            row(name(roll_off), hardness, load, *(spread(one) for one in np.concatenate(both, axis=1)))
+
+
+def joints():
+    """The law over measured joints, and the three laws beside it."""
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
+    for joint in cases.rough():
+        law = cases.joint_law(joint)
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        height = f"{law.h * 1e6:.2f}"
+        row(joint["id"], height, "p/(0.45 h)", *ratios(cases.MEASURED / (law.gamma * law.h) / middle))
+        row(joint["id"], height, "roughness", *ratios(cases.level(law, cases.MEASURED) / middle))
+    zhao, hu, yu = (case.law for case in compare.cases().values())
+    others = {
+        f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
+        for area, spot in CHOICES
+        if spot == "hertz" or area == "continuity"
+    }
+    heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
+    for joint in compare.measured()["normal"]:
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
+            k = stiffness_curve(law, cases.MEASURED)[0]
+            row(joint["id"], text, *(f"{one:.2g}" for one in k / middle))
+
+
+def second_scale():
+    """Longer longest waves, and a second scale in series."""
+    pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
+    heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
+    for joint in cases.rough():
+        law = cases.joint_law(joint)
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        for wave in WAVES:
+            k = cases.level(replace(law, longest_wave=wave), cases.MEASURED)
+            row(joint["id"], f"longest wave {wave * 1e3:g} mm", *ratios(k / middle))
+        row(joint["id"], "with the tail of the heights", *ratios(cases.tail(law, cases.MEASURED) / middle))
+        for h in HEIGHTS:
+            k = cases.wavy(law, cases.MEASURED, h, WAVES[-1])
+            row(joint["id"], f"in series {h * 1e6:g} µm over 40 mm", *ratios(k / middle))
+    heading("best two scales in series, 0.1 to 2 MPa", "joint", "h [µm]", "h_w [µm]", *pressures, "exponent")
+    for joint in cases.rough():
+        middle = compare.measured_middle(joint, cases.MEASURED)
+        h, k = best(joint, middle)
+        power = compare.exponent(cases.MEASURED[FITTED], k[FITTED])
+        row(joint["id"], *(f"{one * 1e6:.3g}" for one in h), *ratios(k / middle), f"{power:.2f}")
+
+
+def best(joint, middle):
+    """Heights (2,) [m] of two scales that fit a measured joint best, and their stiffness [N/m3]."""
+
+    def stiffness(logs):
+        h, second = np.exp(logs)
+        return cases.wavy(cases.joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
+
+    def miss(logs):
+        return np.log(stiffness(logs) / middle)[FITTED]
+
+    fit = least_squares(miss, np.log([1e-6, 1e-6]), bounds=np.log([1e-9, 1e-4]))
+    return np.exp(fit.x), stiffness(fit.x)
+
+
+def brake_reuss():
+    """The published contact law of the Brake-Reuss beam; the usual longest wave, and that of its filter."""
+    published = compare.measured("brake_reuss")
+    heading("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
+    for wave in (cases.LONGEST, cases.filtered_wave(published["filter_sigma"])):
+        row(f"{wave * 1e3:.3g}", *ratios(cases.brake_reuss(longest_wave=wave).values()))
+
+
+def main():
+    """Print the tables."""
+    brake_reuss()
+    joints()
+    second_scale()
+    elastic()
+    plastic()
+
+
+if __name__ == "__main__":
+    main()

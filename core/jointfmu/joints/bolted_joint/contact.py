@@ -1,0 +1,127 @@
+"""Sums over the contact of the bolted joint: its normal side, and shear with and without memory."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...footprint.shape import PressureShape
+from ...quantity import Number, where
+from ...sliders import Foundation
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where side 2 is, from the tightened state: shift s_rel [m], small turn theta [rad]."""
+
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def apart(self, shape: PressureShape) -> Array:
+        """How far the sides of the nodes are apart (n) [m]."""
+        x, y = shape.position.T
+        return np.asarray(self.shift[2] + self.turn[0] * y - self.turn[1] * x)
+
+    def along(self, shape: PressureShape) -> Array:
+        """Shift of side 2 along the surface at the nodes (n, 2) [m]."""
+        return along(shape, np.array([self.shift[0], self.shift[1], self.turn[2]]))
+
+
+def along(shape: PressureShape, rigid: Array) -> Array:
+    """Shift along the surface at the nodes (n, 2) [m] of a shift x, y and a turn about the normal (3)."""
+    x, y = shape.position.T
+    return np.stack([rigid[0] - rigid[2] * y, rigid[1] + rigid[2] * x], axis=-1)
+
+
+def over_plane(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
+    """Sum of a value (n) per area, and times x and y."""
+    each = shape.share * value
+    return {
+        name: np.sum(each),
+        f"{name}_x": each @ shape.position[:, 0],
+        f"{name}_y": each @ shape.position[:, 1],
+    }
+
+
+def about(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
+    """Sums of a value (n) per area times y^2 and x^2."""
+    each = shape.share * value
+    x, y = shape.position.T
+    return {f"{name}about_x": each @ y**2, f"{name}about_y": each @ x**2}
+
+
+def shear_sums(shape: PressureShape, traction: Array, tangent: Array) -> dict[str, Number]:
+    """Sums of a traction (n, 2) against the shift and its tangent (n, 3): xx, xy, yy."""
+    x, y = shape.position.T
+    (t_x, t_y), (xx, xy, yy) = traction.T, tangent.T
+    return {
+        "traction_x": shape.share @ t_x,
+        "traction_y": shape.share @ t_y,
+        "torsion": shape.share @ (x * t_y - y * t_x),
+        "tangent_x": shape.share @ xx,
+        "tangent_y": shape.share @ yy,
+        "tangent_z": shape.share @ (y**2 * xx - 2.0 * x * y * xy + x**2 * yy),
+    }
+
+
+def normal_sums(
+    shape: PressureShape, lifted: Array, stiffer: Array, derivatives: list[Array]
+) -> dict[str, Number]:
+    """Sums of the normal side: pressure and stiffness (n), and what shear adds to them (n) [Pa, Pa/m]."""
+    p, k = derivatives[:2]
+    x, y = shape.position.T
+    return {
+        **over_plane(shape, "normal", p + lifted),
+        "normal_stiffness": shape.share @ (k + stiffer),
+        **about(shape, "normal_", k + stiffer),
+        "pressure": shape.share @ p,
+        **over_plane(shape, "stiffness", k),
+        **about(shape, "", k),
+        "about_xy": (shape.share * k) @ (x * y),
+    }
+
+
+def elastic_shear(
+    limit: Number, rho: Number, derivatives: Sequence[Number], u_x: Number, u_y: Number
+) -> tuple[Number, ...]:
+    """Shear of a node without memory, from the potential per area
+
+        S = t u^2/(1 + R),    R = sqrt(1 + (t u/l)^2),    t = rho k.
+
+    limit       : l [Pa], mu times the pressure at tightening: the traction t u/R grows to it
+    derivatives : pressure [Pa] over the approach and its first three derivatives; k is the first
+    u_x, u_y    : [m] shift
+
+    Returned are the traction along x and y [Pa], its derivatives xx, xy, yy in the shift [Pa/m], and what
+    shear adds to the normal traction [Pa], rho k' u^2/(R (1 + R)) <= l^2 k'/(rho k^2), and stiffness [Pa/m].
+    """
+    _, k, bend, twist = derivatives
+    carries, touches = limit > 0.0, k > 0.0
+    t, square = rho * k, u_x * u_x + u_y * u_y
+    per = where(carries, t / where(carries, limit, 1.0), 0.0 * t) ** 2
+    R = np.sqrt(1.0 + per * square)
+    secant, turn = where(carries, t / R, 0.0 * t), per / (R * R)
+    g = where(carries, square / (R * (1.0 + R)), 0.0 * square)
+    slope = -g * g * per * (1.0 + 2.0 * R) / R * where(touches, bend / where(touches, k, 1.0), 0.0 * k)
+    return (
+        secant * u_x,
+        secant * u_y,
+        secant * (1.0 - turn * u_x * u_x),
+        -secant * turn * u_x * u_y,
+        secant * (1.0 - turn * u_y * u_y),
+        rho * bend * g,
+        rho * (twist * g + bend * slope),
+    )
+
+
+def loop_sums(foundation: Foundation, share: Array, approach: Array, size: Array) -> dict[str, Number]:
+    """Loss of a cycle with amplitudes a (n) [m] at approaches (n) [m], and the elastic energy at its end.
+
+    Under constant load 8 (I - B a/2) and B a/2 [J/m2], B the backbone and I its integral over a.
+    """
+    stored = 0.5 * foundation.backbone(approach, size) * size
+    loss = 8.0 * (foundation.work(approach, size) - stored)
+    return {"loop_work": share @ np.maximum(loss, 0.0), "loop_energy": share @ stored}

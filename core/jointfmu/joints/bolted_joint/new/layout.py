@@ -1,0 +1,100 @@
+"""Where the bolts of a drawing are."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....drawing.part import Given
+from ....drawing.reading import number, numbers
+from ....drawing.tables import Thread, threads
+
+Array = NDArray[np.float64]
+_BOLTS = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
+_GRID = re.compile(r"(\d+)x(\d+)")
+
+
+def bolts(text: str) -> tuple[int, Thread]:
+    """Number and thread of 4xM12. Raises ValueError for another form or an unknown thread."""
+    match = _BOLTS.fullmatch(text.strip())
+    if not match or match[1] == "0":
+        raise ValueError(f"--bolts = {text!r} are no bolts; expected a number and a thread, as in 4xM12")
+    name = match[2].upper()
+    if name not in threads():
+        raise ValueError(f"--bolts = {text!r}: thread {name} is unknown, allowed are {', '.join(threads())}")
+    return int(match[1] or 1), threads()[name]
+
+
+def positions(given: Given, count: int) -> Array:
+    """Places (count, 2) [m] of the bolts from the middle of the plate.
+
+    Raises ValueError, one line, for places that are not those of so many bolts.
+    """
+    at, circle = given["at"], given["circle"]
+    if at and circle:
+        raise ValueError("--at beside --circle: expected one of them")
+    if given["grid"] and not (at and "," not in at[0]):
+        raise ValueError(f"--grid = {given['grid']!r} needs the distances of the outermost bolts, --at LxW")
+    if circle:
+        radius = 0.5 * number("circle", circle, "mm", "m")
+        angle = 2.0 * np.pi * (np.arange(count) + 0.5) / count
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    if not at:
+        if count == 1:
+            return np.zeros((1, 2))
+        raise ValueError(f"the places of {count} bolts are missing; expected --at or --circle")
+    if "," in at[0]:
+        return _list(at, count)
+    if len(at) > 1:
+        raise ValueError(f"--at = {at[0]!r} and more: expected one LxW, or the place X,Y of each bolt")
+    spans = numbers("at", at[0], "mm", "m", by="x", count=2, least=None)
+    return _rectangle(spans, count, given["grid"])
+
+
+def _list(at: Sequence[str], count: int) -> Array:
+    places = [numbers("at", text, "mm", "m", by=",", count=2, least=None) for text in at]
+    if len(places) != count:
+        raise ValueError(f"--at has {len(places)} places, expected {count}: one for each of --bolts")
+    return np.array(places)
+
+
+def _rectangle(spans: Sequence[float], count: int, grid: str | None) -> Array:
+    """A grid of bolts, all of it or its rim."""
+    if min(spans) < 0.0:
+        raise ValueError(f"--at = {min(spans):g} m is outside [0, inf): distance of the outermost bolts")
+    columns, rows = _grid(spans, count, grid)
+    x, y = (
+        0.5 * span * (np.linspace(-1.0, 1.0, n) if n > 1 else np.zeros(1))
+        for span, n in zip(spans, (columns, rows), strict=True)
+    )
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(columns), np.arange(rows)))
+    if count != columns * rows:
+        rim = (i % (columns - 1) == 0) | (j % (rows - 1) == 0)
+        i, j = i[rim], j[rim]
+    return np.column_stack([x[i], y[j]])
+
+
+def _grid(spans: Sequence[float], count: int, grid: str | None) -> tuple[int, int]:
+    """Bolts along x and y."""
+    if grid:
+        match = _GRID.fullmatch(grid)
+        if not match or 0 in (sizes := (int(match[1]), int(match[2]))):
+            raise ValueError(f"--grid = {grid!r} is no grid; expected the bolts along x and y, as in 3x2")
+        columns, rows = sizes
+        rim = 2 * (columns + rows) - 4 if min(sizes) > 2 else columns * rows
+        if count not in (columns * rows, rim):
+            allowed = f"{columns * rows}" + (f" or, on its rim, {rim}" if rim != columns * rows else "")
+            raise ValueError(f"--grid = {grid} has {allowed} bolts, but --bolts states {count}")
+    elif spans[1] == 0.0:
+        columns, rows = count, 1
+    elif spans[0] == 0.0:
+        columns, rows = 1, count
+    elif count == 4:
+        columns, rows = 2, 2
+    else:
+        raise ValueError(f"{count} bolts on a rectangle: expected --grid, the bolts along x and y, as in 3x2")
+    for n, span, axis in ((columns, spans[0], "x"), (rows, spans[1], "y")):
+        if n > 1 and span == 0.0:
+            raise ValueError(f"--at: {n} bolts along {axis} need a distance above 0 there")
+    return columns, rows

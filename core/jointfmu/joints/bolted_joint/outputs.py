@@ -1,0 +1,114 @@
+"""What the bolted joint exports, from sums over its contact."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ...asperity import mindlin
+from ...quantity import Number, where
+from .law import Bolted, shear_ratio
+
+SUMS = (
+    "tightened", "tightened_x", "tightened_y",
+    "normal", "normal_x", "normal_y",
+    "normal_stiffness", "normal_about_x", "normal_about_y",
+    "pressure", "stiffness", "stiffness_x", "stiffness_y", "about_x", "about_y", "about_xy",
+    "plastic", "elastic",
+    "traction_x", "traction_y", "torsion",
+    "tangent_x", "tangent_y", "tangent_z",
+    "loss", "loop_work", "loop_energy",
+)  # fmt: skip
+"""Sums over the contact, times shares of the area.
+
+tightened                  : [Pa] pressure at tightening; _x, _y: times x and y [N/m]
+normal                     : [Pa] normal traction now, with what shear adds; _x, _y: times x and y
+normal_stiffness           : [Pa/m] its derivative in the approach; _about_x, _about_y: times y^2 and x^2
+pressure, stiffness        : [Pa, Pa/m] of the normal law; _x, _y, about_*: times x, y, y^2, x^2, x y
+plastic, elastic           : [J] works of first loading of the whole area
+traction_x, _y, torsion    : [Pa] shear traction against the shift, and its moment [N/m] about the normal
+tangent_x, _y, _z          : [Pa/m] derivatives of these in the shift along x, along y and the turn
+loss                       : [J/m2] turned into heat by friction so far
+loop_work, loop_energy     : [J/m2] loss of a cycle at the present amplitude, and elastic energy at its end
+"""
+
+
+def outputs(
+    joint: Bolted,
+    sums: Mapping[str, Number],
+    shift: Sequence[Number],
+    turn: Sequence[Number],
+    rates: Sequence[Number],
+    p_max: Number,
+) -> dict[str, Number]:
+    """Outputs from the SUMS at a shift s_rel [m] and small turn theta [rad] with rates v_rel and omega.
+
+    A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
+    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, by their tension alone.
+    """
+    area, rho = joint.A_0, shear_ratio(joint)
+    bolts, (bolt_x2, bolt_y2) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_spread
+    K_n = area * sums["stiffness"]
+    eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
+    first_loading = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
+    C_n = where(joint.plastic_damping, first_loading, 0.0 * K_n)
+    C_t = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K_n)
+    viscous = [where(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
+    tension = [-bolts * shift[2], -bolts * bolt_y2 * turn[0], -bolts * bolt_x2 * turn[1]]
+    f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
+    eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
+    return {
+        "f_x": f_x + viscous[0],
+        "f_y": f_y + viscous[1],
+        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2],
+        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3],
+        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4],
+        "m_z": m_z + viscous[5],
+        "K_xx": area * sums["tangent_x"],
+        "K_yy": area * sums["tangent_y"],
+        "K_zz": area * sums["normal_stiffness"] + bolts,
+        "C_xx": C_t,
+        "C_yy": C_t,
+        "C_zz": C_n,
+        "eta_t": eta_t,
+        "eta_n": eta_n,
+        "K_rx": area * sums["normal_about_x"] + bolts * bolt_y2,
+        "K_ry": area * sums["normal_about_y"] + bolts * bolt_x2,
+        "K_rz": area * sums["tangent_z"],
+        "p_mean": sums["pressure"],
+        "p_max": p_max,
+        "slip": _slip(sums, joint.mu),
+        "E_loss": area * sums["loss"],
+        "eta_loop": eta_loop,
+        "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, rho * K_n),
+    }
+
+
+def _ratio(part: Number, whole: Number) -> Number:
+    """part/whole [1], 0 of nothing."""
+    some = whole > 0.0
+    return where(some, part / where(some, whole, 1.0), 0.0 * part)
+
+
+def _slip(sums: Mapping[str, Number], mu: Number) -> Number:
+    """Shear force over its limit [1]."""
+    square = sums["traction_x"] ** 2 + sums["traction_y"] ** 2
+    shears = square > 0.0
+    return _ratio(where(shears, np.sqrt(where(shears, square, 1.0)), 0.0 * square), mu * sums["pressure"])
+
+
+def _viscous(
+    area: Number, sums: Mapping[str, Number], C_t: Number, C_n: Number, rates: Sequence[Number]
+) -> list[Number]:
+    """Forces and moments [N, N.m] of dashpots that are shared out over the contact as the stiffness is."""
+    v_x, v_y, v_z, w_x, w_y, w_z = rates
+    K, K_x, K_y = (sums[name] for name in ("stiffness", "stiffness_x", "stiffness_y"))
+    K_yy, K_xx, K_xy = (sums[name] for name in ("about_x", "about_y", "about_xy"))
+    t, n = -_ratio(C_t, K), -_ratio(C_n, K)
+    return [
+        t * (K * v_x - K_y * w_z),
+        t * (K * v_y + K_x * w_z),
+        n * (K * v_z + K_y * w_x - K_x * w_y),
+        n * (K_y * v_z + K_yy * w_x - K_xy * w_y),
+        -n * (K_x * v_z + K_xy * w_x - K_xx * w_y),
+        t * (K_x * v_y - K_y * v_x + (K_xx + K_yy) * w_z),
+    ]

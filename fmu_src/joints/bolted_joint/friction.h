@@ -1,0 +1,63 @@
+/* Repeats `Foundation` of the package: friction with memory, by sliders that follow from the normal law. */
+#ifndef JOINTFMU_FRICTION_H
+#define JOINTFMU_FRICTION_H
+
+#include "curve.h"
+#include "energy.h"
+
+enum {
+    HEIGHTS = N_LEVELS - 1, /* ranges of heights, whose springs two sliders stand for */
+    SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
+};
+
+typedef struct {
+    const Curve *curve;
+    const Energy *energy; /* its integral */
+    double mu, ratio;
+    double height[N_LEVELS], load[N_LEVELS], stiffness[N_LEVELS];
+    double springs[HEIGHTS]; /* normal stiffness of all springs of a range */
+    double normal[HEIGHTS];  /* their normal force when the last one touches */
+    double apart[HEIGHTS];   /* normal force by which the two sliders differ from then on */
+    /* Of the sliders of ranges whose springs all touch: stiffness, 1/K, limit over the approach. */
+    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS], grows[SLIDERS];
+    double stick[HEIGHTS]; /* sum of K up to a range */
+} Foundation;
+
+/* Where a patch is on the curve: approach, the load with its derivatives there, its integral up to there. */
+typedef struct {
+    double approach, y[3], energy;
+    int full, touched; /* ranges whose springs all, or some, touch */
+} Point;
+
+/* A straight path of a patch: force of the sliders before, where it begins and ends, the shift. */
+typedef struct {
+    const double *force[2];
+    const Point *from, *to;
+    double shift[2];
+    bool straight; /* no force and no shift along y */
+} PatchPath;
+
+/* Room for sliders whose stiffness stays: limits, squares beyond them, changes of the tangent, heat. */
+typedef struct {
+    double limit[SLIDERS], over[SLIDERS];
+    double xx[SLIDERS], xy[SLIDERS], yy[SLIDERS], heat[SLIDERS];
+} Work;
+
+/* What the sliders of a patch give together, per area; a rate is its derivative along a seed. */
+typedef struct {
+    double traction[2], tangent[3], loss;
+} Shear;
+
+/* Both tables are looked up later on. */
+void foundation_tabulate(Foundation *foundation, const Curve *curve, const Energy *energy, double mu, double ratio);
+/* The search begins at a number of ranges that are near to be full. */
+Point foundation_point(const Foundation *foundation, double approach, int near);
+/* Carry the sliders along a path; `moved` are the forces after it, along x and y, of those that
+ * touch on it; along y they are left out where the path is straight and the load rests. */
+void foundation_move(const Foundation *foundation, const PatchPath *path, double *const moved[2], Work *work,
+                     Shear *shear);
+/* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */
+void foundation_rates(const Foundation *foundation, const PatchPath *path, const double rates[2],
+                      const double shift[2], Shear *rate);
+
+#endif

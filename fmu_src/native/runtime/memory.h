@@ -1,0 +1,27 @@
+/* Memory of a joint whose outputs depend on the path of its inputs; N_MEMORY is 0 for all others.
+ *
+ * Inputs may be tried at will: outputs are functions of them and of the path up to the inputs that were
+ * accepted last. Accepted are those at the end of initialization, of a step, of an integrator step, of an
+ * event, and the path goes straight from one to the next. At accepted inputs the outputs stay those of the way
+ * that led there, stiffness and derivatives too, until others are accepted. */
+#ifndef JOINTFMU_MEMORY_H
+#define JOINTFMU_MEMORY_H
+
+#include "instance.h"
+
+/* The memory from which the path goes on to the present inputs. */
+static inline const double *memory_of(const Instance *m)
+{
+    const Path *path = &m->now.path;
+    bool rests = N_MEMORY && path->accepted;
+    for (size_t i = 0; i < N_INPUTS && rests; i++)
+        rests = m->now.values[FIRST_INPUT + i] == path->inputs[i];
+    return path->memory[rests ? 1u - path->last : path->last];
+}
+
+/* Accept the inputs of the last evaluation. */
+void memory_accept(Instance *m);
+/* Let the path begin at the accepted inputs: what changes from now on does not change the way that led there. */
+void memory_settle(Instance *m);
+
+#endif

@@ -1,0 +1,303 @@
+"""The hysteresis in the FMUs: the package's numbers, memory and derivatives, in every flavour."""
+
+import struct
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+from zipfile import ZipFile
+
+import numpy as np
+import pytest
+from conftest import Fmu, run_host
+from natives import Host, close, jacobian, slope
+
+from jointfmu.joints import MODELS
+from jointfmu.joints.harmonic_drive.hysteresis import SLIDERS
+from jointfmu.parameters import default
+
+SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
+LOOP = {"hysteresis_loss": 3e-4}
+MEMORY = SLIDERS + 2
+TINY = 1e-15
+"""Sums of sliders in another order, where what is left is zero: [N.m], [rad], [J]."""
+TURNS = (7e-4, 2e-4, 6e-4, -9e-4, -9e-4, 1e-4, 12e-4, 0.0)
+"""Wind-ups of a path with minor loops and a rest."""
+
+
+@pytest.fixture
+def instance(native: Path, fmus: Path) -> Iterator[Any]:
+    """Makes instances of any flavour and frees them after the test."""
+    made: list[Fmu] = []
+
+    def make(name: str, flavour: str, exchange: bool = False) -> Fmu:
+        folder = fmus if flavour == "python" else native / flavour
+        made.append(Fmu(folder / f"{name}.fmu", exchange=exchange))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.free()
+
+
+def path(name: str) -> list[dict[str, float]]:
+    """Inputs along a path: both flanges turn, with speeds; or the torque of the same wind-ups."""
+    if name == COMPLIANCE:
+        return [{"tau": 4e3 * phi} for phi in TURNS]
+    return [
+        {"phi1": 3.0 * phi, "w1": 0.1 * k, "phi2": 1.03 * phi, "w2": -0.01 * k} for k, phi in enumerate(TURNS)
+    ]
+
+
+def accept(instance: Fmu) -> None:
+    """A step of either interface."""
+    if instance.exchange:
+        instance.fmu.completedIntegratorStep()
+    else:
+        instance.step()
+
+
+def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
+    """Up to where steps are made."""
+    instance.start(values)
+    if instance.exchange:
+        instance.fmu.enterContinuousTimeMode()
+    return instance
+
+
+def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
+    """Send inputs; get outputs and memory after the way to them, step by step."""
+    model, file = MODELS[name], default("harmonic_drive").with_values(changes, "user", "test")
+    spring = model.spring(file.values)
+    memory = model.rest(spring)
+    inputs = dict.fromkeys((v.name for v in model.inputs), 0.0)
+    found = None
+    while True:
+        inputs |= yield found
+        out, memory = model.evolve(spring, inputs, memory)
+        found = {k: float(v) for k, v in out.items()}, memory
+
+
+def saved(instance: Fmu) -> bytes:
+    """The FMU's state as bytes."""
+    state = instance.fmu.getFMUState()
+    data = instance.fmu.serializeFMUState(state)
+    instance.fmu.freeFMUState(state)
+    return bytes(data)
+
+
+def memory_of(instance: Fmu) -> np.ndarray:
+    """Memory after the last accepted inputs, from the end of a native state as snapshot.c writes it."""
+    inputs = sum(v.causality == "input" for v in instance.variables.values())
+    tail = f"<{2 * MEMORY}d{inputs}dIIQ"
+    numbers = struct.unpack(tail, saved(instance)[-struct.calcsize(tail) :])
+    assert numbers[-2] == 1  # there are accepted inputs
+    return np.array(numbers[: 2 * MEMORY]).reshape(2, MEMORY)[numbers[-3]]
+
+
+# The package's numbers
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_outputs_and_memory_are_the_packages(host: Host, name: str, version: str, exchange: bool) -> None:
+    found, expected = begin(host(name, version, exchange=exchange), LOOP), package(name)
+    next(expected)
+    for inputs in path(name):
+        outputs, memory = expected.send(inputs)
+        assert found.at(inputs) == close(outputs)
+        accept(found)
+        assert found.get() == close(outputs)
+        assert memory_of(found) == pytest.approx(memory, rel=1e-9, abs=TINY)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_python_flavour_is_the_package(instance: Any, name: str) -> None:
+    found, expected = begin(instance(name, "python"), LOOP), package(name)
+    next(expected)
+    for inputs in path(name):
+        outputs, _ = expected.send(inputs)
+        assert found.at(inputs) == outputs
+        found.step()
+        assert found.get() == outputs
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
+def test_the_loop_opens_as_stated(instance: Any, flavour: str) -> None:
+    compliance = begin(instance(COMPLIANCE, flavour), LOOP)
+    zero = []
+    for tau in (5.0, 0.0, -5.0, 0.0):
+        zero.append(compliance.at({"tau": tau})["phi_rel"])
+        compliance.step()
+    assert zero[1] - zero[3] == close(3e-4)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_derivatives_are_those_at_the_accepted_state(host: Host, name: str, version: str) -> None:
+    """Against central differences of trials, away from the point where the motion turns."""
+    found, driven = begin(host(name, version), LOOP), "tau" if name == COMPLIANCE else "phi2"
+    size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01}
+    for inputs in path(name)[:-1]:
+        found.set(inputs)
+        found.step()
+        for part in (0.4, -0.7):
+            there = inputs | {driven: inputs[driven] + 0.3 * part * size[driven]}
+            found.at(there)
+            J = jacobian(found)
+            for moved in there:
+                h = 1e-6 * size[moved]
+                up, down = (found.at(there | {moved: there[moved] + sign * h}) for sign in (1, -1))
+                for output in found.outputs:
+                    expected = (up[output] - down[output]) / (2.0 * h)
+                    # round-off of the difference; no slider begins to slip within it
+                    assert J[output, moved] == pytest.approx(expected, rel=1e-6, abs=1e-9 / size[moved])
+
+
+# States
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_trials_leave_no_trace(instance: Any, name: str) -> None:
+    for flavour, exchange in (
+        ("fmi2", False),
+        ("fmi2", True),
+        ("fmi3", False),
+        ("fmi3", True),
+        ("python", False),
+    ):
+        plain, tried = (begin(instance(name, flavour, exchange), LOOP) for _ in range(2))
+        for inputs in path(name):
+            for other in reversed(path(name)):
+                tried.at(other)
+            assert tried.at(inputs) == plain.at(inputs)
+            accept(tried), accept(plain)
+            for other in path(name):
+                tried.at(other)
+            assert tried.at(inputs) == plain.get()
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
+@pytest.mark.parametrize("name", NAMES)
+def test_no_step_changes_an_output_whose_inputs_did_not_change(
+    instance: Any, name: str, flavour: str
+) -> None:
+    found = begin(instance(name, flavour), LOOP)
+    for inputs in path(name):
+        before = found.at(inputs)
+        slopes = None if flavour == "python" else jacobian(found)
+        for _ in range(3):
+            found.step()
+            assert found.get() == before
+            assert slopes is None or jacobian(found) == slopes
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
+def test_a_master_may_go_back(instance: Any, flavour: str) -> None:
+    """Some steps, back to the state before, once more in another order: as if it had never been."""
+    plain, used = (begin(instance(SPRING, flavour), LOOP) for _ in range(2))
+    way = path(SPRING)
+    for inputs in way[:3]:
+        for one in (plain, used):
+            one.set(inputs)
+            one.step()
+    state, time = used.fmu.getFMUState(), used.time
+    for inputs in way[4:]:
+        used.set(inputs)
+        used.step()
+    used.fmu.setFMUState(state)
+    used.fmu.freeFMUState(state)
+    used.time = time
+    assert used.get() == plain.get()
+    for inputs in way[3:]:
+        for one in (plain, used):
+            one.set(inputs)
+            one.step()
+        assert used.get() == plain.get()
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
+def test_a_refused_step_changes_nothing(instance: Any, flavour: str) -> None:
+    found, plain = (begin(instance(SPRING, flavour), LOOP) for _ in range(2))
+    for inputs in path(SPRING):
+        found.set({"phi2": float("nan")})
+        found.refused(found.step)
+        for one in (found, plain):
+            one.set(inputs)
+            one.step()
+        assert found.get() == plain.get()
+
+
+CONTINUE = """
+import sys
+from pathlib import Path
+from conftest import Fmu
+flavour, file, data, *way = sys.argv[1:]
+instance = Fmu(Path(file))
+if flavour == "python":
+    instance.start()
+state = instance.fmu.deserializeFMUState(Path(data).read_bytes())
+instance.fmu.setFMUState(state)
+instance.time = 3.0
+for phi in way:
+    print(*(x.hex() for x in instance.at({"phi2": float(phi)}).values()))
+    instance.step()
+instance.free()
+"""
+
+
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
+def test_another_process_goes_on(
+    instance: Any, native: Path, fmus: Path, tmp_path: Path, flavour: str
+) -> None:
+    found = begin(instance(SPRING, flavour), LOOP)
+    for phi in TURNS[:3]:
+        found.set({"phi2": phi})
+        found.step()
+    data = tmp_path / "state"
+    data.write_bytes(saved(found))
+    file = (fmus if flavour == "python" else native / flavour) / f"{SPRING}.fmu"
+    done = run_host(CONTINUE, flavour, file, data, *TURNS[3:])
+    assert done.returncode == 0, done.stderr
+    rows = []
+    for phi in TURNS[3:]:
+        rows.append(" ".join(x.hex() for x in found.at({"phi2": phi}).values()))
+        found.step()
+    assert done.stdout.splitlines() == rows
+
+
+def test_inputs_that_move_in_a_step_come_from_where_they_are(host: Host) -> None:
+    """FMI 2: to the turning point by set, on from there by a derivative, in one step."""
+    moving, plain = (begin(host(SPRING, "fmi2"), LOOP) for _ in range(2))
+    for one in (moving, plain):
+        one.set({"phi2": 6e-4})
+    plain.step()
+    plain.set({"phi2": 6e-4 + 1.0 * -2e-4})
+    plain.step()
+    slope(moving, phi2=-2e-4)
+    moving.step()
+    assert moving.get() == plain.get()
+
+
+def test_a_tuned_parameter_acts_from_the_accepted_point_on(host: Host, version: str) -> None:
+    found = begin(host(SPRING, version), LOOP)
+    found.set({"phi2": 6e-4})
+    found.step()
+    before = found.get()
+    assert found.at({"hysteresis_loss": 3e-4}) == before
+    smaller = found.at({"hysteresis_loss": 1e-4})
+    assert smaller["tau"] < before["tau"]
+    assert smaller["E_loss"] > before["E_loss"]
+    off = found.at({"hysteresis_loss": 0.0})
+    assert off["E_loss"] == before["E_loss"]
+    assert off["tau"] == host(SPRING, version).start({"phi2": 6e-4}).get("tau")["tau"]
+
+
+@pytest.mark.parametrize(("name", "needed"), [(SPRING, True), (COMPLIANCE, True), ("GearContact", False)])
+def test_descriptions_ask_for_integrator_steps(native: Path, name: str, needed: bool) -> None:
+    flags = []
+    for flavour in ("fmi2", "fmi3"):
+        with ZipFile(native / flavour / f"{name}.fmu") as fmu:
+            flags.append(
+                ElementTree.fromstring(fmu.read("modelDescription.xml")).find("ModelExchange").attrib
+            )
+    assert flags[0]["completedIntegratorStepNotNeeded"] == str(not needed).lower()
+    assert flags[1]["needsCompletedIntegratorStep"] == str(needed).lower()

@@ -1,0 +1,143 @@
+"""The law `roughness` against boundary elements on fresh surfaces, measured joints, a published contact law.
+
+The tables of docs/validity.md come from benchmarks/roughness_law.py; here are few surfaces with seeds of
+their own, and every measured joint. Bounds are those that the law has to keep.
+"""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
+import interface_laws
+import roughness_cases as cases
+
+SEEDS = {1: range(400, 416), 4: range(400, 403)}
+"""Of surfaces with waves up to side/1 and side/4: the few hills of the first differ more."""
+slow = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    """Boundary elements and law on three Hurst exponents and two bands, 128 points."""
+    return {
+        (H, roll_off): cases.pressed(H, roll_off, seeds=seeds, points=128)
+        for H in cases.HURST
+        for roll_off, seeds in SEEDS.items()
+    }
+
+
+def error(values):
+    """Standard error of the mean."""
+    return values.std(axis=0, ddof=1) / np.sqrt(len(values))
+
+
+def test_no_seed_of_development_is_used_again():
+    for seeds in (*cases.SEEDS.values(), *SEEDS.values()):
+        assert not set(cases.DEVELOPMENT) & set(seeds)
+
+
+@slow
+def test_stiffness_is_that_of_boundary_elements(pressed):
+    for (_, roll_off), one in pressed.items():
+        held = cases.held(roll_off, one["area"].max(axis=0))
+        assert held.sum() >= 3
+        ratio = one["law"] / one["k"]
+        miss = np.abs(one["law"].mean(axis=0) / one["k"].mean(axis=0) - 1.0)
+        assert np.all(miss[held] < 0.3 + error(ratio)[held])
+
+
+@slow
+def test_few_single_surfaces_of_many_hills_are_beyond(pressed):
+    missed = count = 0
+    for (_, roll_off), one in pressed.items():
+        if roll_off == 4:
+            held = cases.held(roll_off, one["area"])
+            missed += int((np.abs(one["law"] / one["k"] - 1.0) > 0.3)[held].sum())
+            count += int(held.sum())
+    assert count > 30
+    assert missed < 0.1 * count
+
+
+@slow
+def test_the_exponent_is_that_of_boundary_elements(pressed):
+    for (_, roll_off), one in pressed.items():
+        k, law = cases.exponents(one, roll_off)
+        assert abs(law.mean() - k.mean()) < 0.1 + error(law - k)
+
+
+@slow
+def test_many_hills_are_stiffer_than_the_law_at_light_load():
+    """The tail of the heights: k h/p rises with falling load however many hills there are."""
+    one = cases.pressed(0.55, 16, seeds=range(400, 402), points=256)
+    ratio = (one["law"] / one["k"]).mean(axis=0)
+    assert ratio[0] < ratio[-1] - 0.1
+    assert 0.55 < ratio[0] < 0.9
+    assert ratio[-1] == pytest.approx(1.0, abs=0.15)
+
+
+@slow
+def test_plastic_loading_is_softer_in_the_law_than_in_boundary_elements():
+    """Half as stiff, as the document says; unloading and area are bounds from below."""
+    loading, unloading, area = cases.plastic(0.8, 4, 0.15, 0.1, seeds=SEEDS[4][:2])
+    assert np.all((loading > 0.3) & (loading < 0.8))
+    assert np.all(unloading < 0.8)
+    assert np.all((area > 0.7) & (area < 1.0 + 1e-6))
+
+
+def test_every_cast_iron_joint_of_known_roughness_is_met_within_a_factor():
+    joints = [joint for joint in cases.rough() if joint["material"].startswith("cast iron")]
+    assert len(joints) == 3
+    p = np.geomspace(0.5e6, 2e6, 5)
+    for joint in joints:
+        ratio = cases.level(cases.joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+        assert np.all((ratio > 1.0 / 2.5) & (ratio < 2.5)), joint["id"]
+
+
+def test_the_plain_line_has_the_published_ratios():
+    """p/(0.45 h) at 1 MPa over C = 0.65, m = 0.45; C = 0.3 and 0.5, m = 0.5 in um, kgf/cm2."""
+    p = np.array([1e6])
+    expected = {"cast_iron.ground": 1.04, "cast_iron.scraped_fine": 0.66, "cast_iron.scraped_medium": 0.63}
+    for joint in cases.rough():
+        if joint["id"] in expected:
+            line = p / (cases.GAMMA * cases.joint_law(joint).h)
+            ratio = line / interface_laws.measured_middle(joint, p)
+            assert ratio == pytest.approx(expected[joint["id"]], abs=0.005)
+
+
+def test_the_steel_joints_are_missed_sixfold():
+    p = np.array([1e6])
+    for joint in cases.rough():
+        if joint["material"].startswith("steel"):
+            ratio = cases.level(cases.joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+            assert 1 / 9 < ratio[0] < 1 / 4
+
+
+def test_every_roughness_says_how_it_is_known():
+    for joint in cases.rough():
+        assert joint["Rq_read"]
+        assert joint["A_0"] > 0.0
+    data = interface_laws.measured("brake_reuss")
+    assert data["source"]
+    assert data["read"]
+
+
+def test_the_contact_law_of_the_brake_reuss_beam_is_met_within_a_quarter():
+    assert cases.brake_reuss() == pytest.approx({"normal": 1.0, "loading": 1.0, "tangential": 1.0}, abs=0.25)
+
+
+def test_a_filter_leaves_half_of_its_wave():
+    sigma, wave = 3e-3, cases.filtered_wave(3e-3)
+    x = np.linspace(-0.05, 0.05, 20001)
+    weight = np.exp(-0.5 * (x / sigma) ** 2)
+    assert np.sum(weight * np.cos(2.0 * np.pi * x / wave)) / np.sum(weight) == pytest.approx(0.5, rel=1e-6)
+
+
+def test_a_second_scale_in_series_does_not_explain_light_load():
+    """A series element only softens, and the joints are stiffer than the law at 0.1 MPa."""
+    p = cases.MEASURED[:1]
+    for joint in cases.rough():
+        law = cases.joint_law(joint)
+        alone = cases.level(law, p)
+        assert alone < 0.5 * interface_laws.measured_middle(joint, p)
+        for height in (0.1e-6, 1e-6, 10e-6):
+            assert cases.wavy(law, p, height, 40e-3) < alone
