@@ -1,14 +1,11 @@
-"""The bolted joint in C: its functions, its nodes and patches."""
+"""The bolted joint in C: its functions and constants; its points are data."""
 
 import casadi as ca
-import numpy as np
 
 from jointfmu import sliders
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
 
-from ...native.c_text import number
 from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import ENERGY, Definitions, NativePart, column
 
@@ -58,16 +55,10 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in ("SMALL", "SPREAD", "LOBATTO")}
-    shape = spring.points(g.joint.pattern)
-    points = _points("NODES", shape) | _points("PATCHES", spring.patches(g.joint.pattern))
-    return Definitions(counts, numbers) | column("LEVELS", "N_LEVELS", spring.LEVELS) | points
+    return Definitions(counts, numbers) | column("LEVELS", "N_LEVELS", spring.LEVELS)
 
 
-def _points(name: str, shape: PressureShape) -> Definitions:
-    """Rows (n, 5) of share, x, y, equal, tilt."""
-    rows = np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
-    texts = ["{" + ", ".join(number(x) for x in row) + "}" for row in rows]
-    return Definitions({f"N_{name}": len(rows)}, {}, {f"{name}[N_{name}][5]": texts})
-
-
-PART = NativePart(_functions, ENERGY, _definitions)
+_SLIDERS = 2 * (len(spring.LEVELS) - 1)
+_MEMORY = 5 + spring.PATCHES * (1 + 2 * _SLIDERS)
+"""That of as many patches as there is room for: begun, loss, rigid motion, approach and forces of each."""
+PART = NativePart(_functions, ENERGY, _definitions, _MEMORY)
