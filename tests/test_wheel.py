@@ -104,9 +104,7 @@ def run(clean: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[s
 def test_the_wheel_alone_builds_variants_for_every_platform(clean: Path, tmp_path: Path) -> None:
     for package in ("casadi", "ziglang", "matplotlib", "pythonfmu"):
         assert run(clean, tmp_path, "-c", f"import {package}").returncode
-    where = run(
-        clean, tmp_path, "python", "-c", "import jointfmu, jointfmu_fmu_src.native as n; print(n.__file__)"
-    )
+    where = run(clean, tmp_path, "-c", "import jointfmu, jointfmu_fmu_src.native as n; print(n.__file__)")
     assert str(clean / "env") in where.stdout, where.stderr
     changes = dict([next(iter(CASES[NAME].tuned.items()))])
     file = default(MODELS[NAME].joint).with_values(changes, "user", "test")
