@@ -317,12 +317,13 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
+    const bool begun = memory[MOVED] != UNKNOWN;
     for (int j = 0; j < N_PATCHES; j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(PATCHES[j], inputs);
-        const double start = memory[MOVED] != UNKNOWN ? memory[APPROACHES + j] : end;
-        if (kind->foundation[j].reference != memory[REFERENCES + j])
-            lay(kind, j, memory[REFERENCES + j]);
+        const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
+        if (kind->foundation[j].reference != reference)
+            lay(kind, j, reference);
         const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
             *from = to->approach == start ? *to : foundation_point(f, start, from->full);
@@ -465,7 +466,7 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
         const Point *from = &kind->from[j], *to = &kind->to[j];
         const int n = 2 * (from->touched > to->touched ? from->touched : to->touched);
         double *force = after + FORCES + 2 * j * SLIDERS;
-        after[REFERENCES + j] = kind->moved == RESTING ? to->approach : before[REFERENCES + j];
+        after[REFERENCES + j] = kind->moved == RESTING ? to->approach : kind->foundation[j].reference;
         after[APPROACHES + j] = to->approach;
         copy_forces(kind->force[j][0], n, force);
         copy_forces(kind->force[j][1], kind->moved < FREE ? 0 : n, force + SLIDERS);

@@ -173,17 +173,17 @@ class BoltedJointSpring:
         patches, area = self.patches, self.joint.A_0
         before = _Memory.of(memory, patches.share.size)
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        begins = before.state == UNKNOWN
         shift = along(patches, rigid - before.rigid)
-        moved = self.foundation(before.reference).moved(
-            before.force, approach if begins else before.approach, approach, shift
-        )
+        begins = before.state == UNKNOWN
+        first, reference = (approach, approach) if begins else (before.approach, before.reference)
+        moved = self.foundation(reference).moved(before.force, first, approach, shift)
         loss = before.loss + area * float(patches.share @ moved.loss)
         rests, straight = before.state < ALONG, before.state < FREE
         state = FREE
         if straight and np.array_equal(rigid[1:], before.rigid[1:]):
             state = RESTING if rests and rigid[0] == before.rigid[0] else ALONG
-        reference = approach if state == RESTING else before.reference
+        if state == RESTING:
+            reference = approach
         after = _Memory(state, loss, rigid, reference, approach, moved.force)
         return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after.flat()
 
@@ -201,8 +201,9 @@ class BoltedJointSpring:
 class _Memory:
     """What friction remembers.
 
-    state     : UNKNOWN: the path begins at the present approach without a shift; RESTING: it has not moved
-                along its surface; ALONG: it has along x alone; FREE: along y or by a turn, too
+    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
+                shift; RESTING: it has not moved along its surface; ALONG: it has along x alone; FREE: along
+                y or by a turn, too
     loss      : [J] turned into heat so far
     rigid     : (3) shift along x and y [m] and turn about the normal [rad]
     reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
