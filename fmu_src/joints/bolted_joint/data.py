@@ -9,6 +9,7 @@ from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.quantity import flatten
+from jointfmu.sliders import offsets
 
 from ...native.data import DataPart, Table
 
@@ -25,9 +26,11 @@ def _stands(joint: Bolted) -> Mapping[str, Any]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, Table]:
+    patches = spring.patches(joint.pattern)
     return {
         "nodes": Table(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": Table(_rows(spring.patches(joint.pattern)), spring.PATCHES),
+        "patches": Table(_rows(patches), spring.PATCHES),
+        "offsets": Table(offsets(patches.share.size)[:, None], spring.PATCHES),
     }
 
 

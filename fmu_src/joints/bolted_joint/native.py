@@ -7,7 +7,7 @@ from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import ENERGY, Definitions, NativePart, column
+from ...native.part import ENERGY, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -54,11 +54,14 @@ def _shear(g: Graph) -> None:
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
-    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in ("SMALL", "SPREAD", "LOBATTO")}
-    return Definitions(counts, numbers) | column("LEVELS", "N_LEVELS", spring.LEVELS)
+    names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
+    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
+    counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
+    return Definitions(counts, numbers)
 
 
-_SLIDERS = 2 * (len(spring.LEVELS) - 1)
-_MEMORY = 5 + spring.PATCHES * (1 + 2 * _SLIDERS)
-"""That of as many patches as there is room for: begun, loss, rigid motion, approach and forces of each."""
+_SLIDERS = 2 * (sliders.BELOW + sliders.ABOVE + 2)
+_MEMORY = 5 + spring.PATCHES * (2 + 2 * _SLIDERS)
+"""That of as many patches as there is room for: how it moved, loss, rigid motion; of each patch reference,
+approach and forces."""
 PART = NativePart(_functions, ENERGY, _definitions, _MEMORY)
