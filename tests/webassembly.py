@@ -64,22 +64,19 @@ class Instance:
         return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
 
 
-def random_values(module: Module, rng: np.random.Generator) -> dict[str, Any]:
-    """Parameters around those of the first file, some so far off that they are refused."""
+def random_values(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+    """Parameters around those of the first file, some so far off that they are refused; Booleans too if
+    `switched`."""
     found: dict[str, Any] = {}
     flat = module.files[0].flat
     for name, item in module.model.parameter_fields().items():
         value, meta = flat[name], item.metadata
         if isinstance(value, bool):
-            found[name] = bool(rng.integers(2))
+            found[name] = bool(rng.integers(2)) if switched else value
         elif meta["whole"]:
             found[name] = value
         else:
-            width = 0.05 * (meta["interval"].high - meta["interval"].low)
-            moved = (
-                value + rng.uniform(-width, width)
-                if np.isfinite(width)
-                else value * np.exp(rng.normal(0.0, 0.2))
-            )
-            found[name] = float(moved)
+            width = 0.02 * (meta["interval"].high - meta["interval"].low)
+            moved = value * np.exp(rng.normal(0.0, 0.15))
+            found[name] = float(value + rng.uniform(-width, width) if np.isfinite(width) else moved)
     return found

@@ -1,7 +1,7 @@
 /* A chart: lines and marks over two axes as SVG, read by pointer, by keyboard and as a table. */
 
 const COLOURS = ["var(--blue)", "var(--red)", "var(--green)", "var(--violet)"];
-const MARGIN = { left: 62, right: 14, top: 10, bottom: 44 };
+const MARGIN = { left: 72, right: 14, top: 10, bottom: 44 };
 
 /** About n round numbers from low to high. */
 function ticks(low, high, n) {
@@ -36,6 +36,15 @@ function extent(values, { range, log }) {
   return [bottom, low < 0 && high <= 0 && high > 0.5 * low ? 0 : high + room];
 }
 
+/** Width of a picture, measured once for each size of the window: asking makes the browser lay out the page. */
+function widthOf(picture) {
+  if (picture.measured !== innerWidth) {
+    const width = picture.svg.clientWidth; // 0 as long as it is hidden
+    [picture.measured, picture.width] = [width && innerWidth, Math.max(280, width || 480)];
+  }
+  return picture.width;
+}
+
 class Chart {
   /** title and text say what is to be seen; x and y are the axes' labels. */
   constructor(parent, title, text = "") {
@@ -58,7 +67,7 @@ class Chart {
   draw(series, x, y) {
     this.series = series.filter((s) => s.x.length);
     this.axes = [x, y];
-    const width = Math.max(280, this.svg.clientWidth || 480);
+    const width = widthOf(this);
     const height = Math.round(Math.min(340, Math.max(220, 0.62 * width)));
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const [x0, x1] = extent(this.series.flatMap((s) => s.x), x);
@@ -88,7 +97,9 @@ class Chart {
     parts.push(`</svg><circle class="reader" r="5" visibility="hidden"/>`);
     this.svg.innerHTML = parts.join("");
     const told = this.series.map((s, k) => [s, k]).filter(([s]) => !s.quiet);
-    this.legend.replaceChildren(...(told.length > 1 ? told.map(([s, k]) => legendRow(s, k)) : []));
+    const names = told.map(([s]) => s.name).join("\n");
+    if (this.told !== names) this.legend.replaceChildren(...(told.length > 1 ? told.map(([s, k]) => legendRow(s, k)) : []));
+    this.told = names;
     this.tabulate();
   }
 

@@ -15,7 +15,7 @@ const scaled = (v, x) => {
 /** A labelled slider with a number beside it; `change` gets the SI value. */
 class Control {
   constructor(v, value, change) {
-    const id = `set-${v.name.replaceAll(".", "-")}`;
+    const id = `set-${v.name.replaceAll(/[. ]/g, "-")}`;
     this.v = v;
     const unit = unitText(v.shown);
     this.range = element("input", { type: "range", min: 0, max: 1000, step: 1, id: `${id}-slider`, "aria-label": `${v.name}, ${v.doc}`,

@@ -86,9 +86,11 @@ class Laboratory {
     if (this.good) {
       const now = Object.fromEntries(this.about.variables.filter((v) => v.causality !== "parameter").map((v) => [v.name, this.joint.get(v.name)]));
       this.map?.draw();
-      this.curves.draw(this, now);
+      const said = new Set(this.joint.messages), stiffness = [], found = ramp(this.joint, this.values, this.end, () => stiffness.push(this.body.stiffness()));
+      this.curves.draw(this, found, now);
+      this.body.draw(found, stiffness);
       this.published();
-      this.body.draw();
+      this.joint.messages = said; // of the sliders and of the path, not of a ramp that begins without load
       this.path.draw();
     }
     this.tell();
@@ -103,7 +105,7 @@ class Laboratory {
     const rows = this.about.points.map((p) => {
       const good = this.joint.begin(new Map([...rest, ...Object.entries(p.at)]));
       const v = this.joint.variables.get(p.output), now = good ? this.joint.get(p.output) : NaN;
-      return [p.id, p.place, p.doc, v.name, p.value * v.factor, now * v.factor, unitText(v.shown), `${digits(100 * (now / p.value - 1), 2)} %`];
+      return [p.id, p.place, p.doc, v.name, p.value * v.factor, now * v.factor, unitText(v.shown), `${digits(Number((100 * (now / p.value - 1)).toFixed(6)), 2)} %`];
     });
     at("points").replaceChildren(table("Published points and this joint", ["point", "where", "role", "output", "published", "here", "unit", "difference"], rows));
   }

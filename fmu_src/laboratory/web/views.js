@@ -32,8 +32,8 @@ class Curves {
     });
   }
 
-  draw(lab, now) {
-    const found = ramp(this.joint, lab.values, lab.end);
+  /** found: the ramp; now: inputs and outputs at the sliders. */
+  draw(lab, found, now) {
     for (const { over, quantities, chart } of this.panels) {
       const series = quantities.map((v) => ({ name: v.name, x: shown(over, found[over.name]), y: shown(v, found[v.name]) }));
       const first = quantities[0];
@@ -217,7 +217,7 @@ class PressureMap {
     const all = [...rows.map(([x, y]) => [x, y]), ...this.about.marks];
     const [xs, ys] = [0, 1].map((k) => all.map((p) => p[k]));
     const [x0, x1, y0, y1] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const width = Math.max(280, this.svg.clientWidth || 480), inner = width - 30;
+    const width = widthOf(this), inner = width - 30;
     const per = inner / Math.max(x1 - x0, 0.6 * (y1 - y0)), height = (y1 - y0) * per + 84;
     const left = (width - (x1 - x0) * per) / 2;
     const at = (x, y) => [left + (x - x0) * per, 15 + (y1 - y) * per];
@@ -256,7 +256,7 @@ class Body {
     this.turns = [this.input.unit, this.output.unit].includes("rad");
     const ending = this.input.name.match(/(_[xyz]|\d+)$/)?.[0] || "";
     this.rate = about.variables.find((v) => v.causality === "input" && v.unit === `${this.input.unit}/s` && v.name.endsWith(ending));
-    const body = { name: this.turns ? "inertia" : "mass", doc: "of the body on the joint", unit: this.turns ? "kg.m2" : "kg", shown: this.turns ? "kg.m2" : "kg", factor: 1, span: this.turns ? [1e-3, 10] : [1, 1000], log: true };
+    const body = { name: this.turns ? "body inertia" : "body mass", doc: "of the body on the joint", unit: this.turns ? "kg.m2" : "kg", shown: this.turns ? "kg.m2" : "kg", factor: 1, span: this.turns ? [1e-3, 10] : [1, 1000], log: true };
     this.inertia = this.turns ? 0.1 : 60;
     this.pulled = 0.2;
     const controls = [new Control(body, this.inertia, (x) => { if (x > 0) { this.inertia = x; lab.redraw(); } })];
@@ -265,7 +265,7 @@ class Body {
     place.append(element("div", { class: "row bodies" }, ...controls.map((c) => c.node)));
     const charts = element("div", { class: "charts" });
     place.append(charts);
-    this.over = new Chart(charts, "Resonance over the load", `Square root of |d${this.output.name}/d${this.input.name}|${this.moves ? "" : " (its inverse)"} over the ${body.name}, along the load ramp.`);
+    this.over = new Chart(charts, "Resonance over the load", `Square root of |d${this.output.name}/d${this.input.name}|${this.moves ? "" : " (its inverse)"} over the ${this.turns ? "inertia" : "mass"}, along the load ramp.`);
     this.decay = this.moves && new Chart(charts, "Let go", "");
   }
 
@@ -275,9 +275,9 @@ class Body {
     return this.moves ? slope : 1 / slope;
   }
 
-  draw() {
-    const { joint, lab } = this, found = [];
-    const values = ramp(joint, lab.values, lab.end, () => found.push(Math.sqrt(this.stiffness() / this.inertia) / (2 * Math.PI)));
+  /** values: the ramp; stiffness: along it. */
+  draw(values, stiffness) {
+    const { joint } = this, found = stiffness.map((K) => Math.sqrt(K / this.inertia) / (2 * Math.PI));
     const same = joint.about.ramp.input === this.input.name && this.moves;
     const load = same ? this.output : joint.variables.get(joint.about.ramp.input);
     const x = shown(load, values[load.name]).map(same ? Math.abs : (v) => v);

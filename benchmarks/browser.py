@@ -12,10 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 PROGRAM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-needed = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed; Debian's package is chromium")
+"""Chromium on this machine, or None; Debian's package is chromium."""
 _TIMEOUT = 120.0
 
 
