@@ -12,7 +12,7 @@ from jointfmu.parameters import ParameterFile, load
 
 from ..joints import folder
 from ..native.compiler import webassembly
-from ..native.generate import exported, sources
+from ..native.generate import sources
 
 _OWN = "laboratory.c"
 _MAP = "map.c"
@@ -36,7 +36,7 @@ class Module:
         Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
         """
         files = sources(self.model.name, self.files[0])
-        units = [name for name in exported(list(files), "3") if name != "fmi3.c"]
+        units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
         if self.map.is_file():
             added[_MAP] = self.map.read_text(encoding="utf-8")
