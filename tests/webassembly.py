@@ -1,22 +1,30 @@
 """The laboratory's modules in a WebAssembly runtime, and the native FMUs of the same parameter files."""
 
+import zipfile
 from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import fmpy
 import numpy as np
 from jointfmu_fmu_src.laboratory.modules import Module
-from jointfmu_fmu_src.native import build as native_build
-from jointfmu_fmu_src.native.compiler import libraries
+from jointfmu_fmu_src.native.compiler import file_name, libraries
+from jointfmu_fmu_src.native.description import fmi3_xml
+from jointfmu_fmu_src.native.generate import sources, token
 
 
 def native_fmu(module: Module, folder: Path) -> Path:
-    """The FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
-    with patch.object(native_build, "libraries", partial(libraries, platforms=[fmpy.platform_tuple])):
-        return native_build.build_fmi3(module.model.name, module.files[0], folder, "tunable")
+    """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
+    name, file = module.model.name, module.files[0]
+    files = sources(name, file)
+    units = [unit for unit in files if unit.endswith(".c") and unit != "fmi2.c"]
+    here = fmpy.platform_tuple
+    (library,) = libraries(name, files, units, [here]).values()
+    folder.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, token(files), "tunable"))
+        archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
+    return folder / f"{name}.fmu"
 
 
 class Instance:

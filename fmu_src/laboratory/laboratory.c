@@ -2,6 +2,7 @@
  * value references of the FMU; results other than numbers are 0 where all went well. */
 #include "derivative.h"
 #include "step.h"
+#include "token.h" /* generated: that of the FMU */
 
 #define SHOWN __attribute__((visibility("default")))
 
@@ -27,7 +28,7 @@ SHOWN const char *lab_said(void)
 SHOWN Instance *lab_new(void)
 {
     const Reporter reporter = {deliver, NULL, NULL};
-    return instance_new("lab_new", 3, CO_SIMULATION, MODEL_NAME, MODEL_TOKEN, false, reporter);
+    return instance_new("lab_new", 3, CO_SIMULATION, "laboratory", TOKEN, false, reporter);
 }
 
 /* Back to the state after `lab_new`; tables stay as long as the parameters come back as they were. */

@@ -12,7 +12,7 @@ from jointfmu.parameters import ParameterFile, load
 
 from ..joints import folder
 from ..native.compiler import webassembly
-from ..native.generate import sources
+from ..native.generate import sources, token
 
 _OWN = "laboratory.c"
 _MAP = "map.c"
@@ -40,7 +40,8 @@ class Module:
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
         if self.map.is_file():
             added[_MAP] = self.map.read_text(encoding="utf-8")
-        return webassembly(self.model.name, files | added, [*units, *added])
+        known = {"token.h": f'#define TOKEN "{token(files)}"\n'}
+        return webassembly(self.model.name, files | added | known, [*units, *added])
 
 
 def modules() -> list[Module]:

@@ -3,26 +3,32 @@
 #include "tabulated.h"
 #include "values.h"
 
+enum { ROOM = sizeof ((Kind *)0)->weight / sizeof *((Kind *)0)->weight };
+
+static int nodes; /* that are in the map */
+
 __attribute__((visibility("default"))) int lab_map_size(void)
 {
-    return N_NODES;
+    return nodes;
 }
 
 /* NULL: refused. */
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
     enum { S_REL_Z = 4, THETA_X = 8, THETA_Y };
-    static double map[N_NODES][4];
+    static double map[ROOM][4];
     if (instance_evaluate(m) != OK)
         return NULL;
     const double *inputs = m->now.values + FIRST_INPUT;
-    for (int i = 0; i < N_NODES; i++) {
-        const double x = NODES[i][PLACE_X], y = NODES[i][PLACE_Y];
-        const double apart = inputs[S_REL_Z] + inputs[THETA_X] * y - inputs[THETA_Y] * x;
-        map[i][0] = x;
-        map[i][1] = y;
-        map[i][2] = NODES[i][SHARE];
-        curve_at(&m->joint->curve, m->joint->kind.start[i] - apart, 0, &map[i][3]);
+    const Kind *kind = &m->joint->kind;
+    nodes = 0;
+    for (int i = 0; i < ROOM && kind->weight[i][0] > 0.0; i++) {
+        double *node = map[nodes++];
+        node[2] = kind->weight[i][0];
+        node[0] = kind->weight[i][1] / node[2];
+        node[1] = kind->weight[i][2] / node[2];
+        const double apart = inputs[S_REL_Z] + inputs[THETA_X] * node[1] - inputs[THETA_Y] * node[0];
+        curve_at(&m->joint->curve, kind->start[i] - apart, 0, &node[3]);
     }
     return map[0];
 }
