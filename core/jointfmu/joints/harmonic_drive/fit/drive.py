@@ -7,7 +7,7 @@ import numpy as np
 
 from ....fitting.least_squares import Array
 from ....parameters import ParameterFile
-from ..law import Drive
+from ..drive import Drive
 from ..spring import torque_curve
 
 LEVEL = ("K_FTS0", "drive_scale")

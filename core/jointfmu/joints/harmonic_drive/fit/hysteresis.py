@@ -18,7 +18,7 @@ from ....fitting.measurement import measured
 from ....fitting.outcome import Outcome, fitted, unknowns
 from ....parameters import ParameterFile, default
 from ....units import sizes
-from ..law import Drive
+from ..drive import Drive
 from ..spring import HarmonicDriveSpring
 from . import drive as own
 
