@@ -3,7 +3,7 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import hysteresis, law, spring
-from jointfmu.joints.harmonic_drive.given import Given
+from jointfmu.joints.harmonic_drive.given import Given, Node
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, symbols
@@ -53,7 +53,7 @@ COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"))
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {"ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"), "DRIVE_STEPS": spring.STEPS}
     every = named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
-    nodes = len(g.joint.nodes()) if isinstance(g.joint, Given) else 0
+    nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
     return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 

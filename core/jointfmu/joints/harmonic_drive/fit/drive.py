@@ -1,12 +1,15 @@
 """What the two fits of the harmonic drive share: the size of the start, bounds, and the angle."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ....fitting.least_squares import Array
 from ....parameters import ParameterFile
+from ....refusal import Refusal
+from ....units import Sizes, measured
 from ..drive import Drive
 from ..spring import torque_curve
 
@@ -18,6 +21,42 @@ LEAST_PRESSURE = 0.05
 
 WINDUP = (1e-5, 0.1)
 """Wind-up at rated torque [rad] that a drive may have: a hundredth to a hundred times the usual 1e-3."""
+
+
+FAR = 50.0
+"""Stiffness of a measurement over the start's [1], either way, from which on a wrong unit is likelier than
+such a drive: less than degrees in the place of radians make, 57."""
+NEAR = 5.0
+"""The same [1] within which another unit explains it."""
+
+
+def check_level(
+    path: Path, ratio: float, units: Mapping[str, str], spec: Mapping[str, Sizes], start: ParameterFile
+) -> None:
+    """Refuse a measurement whose stiffness is `ratio` times the start's, if that is FAR off.
+
+    units : of the columns torque and angle in the heading;  spec : units that they may have
+    """
+    if 1.0 / FAR < ratio < FAR:
+        return
+    raise Refusal(
+        f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
+        f"allowed are {1.0 / FAR:g} to {FAR:g}: "
+        f"{likely_unit(ratio, units, spec)}; if both are right, start from a drive of its size",
+        "params",
+    )
+
+
+def likely_unit(ratio: float, units: Mapping[str, str], spec: Mapping[str, Sizes]) -> str:
+    """Which unit of a column would bring a stiffness that is `ratio` times what it should be to its place."""
+    found = []
+    for column, power in (("angle", -1.0), ("torque", 1.0)):
+        said = measured(units[column], spec[column])
+        found += [(ratio * (size / said) ** power, column, unit) for unit, size in spec[column].items()]
+    left, column, unit = min(found, key=lambda one: abs(np.log(one[0])))
+    if not 1.0 / NEAR < left < NEAR:
+        return "check the units of both columns, no usual one explains it"
+    return f"likely the {column} is in {unit}, where the heading says {units[column]}"
 
 
 def windup(drive: Drive, torque: Array) -> Array:

@@ -55,8 +55,12 @@ def fit(
         line = loop.backbone(torque, angle)
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
-    file = _sized(start or default("harmonic_drive"), line.torque, rated_torque, table.path)
-    _check_size(line, file, table.path)
+    begun = start or default("harmonic_drive")
+    file = _sized(begun, line.torque, rated_torque, table.path)
+    _check_size(line, file, table)
+    size = begun.values.rated_torque / file.values.rated_torque
+    usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
+    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, COLUMNS, begun)
     centred = line.angle - np.interp(0.0, line.torque, line.angle)
     file = drive.scaled(file, names, line.torque, centred)
     weight = np.sqrt(line.count)
@@ -108,17 +112,18 @@ def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path)
     return start
 
 
-def _check_size(line: loop.Backbone, start: ParameterFile, path: Path) -> None:
+def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
     """Refuse a wind-up that no drive of this size has, before a long fit; and a loop that creates energy."""
     turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
     rated = start.values.rated_torque
     low, high = drive.WINDUP
-    if not low <= turned * rated / span <= high:
+    path, at_rated = table.path, turned * rated / span
+    if not low <= at_rated <= high:
+        usual = float(np.sqrt(low * high))
         raise Refusal(
             f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
-            f"{turned * rated / span:.3g} rad at the rated torque {rated:g} N.m, "
-            f"allowed are {low:g} to {high:g}: check the units of both columns, or "
-            "state the drive's rated torque",
+            f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
+            f"{drive.likely_unit(usual / at_rated, table.units, COLUMNS)}, or state the drive's rated torque",
             "rated_torque",
         )
     if line.loop_area is not None:
