@@ -14,11 +14,15 @@ Names = Sequence[str] | None
 
 
 def _torque_angle(
-    path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None
+    path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
 ) -> "Outcome":
-    from . import torque_angle
+    from . import table, torque_angle
 
-    return torque_angle.fit(path, start, free, rated_torque)
+    if law is None:
+        return torque_angle.fit(path, start, free, rated_torque)
+    if free:
+        raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
+    return table.fit(path, start, rated_torque)
 
 
 def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "Outcome":
@@ -59,6 +63,12 @@ FITS = (
         file=True,
         options=(
             Option(name="rated_torque", text="of the drive [N.m]; scales max_torque with it", unit="N.m"),
+            Option(
+                name="law",
+                text="table: the mid-line itself (default: the law of the start, fitted)",
+                word=True,
+                choices=("table",),
+            ),
         ),
         run=_torque_angle,
     ),

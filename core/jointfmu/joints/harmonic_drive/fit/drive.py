@@ -1,4 +1,4 @@
-"""What the two fits of the harmonic drive share: the size of the start, bounds, and the angle."""
+"""What the fits of the harmonic drive share: the size of the start, bounds, and the angle."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,10 +11,14 @@ from ....parameters import ParameterFile
 from ....refusal import Refusal
 from ....units import Sizes, measured
 from ..drive import Drive
+from ..law import PairDrive
 from ..spring import torque_curve
 
-LEVEL = ("K_FTS0", "drive_scale")
-"""The two stiffnesses of Eq. 46: scaled together they scale K_WTS."""
+LEVELS: Mapping[str, tuple[str, ...]] = {
+    "hu2023": ("K_FTS0", "drive_scale"),
+    "catalogue": ("K1", "K2", "K3"),
+}
+"""{law: its stiffnesses}, the two of Eq. 46 or the lines': scaled together they scale K_WTS."""
 LEAST_PRESSURE = 0.05
 """Least peak pressure without torque over that at rated torque [1] that a fit may find."""
 
@@ -72,9 +76,12 @@ def resized(start: ParameterFile, rated: float, factor: float, kind: str, source
     if not 0.0 < rated < np.inf:
         raise ValueError(f"rated torque = {rated:g} N.m is outside (0, inf): the drive's rated torque")
     drive = start.values
-    smoothing = drive.torque_smoothing * rated / drive.rated_torque
     file = start.with_values({"rated_torque": rated}, kind, source)
-    file = file.with_values({"max_torque": factor * rated}, "estimate", f"{factor:g} times rated_torque")
+    if "max_torque" in file.flat:
+        file = file.with_values({"max_torque": factor * rated}, "estimate", f"{factor:g} times rated_torque")
+    if "torque_smoothing" not in file.flat:
+        return file
+    smoothing = drive.torque_smoothing * rated / drive.rated_torque
     return file.with_values(
         {"torque_smoothing": smoothing},
         "estimate",
@@ -83,15 +90,18 @@ def resized(start: ParameterFile, rated: float, factor: float, kind: str, source
 
 
 def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: Array) -> ParameterFile:
-    """The start with its stiffness brought to that of a curve, by those of LEVEL that are to be fitted."""
+    """The start with its stiffness brought to that of a curve, if all of its LEVELS are to be fitted."""
     ratio = float(np.sum(windup(start.values, torque) * angle) / np.sum(angle**2))
-    level = {name: getattr(start.values, name) * ratio for name in LEVEL if name in names}
-    return start.with_values(level, "calibration", "start") if len(level) == len(LEVEL) else start
+    level = {name: start.flat[name] * ratio for name in LEVELS.get(start.law, ()) if name in names}
+    whole = level and len(level) == len(LEVELS[start.law])
+    return start.with_values(level, "calibration", "start") if whole else start
 
 
 def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
     """Intervals of the pressures that keep the pair in contact without torque."""
     drive: Any = start.values
+    if not isinstance(drive, PairDrive):
+        return {}
     rated, loss = drive.rated_pressure, drive.pressure_loss
     least = loss + LEAST_PRESSURE * rated
     return {
