@@ -57,7 +57,7 @@ def test_points_fold_both_directions_and_take_the_offset_off():
 
 
 def test_the_stiffnesses_of_lines_are_found(tmp_path):
-    """A record of a catalogue drive, fitted from another row; the 41 knots of a mid-line round its corners."""
+    """A record of a catalogue drive from another row; the 41 knots of a mid-line round its corners."""
     start = default("harmonic_drive", "catalogue")
     truth = start.with_values({"K1": 4000.0, "K2": 7000.0, "K3": 7500.0}, "user", "test")
     T = np.concatenate([np.linspace(0, 25, 120), np.linspace(25, -25, 240), np.linspace(-25, 0, 120)])
