@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from jointfmu import __version__
 from jointfmu.joints import MODELS
@@ -39,7 +40,7 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
         graph(model, given, native.functions, native.tabulated), model, native
     )
     memory = model.memory_size(parameters.values) if native.memory is None else native.memory
-    files |= {"variables.c": variables_c(model), "model.h": _model(model, memory)}
+    files |= {"variables.c": variables_c(model), "model.h": _model(model, parameters.values, memory)}
     head = GENERATED.format(version=__version__, of="")
     files |= {n: head + files[n] for n in ("law.h", "law.c", "variables.c", "model.h")}
     return dict(sorted((files | {"data.h": placeholder(model, given).header()}).items()))
@@ -73,11 +74,13 @@ def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
     return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *own])}
 
 
-def _model(model: Model, memory: int) -> str:
+def _model(model: Model, parameters: Any, memory: int) -> str:
     moving = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
     if model.states:
         first = 1 + len(model.inputs) + len(model.outputs)
         moving += f"#define LAGS {first + list(model.parameter_fields()).index('lag_a')}\n"
+    if model.events:
+        moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
     if memory:
         moving += f"#define N_MEMORY {memory}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
