@@ -92,7 +92,7 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
     sets = {path: data for path, data in members(name).items() if path.endswith(".ssv")}
     for data in sets.values():
         schema(path).assertValid(etree.fromstring(data))
-    model, file = given(name)
+    model, _ = given(name)
     exposed = model.parameter_fields().keys()
     for path in (p for p in sets if "/parameters/" in p):
         nodes = ElementTree.fromstring(sets[path]).iter(f"{{{manifest.VALUES}}}Parameter")

@@ -30,7 +30,7 @@ _TITLES = {
     "uncertainty-analysis": "Samples of all real parameters",
 }
 _PAGE = """\
-{name}: the proof inside this FMU
+The proof inside this FMU
 
 The folder extra/{standard} holds experiments after FMI-LS-REF {version} with
 reference results. They were computed by the Python package jointfmu {own}, not by this FMU.
@@ -38,7 +38,7 @@ reference results. They were computed by the Python package jointfmu {own}, not 
 {counts}
 
 How to run them
-  jointfmu prove {name}.fmu
+  jointfmu prove FMU
 or by any importer: set the parameters of the experiment (SSV), apply its inputs (CSV), take steps of its
 stepSize and compare the outputs at the times of its results (CSV). Each input is held for a step before these
 times, so it does not matter whether an importer applies it at the begin or at the end of a step.
@@ -124,7 +124,7 @@ def archive(
                 related.append(_Related(path, manifest.CSV, "result", "reference result of the package"))
     members["fmi-ls-manifest.xml"] = _manifest(related)
     found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
-    return found | {"documentation/fmi-ls-ref.txt": _text(model, own, experiments, page).encode()}
+    return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, page).encode()}
 
 
 def slug(name: str) -> str:
@@ -191,10 +191,9 @@ def _manifest(related: Sequence[_Related]) -> bytes:
     return serialized(root)
 
 
-def _text(model: Model, own: str, experiments: Sequence[Experiment], page: bool) -> str:
+def _text(own: str, experiments: Sequence[Experiment], page: bool) -> str:
     counts = {p: sum(one.purpose == p for one in experiments) for p in manifest.PURPOSES}
     return _PAGE.format(
-        name=model.name,
         standard=manifest.NAME,
         version=manifest.VERSION,
         own=__version__,
