@@ -43,7 +43,7 @@ def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
     memory = model.memory_size(parameters.values)
     content.update(f"{dump(parameters)}{memory}".encode())
     uuid = uuid5(NAMESPACE_URL, f"jointfmu/{name}/{content.hexdigest()}")
-    files["model.h"] = head + _model(model, uuid, memory)
+    files["model.h"] = head + _model(model, parameters.values, uuid, memory)
     return dict(sorted(files.items()))
 
 
@@ -75,11 +75,13 @@ def token(files: dict[str, str]) -> str:
     return line.split('"')[1]
 
 
-def _model(model: Model, uuid: Any, memory: int) -> str:
+def _model(model: Model, parameters: Any, uuid: Any, memory: int) -> str:
     moving = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
     if model.states:
         first = 1 + len(model.inputs) + len(model.outputs)
         moving += f"#define LAGS {first + list(model.parameter_fields()).index('lag_a')}\n"
+    if model.events:
+        moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
     if memory:
         moving += f"#define N_MEMORY {memory}\n"
     return f"""#ifndef JOINTFMU_MODEL_H

@@ -105,6 +105,8 @@ def _equations(g: Graph, model: Model) -> None:
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
     outputs = model.evaluate(g.joint, v)
     doc = "time, inputs, states -> outputs"
+    if model.events:
+        g.add("events", "-> times at which the course of the outputs has a corner", [], model.events(g.joint))
     g.add_with_seed("outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs])
 
 

@@ -83,6 +83,7 @@ class Model:
     hidden   : prefixes of parameters that are baked in
     states   : continuous states, the first outputs; the rate of each is the output after it
     moves    : outputs change with time, while inputs rest
+    events   : (spring) -> times [s] at which their course has a corner, numbers or symbols; None: at none
     rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
     evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
         memory given stays as it is
@@ -104,6 +105,7 @@ class Model:
     hidden: Sequence[str] = ()
     states: int = 0
     moves: bool = False
+    events: Callable[[Any], Sequence[Number]] | None = None
     rest: Callable[[Any], Memory] | None = None
     evolve: Callable[[Any, Values, Memory], tuple[Mapping[str, Any], Memory]] | None = None
     loop: Loop | None = None

@@ -47,6 +47,13 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     outputs_seed(x, joint->c, result);
 }
 
+#if N_EVENTS
+void joint_events(Joint *joint, double *times)
+{
+    events(NULL, joint->c, times);
+}
+#endif
+
 unsigned joint_outside(Joint *joint, const double *inputs, const double *out)
 {
     (void)joint, (void)inputs, (void)out;

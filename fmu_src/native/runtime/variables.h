@@ -19,6 +19,11 @@
 #define N_MEMORY 0 /* numbers */
 #endif
 
+/* Models that change with time define it where their course has corners. */
+#ifndef N_EVENTS
+#define N_EVENTS 0 /* times */
+#endif
+
 typedef struct {
     const char *name;
     const char *unit; /* SI; "" for a number without unit */

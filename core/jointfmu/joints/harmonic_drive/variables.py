@@ -14,7 +14,7 @@ _CONTACT = (
 )
 
 _MOTION = ("phi1", "phi2")
-_HIDDEN = ("max_torque", "shear_traction")
+_HIDDEN = ("max_torque", "shear_traction", "table")
 _LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """One arcmin of hysteresis: the default drive has none."""
 _SPEEDS = {"w1": "parameters", "w2": "parameters"}
