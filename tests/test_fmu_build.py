@@ -17,6 +17,7 @@ from pathlib import Path
 from shutil import copytree, rmtree
 
 import pytest
+from browser import PROGRAM, browser
 from conftest import refused_line
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
@@ -27,7 +28,7 @@ from jointfmu_fmu_src.partners import PARTNERS
 from pythonfmu import FmuBuilder
 
 from jointfmu import cli, ramp, systems, validation
-from jointfmu.joints import MODELS
+from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump
 
 pytestmark = pytest.mark.slow
@@ -341,6 +342,32 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     counted = validation.summary(validation.validate())  # the command, the job and the page count alike
     assert f"compared: {counted}; " in out
     assert f"<p>{counted}.</p>" in page
+
+
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+def test_the_report_can_be_read_on_a_phone(job: tuple[Path, str]) -> None:
+    """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
+    with browser() as shown:
+        shown.shape(390, 800, phone=True)
+        shown.open(job[0] / "report" / "index.html")
+        rows = 0
+        for name in KINDS:
+            shown.run(f"document.getElementById('tab-{name}').click()")
+            panel = f"document.getElementById('of-{name}')"
+            assert not shown.run(f"{panel}.hidden")
+            assert shown.run("document.querySelectorAll('[role=tabpanel]:not([hidden])').length") == 1
+            drawn = shown.run(
+                f"[...{panel}.querySelectorAll('svg.plot')].map((s) => s.querySelector('path') !== null)"
+            )
+            assert drawn
+            assert all(drawn)
+            assert shown.run("document.documentElement.scrollWidth") <= 390
+            sizes = f"[...{panel}.querySelectorAll('*')].map((e) => parseFloat(getComputedStyle(e).fontSize))"
+            assert shown.run(f"Math.min(...{sizes})") >= 11.0
+            rows += (
+                shown.run(f"{panel}.querySelectorAll('[aria-label=\"Checks of the ramps\"] tr').length") - 1
+            )
+        assert f"; {rows} checks of the ramps" in job[1]
 
 
 def test_the_main_job_fails_when_a_check_misses(
