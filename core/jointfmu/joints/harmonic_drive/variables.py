@@ -1,6 +1,6 @@
 """Inputs and outputs of the harmonic drive's models."""
 
-from ..model import BEYOND, Model, Outside, Ramp, Variable
+from ..model import BEYOND, Loop, Model, Outside, Ramp, Variable
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
@@ -15,6 +15,8 @@ _CONTACT = (
 
 _MOTION = ("phi1", "phi2")
 _HIDDEN = ("max_torque", "shear_traction", "table")
+_LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+"""One arcmin of hysteresis: the default drive has none."""
 _SPEEDS = {"w1": "parameters", "w2": "parameters"}
 
 MODELS = (
@@ -44,6 +46,7 @@ MODELS = (
         evolve=lambda s, v, memory: s.driven((v["phi1"], v["w1"], v["phi2"], v["w2"]), memory),
         outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
+        loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={
             "phi_rel": _MOTION,
             "K_WTS": _MOTION,
@@ -74,6 +77,7 @@ MODELS = (
         evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
         ramp=Ramp("tau", 5.0, 0.01),
+        loop=Loop("tau", 5.0, _LOSSY),
         dependencies={"K_FTS": ()},
         hidden=_HIDDEN,
     ),
