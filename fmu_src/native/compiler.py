@@ -64,6 +64,12 @@ def libraries(
         return dict(zip(platforms, pool.map(library, platforms), strict=True))
 
 
+def exported(files: Iterable[str], version: str) -> list[str]:
+    """C files of one FMI version."""
+    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    return [name for name in files if name.endswith(".c") and name != other]
+
+
 def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
     """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
     folder = _folder({**_headers(), **sources})
@@ -71,12 +77,6 @@ def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> 
         file = Path(out) / f"{name}.wasm"
         _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
         return file.read_bytes()
-
-
-def exported(files: Iterable[str], version: str) -> list[str]:
-    """C files of one FMI version."""
-    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
-    return [name for name in files if name.endswith(".c") and name != other]
 
 
 def file_name(name: str, platform: str) -> str:
