@@ -3,6 +3,7 @@
 #include "harmonic_drive.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tabulated.h"
 
@@ -57,19 +58,34 @@ static bool windup(Joint *joint, int steps, Text *why)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[6], share[2 * SLIDERS];
+    double head[6], share[2 * SLIDERS], amplitudes[N_HARMONICS];
     drive_head(0, joint->c, head);
     *kind = (Kind){.smoothing = head[0], .max_torque = head[1], .K_FTS0 = head[2]};
+    error_amplitudes(0, joint->c, amplitudes);
+    for (int i = 0; i < N_HARMONICS; i++)
+        kind->errs |= amplitudes[i] != 0.0;
     slider_shares(0, joint->c, share);
     return refined(joint, windup, DRIVE_STEPS, why) &&
         hysteresis_of(&kind->hysteresis, head + 3, share, &joint->curve, why);
 }
 
-/* Wind-up at inputs, coming from a memory; they are motion or torque. */
-static double wind_up(const Joint *joint, const double *inputs, const double *memory)
+enum { N_ERROR = 3 }; /* kinematic error, its first and its second derivative in phi1 */
+
+static void error_at(const Joint *joint, const double *inputs, double *error)
 {
-    double at;
-    argument(inputs, joint->c, &at);
+    if (joint->kind.errs)
+        kinematic_error(inputs, joint->c, error);
+    else
+        error[0] = error[1] = error[2] = 0.0;
+}
+
+/* Wind-up at inputs, coming from a memory; they are motion or torque. */
+static double wind_up(const Joint *joint, const double *inputs, double error, const double *memory)
+{
+    double x[N_INPUTS + 1], at;
+    memcpy(x, inputs, N_INPUTS * sizeof(double));
+    x[N_INPUTS] = error;
+    argument(x, joint->c, &at);
     if (!ARGUMENT_IS_LOAD)
         return at;
     if (joint->kind.hysteresis.acts)
@@ -86,20 +102,23 @@ static Slid slide(const Joint *joint, const double *memory)
     return (Slid){0.0, memory[AT_LOSS], 0.0, 0.0};
 }
 
-enum { N_GIVEN = N_INPUTS + 5 }; /* inputs, wind-up, midline's torque and stiffness, friction, loss */
+/* What the outputs are made of: inputs, and what a motion finds in the spring. */
+enum { PHI = N_INPUTS, LOAD, STIFF, FRICTION, LOSS, ERROR, SLOPE, N_GIVEN };
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
-    double x[N_GIVEN];
+    double x[N_GIVEN], error[N_ERROR];
     (void)why;
-    joint->kind.phi = wind_up(joint, inputs, memory);
+    error_at(joint, inputs, error);
+    joint->kind.phi = wind_up(joint, inputs, error[0], memory);
     const Slid slid = slide(joint, memory);
-    for (int i = 0; i < N_INPUTS; i++)
-        x[i] = inputs[i];
-    x[N_INPUTS] = joint->kind.phi;
-    midline(&joint->curve, joint->kind.phi, 1, &x[N_INPUTS + 1]);
-    x[N_INPUTS + 3] = slid.torque;
-    x[N_INPUTS + 4] = slid.loss;
+    memcpy(x, inputs, N_INPUTS * sizeof(double));
+    x[PHI] = joint->kind.phi;
+    midline(&joint->curve, joint->kind.phi, 1, &x[LOAD]);
+    x[FRICTION] = slid.torque;
+    x[LOSS] = slid.loss;
+    x[ERROR] = error[0];
+    x[SLOPE] = error[1];
     outputs(x, joint->c, out);
     return true;
 }
@@ -107,22 +126,24 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
                       double *result)
 {
-    double x[2 * N_GIVEN], y[3], at[2 * N_INPUTS], rate;
+    double x[2 * N_GIVEN], y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
     const Slid slid = slide(joint, memory);
+    error_at(joint, inputs, error);
     for (int i = 0; i < N_INPUTS; i++) {
         x[i] = at[i] = inputs[i];
-        x[N_GIVEN + i] = at[N_INPUTS + i] = seed[i];
+        x[N_GIVEN + i] = at[N_INPUTS + 1 + i] = seed[i];
     }
+    at[N_INPUTS] = error[0];
+    at[2 * N_INPUTS + 1] = error[1] * seed[0];
     argument_seed(at, joint->c, &rate);
     midline(&joint->curve, joint->kind.phi, 2, y);
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + slid.tangent;
-    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss};
-    const double slopes[] = {1.0, y[1], y[2], slid.tangent, slid.heat};
-    for (int i = 0; i < 5; i++) {
-        x[N_INPUTS + i] = given[i];
-        x[N_GIVEN + N_INPUTS + i] = slopes[i] * rate;
-    }
+    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss, error[0], error[1]};
+    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid.tangent * rate, slid.heat * rate,
+                             error[1] * seed[0], error[2] * seed[0]};
+    memcpy(x + PHI, given, sizeof given);
+    memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
     outputs_seed(x, joint->c, result);
 }
 

@@ -7,6 +7,7 @@
 typedef struct {
     double smoothing, max_torque, K_FTS0; /* of the drive */
     Hysteresis hysteresis;
+    bool errs;  /* there is a kinematic error */
     double phi; /* wind-up of the last evaluation */
 } Kind;
 

@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.joints.harmonic_drive import hysteresis, law, spring
+from jointfmu.joints.harmonic_drive import hysteresis, kinematic_error, lost_motion, spring
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, symbols
@@ -13,25 +13,39 @@ def _functions(g: Graph, model: Model) -> None:
     drive = g.joint
     (torque,) = symbols("x", 1)
     doc = "torque -> K_WTS, its slope"
-    g.add("stiffness", doc, [torque], law.drive_stiffness(drive, torque))
+    g.add("stiffness", doc, [torque], lost_motion.stiffness_with_play(drive, torque))
     head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
     head += [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
     doc = "-> T_s, largest torque, K_FTS0, hysteresis: loss and stiffness, rated torque"
     g.add("drive_head", doc, [], head)
     springs, friction = hysteresis.shares(hysteresis.exponent(drive))
     g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *friction])
-    v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
-    x, load, stiffness, slid, loss = symbols("found", 5)
-    if "tau" in v:
-        argument, out = v["tau"], {"phi_rel": x, **spring.parts(drive, load, stiffness)}
+    inputs = [ca.SX.sym(i.name) for i in model.inputs]
+    locked = _given_torque(model)
+    waves = [0.0] * 3 if locked else kinematic_error.kinematic_error(drive, inputs[0])
+    g.add("kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves)
+    amplitudes = [0.0 * a if locked else a for a in kinematic_error.amplitudes(drive)]
+    g.add("error_amplitudes", "-> of the kinematic error", [], amplitudes)
+    x, load, stiffness, slid, loss, error, slope = symbols("found", 7)
+    if locked:
+        argument, out = inputs[0], {"phi_rel": x, **spring.parts(drive, load, stiffness)}
     else:
-        argument = spring.wind_up(drive, list(v.values()))
-        out = spring.torques(drive, list(v.values()), load, stiffness, slid)
-    g.add_with_seed("argument", "inputs -> argument of the curve", [*v.values()], [argument])
+        argument = spring.wind_up(drive, inputs, error)
+        out = spring.exported(drive, inputs, spring.State(x, load, stiffness, slid, error, slope))
+    doc = "inputs, kinematic error -> argument of the curve"
+    g.add_with_seed("argument", doc, [*inputs, error], [argument])
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
-    doc = "inputs, wind-up, torque and stiffness of the curve, torque and loss of the friction -> outputs"
-    g.add_with_seed("outputs", doc, [*v.values(), x, load, stiffness, slid, loss], y)
+    doc = (
+        "inputs, wind-up, torque and stiffness of the curve, torque and loss of the friction, kinematic "
+        "error and its derivative -> outputs"
+    )
+    g.add_with_seed("outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope], y)
+
+
+def _given_torque(model: Model) -> bool:
+    """Whether the wave generator is locked, and the torque given."""
+    return model.inputs[0].name == "tau"
 
 
 NUMBERS: Named = (
@@ -46,7 +60,8 @@ COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"))
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
-    counts = {"ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"), "DRIVE_STEPS": spring.STEPS}
+    counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
+    counts["N_HARMONICS"] = len(kinematic_error.HARMONICS)
     return named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
 
 

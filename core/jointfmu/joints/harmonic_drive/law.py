@@ -32,7 +32,9 @@ class Drive(ABC):
     eccentricity: float = quantity(
         "m", "installation eccentricity of flexspline and bearing", ge=0.0, lt=1e-3
     )
-    ratio: float = quantity("1", "speed ratio of wave generator and output", gt=0.0)
+    ratio: float = quantity(
+        "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"
+    )
     K_FTS0: float = quantity(
         "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, calibration=True
     )
@@ -62,6 +64,19 @@ class Drive(ABC):
         ge=0.0,
         default=0.0,
     )
+    lost_motion: float = quantity(
+        "rad", "play of the output at next to no torque, between its ends; 0: none", ge=0.0, default=0.0
+    )
+    error_1: float = quantity(
+        "rad",
+        "kinematic error at the output, amplitude, one period per turn of the wave generator",
+        default=0.0,
+    )
+    error_1_phase: float = quantity("rad", "phase of error_1 at phi1 = 0", default=0.0)
+    error_2: float = quantity("rad", "the same with two periods per turn", default=0.0)
+    error_2_phase: float = quantity("rad", "phase of error_2 at phi1 = 0", default=0.0)
+    error_4: float = quantity("rad", "the same with four periods per turn", default=0.0)
+    error_4_phase: float = quantity("rad", "phase of error_4 at phi1 = 0", default=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -90,6 +105,7 @@ class Drive(ABC):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
             reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
         return [
+            Limit("ratio", Interval.of(gt=np.minimum(2.0 * self.ratio, 0.0)), "it may be negative, not zero"),
             Limit("rated_pressure", Interval.of(gt=zero), "it must exceed zero_torque_pressure"),
             Limit("radial_deformation", Interval.of(gt=best - reach, lt=best + reach), no_contact),
             Limit("eccentricity", Interval.of(ge=0.0, lt=reserve), no_contact),

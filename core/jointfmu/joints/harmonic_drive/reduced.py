@@ -12,6 +12,7 @@ from ...batch.samples import columns
 from ..reduced import Reduced
 from . import KIND
 from .law import Drive, drive_stiffness
+from .lost_motion import play
 from .spring import HarmonicDriveSpring
 
 Array = NDArray[np.float64]
@@ -34,10 +35,10 @@ def evaluate(
     rate = smoothing * xi[-1] * np.cosh(span)
     K = drive_stiffness(drive, factor * smoothing * np.sinh(span))[0]
     K = np.broadcast_to(K, (factor.size, RAMP))
-    return {
-        "K_WTS": K @ chebyshev.interpolation(RAMP, xi / xi[-1]),
-        "phi_rel": factor * ((rate / K) @ chebyshev.integration(RAMP, xi / xi[-1])),
-    }
+    angle, compliance, _ = play(drive, factor * loads)
+    tangent = K @ chebyshev.interpolation(RAMP, xi / xi[-1])
+    wound_up = factor * ((rate / K) @ chebyshev.integration(RAMP, xi / xi[-1]))
+    return {"K_WTS": tangent / (1.0 + tangent * compliance), "phi_rel": wound_up + angle}
 
 
 def exact(joint: Drive, loads: Array) -> dict[str, Array]:

@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from ...curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
 from .hysteresis import Hysteresis, Slid
-from .law import Drive, drive_stiffness, peak_pressure
+from .kinematic_error import kinematic_error
+from .law import Drive, peak_pressure
+from .lost_motion import stiffness_with_play
 
 Array = NDArray[np.float64]
 
@@ -38,14 +40,14 @@ def _windup(drive: Drive, steps: int) -> Curve:
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
-        K, growth = drive_stiffness(drive, T)
+        K, growth = stiffness_with_play(drive, T)
     if not np.all((K > SOFTEST) & (K < (1.0 - STIFFEST) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad and the contact pair give K_WTS = {K[-1]:g} N.m/rad, allowed "
             f"is ({SOFTEST:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / STIFFEST:g} times K_FTS0"
         )
     inner = xi[:-1, None] + half * (1.0 + GAUSS[0])
-    rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
+    rate = smoothing * np.cosh(inner) / stiffness_with_play(drive, smoothing * np.sinh(inner))[0]
     phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS[1])])
     return assemble([(phi, T, K, K * growth)])
 
@@ -78,11 +80,13 @@ class HarmonicDriveSpring:
     def driven(self, motion: Sequence[ArrayLike], memory: Array) -> tuple[dict[str, Array], Array]:
         """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n + 2) on, and the new one."""
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
-        phi = wind_up(self.joint, motion)
+        error, slope, _ = kinematic_error(self.joint, motion[0])
+        phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         slid, loss, new = self._slid(phi, memory)
         load = np.copysign(load, phi)
-        return torques(self.joint, motion, load, stiffness, slid.torque) | {"E_loss": loss}, new
+        state = State(phi, load, stiffness, slid.torque, error, slope)
+        return exported(self.joint, motion, state) | {"E_loss": loss}, new
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
         """Wind-up and stiffnesses at torques (...), from a memory (n + 2) on, and the new one."""
@@ -101,29 +105,55 @@ class HarmonicDriveSpring:
         return slid, loss, np.concatenate([slid.force, phi[..., None], loss[..., None]], axis=-1)
 
 
-def wind_up(drive: Drive, motion: Sequence[Number]) -> Number:
-    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2."""
-    phi1, _, phi2, _ = motion
-    return phi2 - phi1 / drive.ratio
+@dataclass(frozen=True, slots=True)
+class State:
+    """What a motion finds in the spring: numbers, arrays or symbols.
 
-
-def torques(
-    drive: Drive, motion: Sequence[Number], load: Number, stiffness: Number, friction: Number
-) -> dict[str, Number]:
-    """What the spring exports at a motion phi1, w1, phi2, w2, but for the loss.
-
-    Given are torque [N.m] and stiffness [N.m/rad] of the curve there, and the torque [N.m] of friction.
+    phi_rel   : [rad] wind-up
+    load      : [N.m] torque of the curve
+    stiffness : [N.m/rad] of the curve
+    friction  : [N.m] torque of the hysteresis
+    error     : [rad] kinematic error
+    slope     : [1] its derivative in phi1
     """
+
+    phi_rel: Number
+    load: Number
+    stiffness: Number
+    friction: Number
+    error: Number
+    slope: Number
+
+
+def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
+    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2 and the kinematic error [rad]."""
+    phi1, _, phi2, _ = motion
+    return phi2 - phi1 / drive.ratio - error
+
+
+def exported(drive: Drive, motion: Sequence[Number], state: State) -> dict[str, Number]:
+    """What the spring exports at a motion phi1, w1, phi2, w2, but for the loss."""
+    tau = transmitted(drive, motion, state)
+    return {
+        "tau1": tau / drive.ratio + state.slope * tau,
+        "tau2": -tau,
+        "phi_rel": state.phi_rel,
+        "tau": tau,
+        **parts(drive, state.load, state.stiffness),
+        "phi_error": state.error,
+    }
+
+
+def transmitted(drive: Drive, motion: Sequence[Number], state: State) -> Number:
+    """tau [N.m] at the output: of the curve, of the hysteresis and of the damper."""
     _, w1, _, w2 = motion
-    tau = load + friction + drive.d * (w2 - w1 / drive.ratio)
-    ends = {"tau1": tau / drive.ratio, "tau2": -tau, "phi_rel": wind_up(drive, motion), "tau": tau}
-    return {**ends, **parts(drive, load, stiffness)}
+    return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
 
 
 def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
     """K_WTS and its parts at an elastic torque, and the peak contact pressure.
 
-    K_TS_pair is K_TS on the scale of the paper's Fig. 11.
+    K_TS has the lost motion along; K_TS_pair is K_TS on the scale of the paper's Fig. 11.
     """
     K_TS = stiffness * drive.K_FTS0 / (drive.K_FTS0 - stiffness)
     return {

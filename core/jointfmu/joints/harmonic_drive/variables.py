@@ -1,6 +1,7 @@
 """Inputs and outputs of the harmonic drive's models."""
 
 from ..model import BEYOND, Model, Outside, Ramp, Variable
+from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
@@ -15,7 +16,8 @@ _CONTACT = (
 
 _MOTION = ("phi1", "phi2")
 _HIDDEN = ("max_torque", "shear_traction")
-_SPEEDS = {"w1": "parameters", "w2": "parameters"}
+_DAMPED = {"w2": "parameters"}
+_SPRING_ONLY = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
 
 MODELS = (
     Model(
@@ -31,13 +33,16 @@ MODELS = (
             Variable("w2", "rad/s", "speed of the output flange"),
         ),
         outputs=(
-            Variable("tau1", "N.m", "torque of the element on flange 1, tau/ratio", 0.1),
+            Variable(
+                "tau1", "N.m", "torque of the element on flange 1, tau (1/ratio + dphi_error/dphi1)", 0.1
+            ),
             Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
-            Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio", 1e-3),
+            Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio - phi_error", 1e-3),
             Variable(
                 "tau", "N.m", "T(phi_rel) + T_h + d der(phi_rel), T_h the friction of the hysteresis", 5.0
             ),
             *_CONTACT,
+            Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         rest=lambda s: s.hysteresis.rest(),
@@ -52,12 +57,12 @@ MODELS = (
             "K_TS_pair": _MOTION,
             "p_max": _MOTION,
             "E_loss": _MOTION,
+            "phi_error": ("phi1",),
         },
         linear={
-            "phi_rel": {"phi1": "parameters", "phi2": "constant"},
-            "tau1": _SPEEDS,
-            "tau2": _SPEEDS,
-            "tau": _SPEEDS,
+            "phi_rel": {"phi2": "constant"},
+            "tau2": _DAMPED,
+            "tau": _DAMPED,
         },
         hidden=_HIDDEN,
     ),
@@ -75,6 +80,6 @@ MODELS = (
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
         ramp=Ramp("tau", 5.0, 0.01),
         dependencies={"K_FTS": ()},
-        hidden=_HIDDEN,
+        hidden=(*_HIDDEN, *_SPRING_ONLY),
     ),
 )
