@@ -533,7 +533,7 @@ equation
     + data.d*(w2 - w1/data.ratio);
   tau1 = tau/data.ratio;
   tau2 = -tau;
-  K_WTS = 0; K_TS = 0; K_FTS = 0; K_TS_pair = 0; p_max = 0; E_loss = 0; phi_error = 0;
+  K_WTS = 0; K_TS = 0; K_FTS = 0; K_TS_pair = 0; p_max = 0; E_loss = 0; tau_friction = 0; phi_error = 0;
 end StandIn;
 """
 

@@ -15,6 +15,21 @@ PARAMETERS = {
 }  # fmt: skip
 STIFFNESS = {"K_WTS": "N.m/rad", "K_TS": "N.m/rad", "K_FTS": "N.m/rad", "E_loss": "J"}
 CALIBRATED = frozenset({"K_FTS0", "zero_torque_pressure", "rated_pressure"})
+FRICTION = {
+    "friction_coulomb": 0.02,
+    "friction_stribeck": 0.01,
+    "stribeck_speed": 2.0,
+    "friction_viscous": 1e-3,
+    "load_loss": 0.1,
+    "presliding": 0.02,
+    "temperature_factor": 1.2,
+}
+UNITS = {
+    "friction_coulomb": "N.m",
+    "friction_stribeck": "N.m",
+    "friction_viscous": "N.m.s/rad",
+    "load_loss": "1",
+}
 ERROR = {
     "error_1": 2e-5,
     "error_1_phase": 0.7,
@@ -35,13 +50,21 @@ SPRING = Case(
     name="HarmonicDriveSpring",
     outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
     inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
-    results={"tau1": "N.m", "tau2": "N.m", "phi_rel": "rad", "tau": "N.m", **STIFFNESS, "phi_error": "rad"},
-    parameters=PARAMETERS | dict.fromkeys(ERROR, "rad"),
+    results={
+        "tau1": "N.m",
+        "tau2": "N.m",
+        "phi_rel": "rad",
+        "tau": "N.m",
+        **STIFFNESS,
+        "phi_error": "rad",
+        "tau_friction": "N.m",
+    },
+    parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
     ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5)},
     span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5)},
     state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02},
     good={"phi2": 6e-4},
-    base=BASE | ERROR,
+    base=BASE | ERROR | FRICTION,
     moved=MOVED,
     without_effect=ELASTIC,
     tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},

@@ -134,12 +134,12 @@ def test_the_stiffness_with_play_is_the_slope_of_the_torque_and_has_no_jump():
 
 def test_a_loop_with_lost_motion_opens_as_stated_and_closes_in_energy():
     law = spring(lost_motion=PLAY, hysteresis_loss=2e-4, error_2=1e-4)
-    memory, angle = law.hysteresis.rest(), []
+    memory, angle = law.rest(), []
     for tau in (5.0, 0.0, -5.0, 0.0):
         out, memory = law.loaded(tau, memory)
         angle.append(float(out["phi_rel"]))
     assert angle[1] - angle[3] == pytest.approx(2e-4, rel=1e-9)
-    memory, work, before = law.hysteresis.rest(), 0.0, None
+    memory, work, before = law.rest(), 0.0, None
     for phi1, phi2 in zip(
         np.linspace(0.0, 9.0, 4001), 1e-3 * np.sin(np.linspace(0.0, 9.0, 4001)), strict=True
     ):

@@ -58,12 +58,14 @@ static bool windup(Joint *joint, int steps, Text *why)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[6], share[2 * SLIDERS], amplitudes[N_HARMONICS];
+    double head[6], share[2 * SLIDERS], amplitudes[N_HARMONICS], stiffness;
     drive_head(0, joint->c, head);
     *kind = (Kind){.smoothing = head[0], .max_torque = head[1], .K_FTS0 = head[2]};
     error_amplitudes(0, joint->c, amplitudes);
     for (int i = 0; i < N_HARMONICS; i++)
         kind->errs |= amplitudes[i] != 0.0;
+    brake(0, joint->c, &stiffness);
+    friction_of(&kind->friction, stiffness);
     slider_shares(0, joint->c, share);
     return refined(joint, windup, DRIVE_STEPS, why) &&
         hysteresis_of(&kind->hysteresis, head + 3, share, &joint->curve, why);
@@ -103,7 +105,20 @@ static Slid slide(const Joint *joint, const double *memory)
 }
 
 /* What the outputs are made of: inputs, and what a motion finds in the spring. */
-enum { PHI = N_INPUTS, LOAD, STIFF, FRICTION, LOSS, ERROR, SLOPE, N_GIVEN };
+enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
+/* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
+enum { TURN_LOAD = N_INPUTS, TURN_SLID, TURN_SLOPE, N_TURN };
+enum { BRAKED = AT_LOSS + 1 }; /* where the memory of the friction begins */
+_Static_assert(N_MEMORY == BRAKED + N_BRAKES, "hysteresis, then friction");
+
+/* The inputs of `turn` out of those of `outputs`. */
+static void to_turn(const double *x, double *y)
+{
+    memcpy(y, x, N_INPUTS * sizeof(double));
+    y[TURN_LOAD] = x[LOAD];
+    y[TURN_SLID] = x[SLID];
+    y[TURN_SLOPE] = x[SLOPE];
+}
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
@@ -115,10 +130,20 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     memcpy(x, inputs, N_INPUTS * sizeof(double));
     x[PHI] = joint->kind.phi;
     midline(&joint->curve, joint->kind.phi, 1, &x[LOAD]);
-    x[FRICTION] = slid.torque;
+    x[SLID] = slid.torque;
     x[LOSS] = slid.loss;
     x[ERROR] = error[0];
     x[SLOPE] = error[1];
+    x[DRY] = 0.0;
+    if (joint->kind.friction.acts) {
+        double given[N_TURN], y[3];
+        to_turn(x, given);
+        turn(given, joint->c, y);
+        joint->kind.turn = (Turn){y[0], y[1], y[2]};
+        const Braked braked = friction_at(&joint->kind.friction, memory + BRAKED, joint->kind.turn);
+        x[DRY] = braked.torque;
+        x[LOSS] += braked.loss;
+    }
     outputs(x, joint->c, out);
     return true;
 }
@@ -139,11 +164,22 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     midline(&joint->curve, joint->kind.phi, 2, y);
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + slid.tangent;
-    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss, error[0], error[1]};
+    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss, error[0], error[1], 0.0};
     const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid.tangent * rate, slid.heat * rate,
-                             error[1] * seed[0], error[2] * seed[0]};
+                             error[1] * seed[0], error[2] * seed[0], 0.0};
     memcpy(x + PHI, given, sizeof given);
     memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
+    if (joint->kind.friction.acts) {
+        double turning[2 * N_TURN], drift[3];
+        to_turn(x, turning);
+        to_turn(x + N_GIVEN, turning + N_TURN);
+        turn_seed(turning, joint->c, drift);
+        const Turn moves = {drift[0], drift[1], drift[2]};
+        const Braked braked =
+            friction_rate(&joint->kind.friction, memory + BRAKED, joint->kind.turn, moves);
+        x[N_GIVEN + DRY] = braked.torque;
+        x[N_GIVEN + LOSS] += braked.loss;
+    }
     outputs_seed(x, joint->c, result);
 }
 
@@ -155,5 +191,10 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
         hysteresis_move(&kind->hysteresis, before, kind->phi, after);
     else
         hysteresis_rest(before, kind->phi, after);
+    if (kind->friction.acts) {
+        after[AT_LOSS] += friction_at(&kind->friction, before + BRAKED, kind->turn).loss;
+        friction_move(&kind->friction, before + BRAKED, kind->turn, after + BRAKED);
+    } else {
+        friction_rest(after + BRAKED);
+    }
 }
-_Static_assert(N_MEMORY == AT_LOSS + 1, "sliders, wind-up and loss");

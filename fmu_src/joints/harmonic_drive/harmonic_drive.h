@@ -2,13 +2,16 @@
 #ifndef JOINTFMU_HARMONIC_DRIVE_H
 #define JOINTFMU_HARMONIC_DRIVE_H
 
+#include "friction.h"
 #include "hysteresis.h"
 
 typedef struct {
     double smoothing, max_torque, K_FTS0; /* of the drive */
     Hysteresis hysteresis;
+    Friction friction;
     bool errs;  /* there is a kinematic error */
-    double phi; /* wind-up of the last evaluation */
+    double phi; /* of the last evaluation: wind-up */
+    Turn turn;  /* and what moves the friction */
 } Kind;
 
 #endif

@@ -2,11 +2,11 @@
 
 import casadi as ca
 
-from jointfmu.joints.harmonic_drive import hysteresis, kinematic_error, lost_motion, spring
+from jointfmu.joints.harmonic_drive import friction, hysteresis, kinematic_error, lost_motion, spring
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, symbols
-from ...native.part import CURVE, Definitions, Named, NativePart, named, quadrature
+from ...native.graph import Graph, Symbols, symbols
+from ...native.part import CURVE, Definitions, Named, NativePart, column, named, quadrature
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -18,29 +18,37 @@ def _functions(g: Graph, model: Model) -> None:
     head += [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
     doc = "-> T_s, largest torque, K_FTS0, hysteresis: loss and stiffness, rated torque"
     g.add("drive_head", doc, [], head)
-    springs, friction = hysteresis.shares(hysteresis.exponent(drive))
-    g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *friction])
+    springs, limits = hysteresis.shares(hysteresis.exponent(drive))
+    g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *limits])
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _given_torque(model)
     waves = [0.0] * 3 if locked else kinematic_error.kinematic_error(drive, inputs[0])
     g.add("kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves)
     amplitudes = [0.0 * a if locked else a for a in kinematic_error.amplitudes(drive)]
     g.add("error_amplitudes", "-> of the kinematic error", [], amplitudes)
-    x, load, stiffness, slid, loss, error, slope = symbols("found", 7)
+    x, load, stiffness, slid, loss, error, slope, dry = symbols("found", 8)
+    turn: Symbols
     if locked:
-        argument, out = inputs[0], {"phi_rel": x, **spring.parts(drive, load, stiffness)}
+        argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0]
+        out = {"phi_rel": x, **spring.parts(drive, load, stiffness)}
     else:
-        argument = spring.wind_up(drive, inputs, error)
-        out = spring.exported(drive, inputs, spring.State(x, load, stiffness, slid, error, slope))
+        state = spring.State(x, load, stiffness, slid, error, slope)
+        argument, brake = spring.wind_up(drive, inputs, error), friction.stiffness(drive)
+        most = friction.limit(drive, inputs[1], spring.transmitted(drive, inputs, state))
+        turn = [*inputs[:2], most]
+        out = spring.exported(drive, inputs, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
     g.add_with_seed("argument", doc, [*inputs, error], [argument])
+    g.add("brake", "-> stiffness of the friction while all stick", [], [brake])
+    doc = "inputs, torques of curve and hysteresis, slope of the error -> phi1, w1, limit of the friction"
+    g.add_with_seed("turn", doc, [*inputs, load, slid, slope], turn)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
     doc = (
-        "inputs, wind-up, torque and stiffness of the curve, torque and loss of the friction, kinematic "
-        "error and its derivative -> outputs"
+        "inputs, wind-up, torque and stiffness of the curve, torque of the hysteresis, loss, kinematic "
+        "error and its slope, dry friction -> outputs"
     )
-    g.add_with_seed("outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope], y)
+    g.add_with_seed("outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope, dry], y)
 
 
 def _given_torque(model: Model) -> bool:
@@ -54,15 +62,19 @@ NUMBERS: Named = (
     (hysteresis, "NEAREST"),
     (hysteresis, "REVERSAL"),
     (hysteresis, "SETTLED"),
+    (friction, "TURNED"),
 )
-COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"))
+COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"), (friction, "BRAKES"))
 """Numbers of the package that the C has under the same name."""
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
     counts["N_HARMONICS"] = len(kinematic_error.HARMONICS)
-    return named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.SPRINGS)
+    sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
+    given = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
+    return given | quadrature("DRIVE_GAUSS", spring.GAUSS)
 
 
 PART = NativePart(_functions, CURVE, _definitions)

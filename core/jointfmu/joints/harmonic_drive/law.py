@@ -67,6 +67,28 @@ class Drive(ABC):
     lost_motion: float = quantity(
         "rad", "play of the output at next to no torque, between its ends; 0: none", ge=0.0, default=0.0
     )
+    friction_coulomb: float = quantity("N.m", "dry friction at the wave generator", ge=0.0, default=0.0)
+    friction_stribeck: float = quantity(
+        "N.m", "further dry friction at rest, which speed takes away", ge=0.0, default=0.0
+    )
+    stribeck_speed: float = quantity(
+        "rad/s", "speed of the wave generator that leaves 1/e of friction_stribeck", gt=0.0, default=10.0
+    )
+    friction_viscous: float = quantity(
+        "N.m.s/rad", "friction at the wave generator over its speed", ge=0.0, default=0.0
+    )
+    load_loss: float = quantity(
+        "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
+    )
+    presliding: float = quantity(
+        "rad",
+        "angle of the wave generator over which dry friction builds up to 1 - 1/e",
+        gt=0.0,
+        default=0.01,
+    )
+    temperature_factor: float = quantity(
+        "1", "friction over that of the reference temperature", ge=0.0, default=1.0
+    )
     error_1: float = quantity(
         "rad",
         "kinematic error at the output, amplitude, one period per turn of the wave generator",

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
+from .friction import Friction, limit, viscous
 from .hysteresis import Hysteresis, Slid
 from .kinematic_error import kinematic_error
 from .law import Drive, peak_pressure
@@ -59,6 +60,7 @@ class HarmonicDriveSpring:
     joint: Drive
     curve: Curve
     hysteresis: Hysteresis
+    friction: Friction
 
     @classmethod
     def of(cls, drive: Drive) -> "HarmonicDriveSpring":
@@ -67,36 +69,54 @@ class HarmonicDriveSpring:
         Raises ValueError as `torque_curve` and `Hysteresis.of`.
         """
         curve = torque_curve(drive)
-        return cls(drive, curve, Hysteresis.of(drive, curve))
+        return cls(drive, curve, Hysteresis.of(drive, curve), Friction.of(drive))
 
     def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Torques and stiffnesses at flange angles [rad] and speeds [rad/s] (...), on the way from rest."""
-        return self.driven((phi1, w1, phi2, w2), self.hysteresis.rest())[0]
+        return self.driven((phi1, w1, phi2, w2), self.rest())[0]
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m], wave generator locked, on the way from rest."""
-        return self.loaded(tau, self.hysteresis.rest())[0]
+        return self.loaded(tau, self.rest())[0]
+
+    def rest(self) -> Array:
+        """Memory (n) of a spring that has not moved: of the hysteresis, then of the friction."""
+        return np.concatenate([self.hysteresis.rest(), self.friction.rest()])
 
     def driven(self, motion: Sequence[ArrayLike], memory: Array) -> tuple[dict[str, Array], Array]:
-        """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n + 2) on, and the new one."""
+        """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n) on, and the new one."""
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
+        wound, brakes = self._parts(memory)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid, loss, new = self._slid(phi, memory)
+        slid, loss, new = self._slid(phi, wound)
         load = np.copysign(load, phi)
         state = State(phi, load, stiffness, slid.torque, error, slope)
-        return exported(self.joint, motion, state) | {"E_loss": loss}, new
+        most = limit(self.joint, motion[1], transmitted(self.joint, motion, state))
+        braked = self.friction.moved(brakes, motion[0], motion[1], most)
+        new[..., -1] += braked.loss
+        after = self.friction.after(braked, motion[0], most)
+        out = exported(self.joint, motion, state, braked.torque) | {"E_loss": loss + braked.loss}
+        return out, np.concatenate([new, after], axis=-1)
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
-        """Wind-up and stiffnesses at torques (...), from a memory (n + 2) on, and the new one."""
+        """Wind-up and stiffnesses at torques (...), from a memory (n) on, and the new one."""
+        wound, brakes = self._parts(memory)
         if self.hysteresis.acts:
-            phi = self.hysteresis.wind_up(self.curve, memory, tau)
+            phi = self.hysteresis.wind_up(self.curve, wound, tau)
         else:
             phi = np.copysign(self.curve.inverse(np.abs(tau)), tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        _, loss, new = self._slid(phi, memory)
-        return {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}, new
+        _, loss, new = self._slid(phi, wound)
+        locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
+        out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
+        return out, np.concatenate([new, locked], axis=-1)
+
+    def _parts(self, memory: Array) -> tuple[Array, Array]:
+        """Memory of the hysteresis and of the friction."""
+        size = self.hysteresis.limit.size + 2
+        return memory[..., :size], memory[..., size:]
 
     def _slid(self, phi: Array, memory: Array) -> tuple[Slid, Array, Array]:
         """The sliders at wind-ups (...), the loss so far, the memory (..., n + 2)."""
@@ -131,15 +151,16 @@ def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
     return phi2 - phi1 / drive.ratio - error
 
 
-def exported(drive: Drive, motion: Sequence[Number], state: State) -> dict[str, Number]:
-    """What the spring exports at a motion phi1, w1, phi2, w2, but for the loss."""
-    tau = transmitted(drive, motion, state)
+def exported(drive: Drive, motion: Sequence[Number], state: State, dry: Number) -> dict[str, Number]:
+    """What the spring exports at a motion phi1, w1, phi2, w2 with a dry friction [N.m], but for the loss."""
+    tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1])
     return {
-        "tau1": tau / drive.ratio + state.slope * tau,
+        "tau1": tau / drive.ratio + state.slope * tau - friction,
         "tau2": -tau,
         "phi_rel": state.phi_rel,
         "tau": tau,
         **parts(drive, state.load, state.stiffness),
+        "tau_friction": friction,
         "phi_error": state.error,
     }
 

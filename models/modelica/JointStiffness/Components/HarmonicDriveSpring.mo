@@ -103,7 +103,7 @@ equation
 <p>p = F<sub>r</sub>/S<sub>r</sub> = (3−D)/(4−D) · 4E/(3π<sup>3/2</sup>R) · s<sub>l</sub><sup>1/2</sup> (Eqs. 17, 28)</p>
 <p>K<sub>N</sub> = (D−1)/(D/2−1) · E π<sup>−1/2</sup> ψ<sup>(3−D)/2</sup> s<sub>l</sub><sup>1/2</sup>, &emsp; K<sub>T</sub>/K<sub>N</sub> = (4G′/E) (1 − x)<sup>1/3</sup> (Eqs. 30, 39)</p>
 <h4>Not in this table</h4>
-<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
+<p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 <ul>
 <li><b>Validated</b> with the default parameters (CD-14-100): K_TS of the paper at 1 and 3 N m within 2.0 %, its change by eccentricity within 0.7 percentage points. The other published points fixed the calibration parameters.</li>
@@ -111,7 +111,7 @@ equation
 <li><b>Estimates.</b> Base radius, mean over peak pressure, yield strengths and damping are not published. All spots are taken as elastic; parameters for which some would yield are refused.</li>
 <li><b>Beyond rated torque</b> the stiffness settles at that of twice the rated torque, as that of catalogue drives does: an extrapolation.</li>
 <li><b>Range.</b> The table ends at <code>max_torque</code>. Parameters for which the pair loses contact without torque are refused.</li>
-<li><b>Not inside:</b> friction at the wave generator, temperature.</li>
+<li><b>Not inside:</b> friction at the wave generator, temperature. Other than in the FMU.</li>
 </ul>
 <p>Q. Hu, H. Li, G. Wang, L. Li: <em>Research on torsional stiffness of flexspline-flexible bearing contact pair in harmonic drive based on macro-micro scale modeling.</em> Frontiers in Materials 10, 2023. <a href=\"https://doi.org/10.3389/fmats.2023.1211019\">doi:10.3389/fmats.2023.1211019</a></p>
 </html>"));

@@ -88,7 +88,7 @@ equation
 <h4>Law</h4>
 << html.law >>
 <h4>Not in this table</h4>
-<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
+<p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>
