@@ -1,5 +1,6 @@
-"""Figures of the report: stiffness over torque, torque over wind-up."""
+"""Figures of the report: stiffness over torque, torque over wind-up, what friction costs."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from jointfmu.validation import Row
 
 from ...drawing import BLUE, GREEN, GREY, RED, labels, svg
 from ...report.figure import Figure
+from . import efficiency
 
 _FMU = "HarmonicDriveCompliance"
 
@@ -34,7 +36,21 @@ def figures(outcome: Any) -> list[Figure]:
             torque_angle(result),
             f"{_FMU}.csv",
         ),
+        Figure(
+            "Harmonic drive: what friction costs",
+            "By the FMU with the friction of catalogue drives. Left: efficiency over load; its speed "
+            "dependence follows from an estimated running torque, and no catalogue's curve is compared. "
+            "Right: torque at which drives begin to move over the catalogue's; the starting torque fixes "
+            "friction_coulomb, the back-driving torque load_loss where that is not below 0.",
+            friction(_spring(outcome)),
+        ),
     ]
+
+
+def _spring(outcome: Any) -> Path:
+    """The FMU between two flanges, FMI 2.0."""
+    paths: list[Path] = outcome.built
+    return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
 
 
 def stiffness(result: RampResult, rows: list[Row]) -> str:
@@ -80,3 +96,29 @@ def torque_angle(result: RampResult) -> str:
         axes.set_ylabel("torque [N m]")
 
     return svg(draw)
+
+
+def friction(fmu: Path) -> str:
+    """Efficiency over load at some speeds, and torques that set the catalogue's drives in motion."""
+    drives = efficiency.catalogue()
+
+    def draw(canvas: Canvas) -> None:
+        over_load, beside = canvas.subplots(1, 2, width_ratios=(3, 2))
+        for drive, style in zip(drives, ("-", "--"), strict=True):
+            share = np.linspace(0.02, 1.0, 25)
+            with efficiency.bench(fmu, drive.parameters) as bench:
+                for rpm, color in ((500, GREEN), (2000, BLUE), (3500, RED)):
+                    found = [bench.efficiency(rpm * np.pi / 30.0, x * drive.rated_torque) for x in share]
+                    over_load.plot(share, found, style, color=color, label=f"{drive.name}, {rpm} rpm")
+                back = bench.back_driving_torque(10.0 * drive.back_driving_torque)
+                start = bench.starting_torque()
+            ratios = [start / drive.starting_torque, back / drive.back_driving_torque]
+            beside.plot(["starting", "back-driving"], ratios, "o", label=drive.name)
+        over_load.legend(fontsize=8)
+        labels(over_load, "load over rated torque", "efficiency")
+        beside.axhline(1.0, color=GREY, lw=0.8)
+        beside.set_ylim(0.8, 1.2)
+        beside.set_ylabel("FMU over catalogue")
+        beside.legend(fontsize=8)
+
+    return svg(draw, (9.6, 4.2))
