@@ -24,7 +24,7 @@ PRELOADS = (2e3, 4.3e3, 9e3, 13e3, 25e3)
 """Of a bolt [N]."""
 MOMENTS = (0.0, 1200.0)
 """Of the joint [N.m]."""
-AMPLITUDES = (0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
+AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
 """Force of the loops over the friction [1]."""
 ALONG = 20
 """Displacements up to gross slip at which the force is compared."""
@@ -49,13 +49,13 @@ class Theorem:
 
     def force(self, along: float) -> float:
         """Per area [Pa], at a displacement [m] from rest."""
-        law = self.spring.foundation
+        law = self.spring.foundation()
         return float(self.share @ law.backbone(self.approach, along))
 
     @property
     def gross(self) -> float:
         """Displacement [m] from which on all of it slips."""
-        law = self.spring.foundation
+        law = self.spring.foundation()
         return float(law.friction * (np.max(self.approach) - self.spring.curve.displacement[0]) / law.ratio)
 
     def displacement(self, part: float) -> float:
@@ -65,14 +65,15 @@ class Theorem:
 
     def area(self, size: float) -> float:
         """Loss of a loop of an amplitude [m], per area [J/m2]."""
-        work = float(self.share @ self.spring.foundation.work(self.approach, size))
+        work = float(self.share @ self.spring.foundation().work(self.approach, size))
         return 8.0 * (work - 0.5 * self.force(size) * size)
 
 
 def deviations(spring: BoltedJointSpring, preload: float, moment: float) -> tuple[float, Array]:
     """Largest deviation of the force over the friction [1], and of the areas (m) of the loops [1]."""
-    theorem, patches, law = Theorem.of(spring, preload, moment), spring.patches, spring.foundation
+    theorem, patches = Theorem.of(spring, preload, moment), spring.patches
     approach = spring.curve.inverse(pressures(spring.joint, patches, preload, moment))
+    law = spring.foundation(approach)
 
     def along(*ways: float) -> tuple[float, float]:
         force, loss = law.at_rest(approach.size), 0.0
@@ -102,7 +103,7 @@ def main() -> None:
         spring = BoltedJointSpring.of(joint)
         found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
         areas = np.max([a for _, a in found], axis=0)
-        row = [name, str(spring.patches.share.size), str(spring.foundation.sliders)]
+        row = [name, str(spring.patches.share.size), str(spring.foundation().sliders)]
         cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
         print("| " + " | ".join([*row, *cells]) + " |", flush=True)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
@@ -19,7 +20,7 @@ from jointfmu.footprint.shape import NodalField, PressureShape
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
-from jointfmu.sliders import Foundation, Moved, levels
+from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 
@@ -171,7 +172,7 @@ def friction(
     largest approach, over which the ways and the tilt are.
     """
     ratio = float(shear_ratio(spring.joint))
-    sliders = Foundation.of(spring.curve, ratio, spring.joint.mu, levels(*HEIGHTS, step))
+    sliders = at_levels(spring.curve, ratio, spring.joint.mu, levels(*HEIGHTS, step))
     (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * x / gyration

@@ -5,17 +5,41 @@ typedef struct {
     double K, slope, limit[2], change[2];
 } Pair;
 
-void foundation_tabulate(Foundation *f, const Curve *curve, const Energy *energy, double mu, double ratio)
+static double inverse(const Foundation *f, double load)
 {
     int segment = 0;
-    double carried, y[2];
-    f->curve = curve;
-    f->energy = energy;
-    f->mu = mu;
-    f->ratio = ratio;
-    for (int i = 0; i < N_LEVELS; i++) {
-        f->height[i] = curve_inverse(curve, LEVELS[i] * curve->end.y, &segment, &carried);
-        curve_at(curve, f->height[i], 1, y);
+    double carried;
+    return curve_inverse(f->curve, load, &segment, &carried);
+}
+
+/* As `around` of the package. */
+static void lay_heights(Foundation *f, double reference)
+{
+    const double end = f->curve->end.y;
+    double y[1], *h = f->height;
+    curve_at(f->curve, reference, 0, y);
+    const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
+    const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);
+    *h++ = inverse(f, 0.0);
+    for (int k = N_BELOW - 1; k >= 0; k--) {
+        const double part = (k + f->offset) / N_BELOW, rest = (1.0 - part) * (1.0 - part);
+        *h++ = inverse(f, load * rest / (part * part + rest));
+    }
+    *h++ = given ? reference : inverse(f, load);
+    for (int k = 0; k < N_ABOVE; k++) {
+        const double part = (k + f->offset) / N_ABOVE;
+        *h++ = inverse(f, load * exp(over * (part * part)));
+    }
+    *h = inverse(f, end);
+}
+
+void foundation_lay(Foundation *f, double reference)
+{
+    double y[2];
+    f->reference = reference;
+    lay_heights(f, reference);
+    for (int i = 0; i < N_HEIGHTS; i++) {
+        curve_at(f->curve, f->height[i], 1, y);
         f->load[i] = y[0];
         f->stiffness[i] = y[1];
     }
@@ -24,14 +48,14 @@ void foundation_tabulate(Foundation *f, const Curve *curve, const Energy *energy
         f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
         f->normal[i] = f->load[i + 1] - f->load[i] - f->stiffness[i] * width;
         f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
-        f->stick[i] = ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
+        f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
         for (int late = 0; late < 2; late++) {
             const int k = 2 * i + late;
             const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
-            f->K[k] = 0.5 * ratio * f->springs[i];
+            f->K[k] = 0.5 * f->ratio * f->springs[i];
             f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
-            f->grows[k] = 0.5 * mu * f->springs[i];
-            f->limit[k] = 0.5 * mu * first - f->grows[k] * f->height[i + 1];
+            f->grows[k] = 0.5 * f->mu * f->springs[i];
+            f->limit[k] = 0.5 * f->mu * first - f->grows[k] * f->height[i + 1];
         }
     }
 }
@@ -70,7 +94,7 @@ Point foundation_point(const Foundation *f, double approach, int near)
 static inline Pair pair_at(const Foundation *f, int i, const Point *p)
 {
     const double half = 0.5 * f->mu;
-    if (i >= p->touched)
+    if (p->approach < f->height[i])
         return (Pair){.K = 0.0};
     if (i < p->full) {
         const double *limit = f->limit + 2 * i, grows = f->grows[2 * i];
@@ -578,8 +602,12 @@ static void add_rates(const Foundation *f, const Point *inner, int k, const Patc
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2], const double shift[2],
                       Shear *rate)
 {
-    const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
+    const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
+    const double approach = fmax(path->from->approach, path->to->approach);
+    int touched = touched_on(path);
     Inner inner = {.known = false};
+    if (touched < HEIGHTS && approach == f->height[touched]) /* springs that are about to touch */
+        touched++;
     *rate = (Shear){.loss = 0.0};
     if (touched > full)
         inner_points(f, path, &inner);
