@@ -6,7 +6,6 @@
 #include "hysteresis.h"
 
 typedef struct {
-    double smoothing, max_torque, K_FTS0; /* of the drive */
     Hysteresis hysteresis;
     Friction friction;
     bool errs;  /* there is a kinematic error */

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...quantity import Number
+from .drive import Drive
 from .hysteresis import shares
-from .law import Drive
 from .lost_motion import WIDTH
 
 Array = NDArray[np.float64]

@@ -11,7 +11,7 @@ generator is tau (1/ratio + dphi_error/dphi1).
 import numpy as np
 
 from ...quantity import Number
-from .law import Drive
+from .drive import Drive
 
 HARMONICS = (1, 2, 4)
 """Periods per turn of the wave generator."""

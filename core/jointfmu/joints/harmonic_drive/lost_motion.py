@@ -12,7 +12,8 @@ of the loop. Of that, 2 phi(0.04 rated_torque) is the wind-up of the law; `lost_
 import numpy as np
 
 from ...quantity import Number
-from .law import Drive, drive_stiffness
+from .drive import Drive
+from .law import PairDrive, drive_stiffness
 
 WIDTH = 0.01
 """Torque over rated torque [1] in which the play is run through: at 4 % all but 0.07 % of it is."""
@@ -26,7 +27,7 @@ def play(drive: Drive, torque: Number) -> tuple[Number, Number, Number]:
     return half * part, slope, -2.0 * part * slope / width
 
 
-def stiffness_with_play(drive: Drive, torque: Number) -> tuple[Number, Number]:
+def stiffness_with_play(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     """K_WTS (...) [N.m/rad] of law and play in series, and dK_WTS/dT [1/rad]."""
     K, growth = drive_stiffness(drive, torque)
     _, compliance, change = play(drive, torque)

@@ -17,7 +17,7 @@ _CONTACT = (
 )
 
 _MOTION = ("phi1", "phi2")
-_HIDDEN = ("max_torque", "shear_traction")
+_HIDDEN = ("max_torque", "shear_traction", "table")
 _DAMPED = {"w2": "parameters"}
 _ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
 _FRICTION = ("friction_coulomb", "friction_stribeck", "stribeck_speed", "friction_viscous", "load_loss")

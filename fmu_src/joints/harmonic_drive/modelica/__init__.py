@@ -21,7 +21,7 @@ _ERROR = [f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")]
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
-    own = {name: getattr(drive, name) for name in ("ratio", "d", "K_FTS0", *_ERROR)}
+    own = {name: getattr(drive, name) for name in ("ratio", "d", *_ERROR)} | {"K_FTS0": drive.K_FTS}
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
         Record(

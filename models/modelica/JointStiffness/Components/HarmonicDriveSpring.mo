@@ -92,7 +92,6 @@ equation
 <p>φ<sub>e</sub> = Σ error_n sin(n φ<sub>1</sub> + error_n_phase), &emsp; n = 1, 2, 4</p>
 <p>φ<sub>e</sub>, the output <code>phi_error</code>, is the kinematic error at the output. φ<sub>1</sub> counts from the housing: both lobes of the wave generator pass every tooth once per turn, so two periods per turn come first, <code>error_2</code>. The torque on the wave generator follows by virtual work. At a steady speed the output ripples, most at that speed of the wave generator which is half the natural frequency.</p>
 <p>φ(T) = ∫<sub>0</sub><sup>T</sup> dT′ / K<sub>WTS</sub>(T′), &emsp; odd in T</p>
-<p><code>lost_motion</code> adds <code>lost_motion</code>/2 · tanh(T/(0.01 T<sub>r</sub>)) to φ(T): smooth, in series, counted to K<sub>TS</sub>. Catalogues state as lost motion the angle between ± 4 % of the rated torque T<sub>r</sub>, midway between the branches of the loop; the parameter is what of it is beyond the wind-up 2 φ(0.04 T<sub>r</sub>) without it.</p>
 <p>1/K<sub>WTS</sub> = 1/K<sub>FTS</sub> + 1/K<sub>TS</sub> (Hu 2023, Eq. 46)</p>
 <p>K<sub>TS</sub> = drive_scale · (A<sub>0</sub>/node_area) · K<sub>T</sub>(p) · 2 radius, &emsp; p = mean_over_peak · P(T) (Eq. 45 as printed)</p>
 <p>P is the peak pressure of the contact of flexspline and bearing ring, at the major axis and the cup's opening,</p>
@@ -102,6 +101,7 @@ equation
 <p>K<sub>N</sub> and K<sub>T</sub> of a node are sums over its contact spots up to the largest one, s<sub>l</sub>, all elastic:</p>
 <p>p = F<sub>r</sub>/S<sub>r</sub> = (3−D)/(4−D) · 4E/(3π<sup>3/2</sup>R) · s<sub>l</sub><sup>1/2</sup> (Eqs. 17, 28)</p>
 <p>K<sub>N</sub> = (D−1)/(D/2−1) · E π<sup>−1/2</sup> ψ<sup>(3−D)/2</sup> s<sub>l</sub><sup>1/2</sup>, &emsp; K<sub>T</sub>/K<sub>N</sub> = (4G′/E) (1 − x)<sup>1/3</sup> (Eqs. 30, 39)</p>
+<p><code>lost_motion</code> adds <code>lost_motion</code>/2 · tanh(T/(0.01 T<sub>r</sub>)) to φ(T): smooth, in series, counted to K<sub>TS</sub>. Catalogues state as lost motion the angle between ± 4 % of the rated torque T<sub>r</sub>, midway between the branches of the loop; the parameter is what of it is beyond the wind-up 2 φ(0.04 T<sub>r</sub>) without it.</p>
 <h4>Not in this table</h4>
 <p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
