@@ -143,10 +143,10 @@ class CatalogueDrive(Given):
         ]
 
     def _with_play(self) -> list[Node]:
-        """On the first line, evenly in asinh of the torque over that of the play."""
-        width, nodes = WIDTH * self.rated_torque, []
+        """On the first line, closer where the torque is small."""
+        most, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
         for part in np.arange(PLAY_NODES) / PLAY_NODES:
-            torque = width * np.sinh(part * np.arcsinh(self._straight / width))
+            torque = most * float(part) ** 2
             angle, compliance, change = play(self, torque)
             softer = 1.0 + self.K1 * compliance
             bend = -(self.K1**3) * change / softer**3
