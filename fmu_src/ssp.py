@@ -14,10 +14,9 @@ from jointfmu.units import UNITS
 
 from .archive import pack, workshop
 from .native.build import build
-from .native.description import serialized
 from .partners import PARTNERS
 from .partners import parameters as partner_parameters
-from .xml_parts import VARIABILITIES
+from .xml_parts import VARIABILITIES, serialized
 
 _SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
 _NAMESPACES = {

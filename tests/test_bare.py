@@ -53,6 +53,13 @@ def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
     assert (tmp_path / "ring.csv").exists()
 
 
+@pytest.mark.slow
+def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> None:
+    done = bare(tmp_path, "prove", str(native / "fmi2" / "GearContact.fmu"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith(" passed, 0 missed\n")
+
+
 @pytest.mark.parametrize(
     ("words", "package"),
     [
@@ -62,7 +69,10 @@ def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
         (("footprint", "compute", "absent.toml", "--preload", "9e3"), "skfem"),
     ],
 )
-def test_what_is_missing_is_named_in_one_line(words: tuple[str, ...], package: str, tmp_path: Path) -> None:
+def test_what_is_missing_is_named_in_one_line(
+    words: tuple[str, ...], package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     done = bare(tmp_path, *words)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert package in done.stderr

@@ -24,6 +24,20 @@ def name(request: pytest.FixtureRequest) -> str:
 # Warnings
 
 
+def test_a_list_of_intermediate_variables_is_left_out_with_a_warning(host: Host, name: str) -> None:
+    instance = host(name, "fmi3")
+    instance.fmu.fmi3FreeInstance(instance.fmu.component)
+    instance.fmu.instantiate(
+        logMessage=lambda env, status, category, text: instance._log(status, category, text),
+        requiredIntermediateVariables=[1, 2],
+    )
+    assert instance.warnings == [
+        "fmi3InstantiateCoSimulation: intermediate variables are wanted and left out; expected none, for "
+        "there is no intermediate update"
+    ]
+    instance.start(GOOD[name]).step()
+
+
 @pytest.mark.parametrize(("name", "beyond"), BEYOND)
 def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
     host: Host, version: str, exchange: bool, name: str, beyond: Beyond

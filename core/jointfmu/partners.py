@@ -71,6 +71,12 @@ class _Load:
     def __post_init__(self) -> None:
         check(self)
 
+    def corners(self) -> tuple[Number, ...]:
+        """Times [s] at which an edge of ramp or pulse begins or ends."""
+        top, fall = self.pulse_start + self.pulse_rise, self.pulse_start + self.pulse_rise + self.pulse_hold
+        ramp = (self.ramp_start, self.ramp_start + self.ramp_duration)
+        return (*ramp, self.pulse_start, top, fall, fall + self.pulse_rise)
+
     def at(self, time: Number, ramp: Number, pulse: Number) -> Number:
         """Ramp and pulse of these heights at a time [s]."""
         rise = smooth_step((time - self.pulse_start) / self.pulse_rise)

@@ -30,7 +30,7 @@ SPREAD = 1.0 / np.sqrt(12.0)
 """Standard deviation of evenly spread springs over the range of their heights [1]."""
 
 
-BELOW, ABOVE = 12, 8
+BELOW, ABOVE = 10, 7
 """Heights of `around` between none and the reference, and between it and the end of the curve."""
 LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
 """Least and largest load of a reference, and that without one, over the load at the end of the curve [1]."""

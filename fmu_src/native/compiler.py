@@ -6,7 +6,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from os import cpu_count
@@ -23,37 +23,60 @@ TARGETS = {
 }
 """FMI's names of the platforms, and zig's with the oldest glibc or macOS."""
 
-_OPTIONS = (
+_COMPILED = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
-    "-fvisibility=hidden", "-DNDEBUG", "-shared", "-s",
+    "-fvisibility=hidden", "-DNDEBUG", "-s",
 )  # fmt: skip
+_OPTIONS = (*_COMPILED, "-shared")
+_WEB = ("-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED, "-Wl,--export-dynamic")
+"""A module that takes nothing from its host: what is visible is exported, and `_initialize` comes first."""
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Parts of the C runtime that belongs to Windows 10 and newer."""
 
 
 def libraries(
-    name: str, sources: Mapping[str, str], units: Sequence[str], platforms: Sequence[str] = tuple(TARGETS)
+    name: str,
+    sources: Mapping[str, str],
+    units: Sequence[str],
+    platforms: Sequence[str] = tuple(TARGETS),
+    stem: str = "",
 ) -> dict[str, bytes]:
     """{platform: shared library} of the .c files `units`, with FMI's functions exported.
 
-    `sources` are all files by flat name, FMI's headers come from fmpy. What units of the same sources
-    share is compiled once, in this and in later builds. Equal sources give equal bytes.
+    `sources` are all files by flat name, FMI's headers come from fmpy; `stem` is the libraries' file
+    name. What units of the same sources share is compiled once, in this and in later builds. Equal sources
+    give equal bytes.
 
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
     """
-    options = {platform: _options(platform, name) for platform in platforms}
+    options = {platform: _options(platform, stem or name) for platform in platforms}
     own = Path(__file__).with_name("windows.c")
     folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
 
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
-            file = Path(out) / file_name(name, platform)
+            file = Path(out) / file_name(stem or name, platform)
             _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, "-o", str(file))
             return file.read_bytes()
 
     with ThreadPoolExecutor(cpu_count()) as pool:
         return dict(zip(platforms, pool.map(library, platforms), strict=True))
+
+
+def exported(files: Iterable[str], version: str) -> list[str]:
+    """C files of one FMI version."""
+    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    return [name for name in files if name.endswith(".c") and name != other]
+
+
+def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
+    """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
+    folder = _folder({**_headers(), **sources})
+    with tempfile.TemporaryDirectory() as out:
+        file = Path(out) / f"{name}.wasm"
+        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        return file.read_bytes()
 
 
 def file_name(name: str, platform: str) -> str:

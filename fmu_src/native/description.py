@@ -4,7 +4,7 @@ Value references: 0 is the time, which FMI 2.0 does not list; then inputs, outpu
 """
 
 from collections.abc import Sequence
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
@@ -17,6 +17,7 @@ from ..xml_parts import (
     dependencies,
     fmi2_structure,
     listed,
+    serialized,
     stop_time,
     text,
     unit_definitions,
@@ -83,7 +84,7 @@ def fmi2_xml(
     root = _root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
-        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.rest and kind == "ModelExchange":
             interface.set("completedIntegratorStepNotNeeded", "false")
         files = SubElement(interface, "SourceFiles")
@@ -107,7 +108,7 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: s
     variables = [_TIME, *listed(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
-        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.rest and kind == "ModelExchange":
             interface.set("needsCompletedIntegratorStep", "true")
     root.append(unit_definitions(variables))
@@ -140,7 +141,7 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
     """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     for platform in (None, "x86_64-linux", "aarch64-linux"):
-        build = SubElement(root, "BuildConfiguration", modelIdentifier=model.name)
+        build = SubElement(root, "BuildConfiguration", modelIdentifier=model.title)
         files = SubElement(build, "SourceFileSet", language="C11")
         for name in sources:
             SubElement(files, "SourceFile", name=name)
@@ -150,14 +151,10 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
     return serialized(root)
 
 
-def serialized(root: Element) -> bytes:
-    """An XML file, indented, the same bytes for the same content."""
-    indent(root)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
-
-
 def _root(model: Model, version: str, token_name: str, token: str) -> Element:
-    root = Element("fmiModelDescription", {"fmiVersion": version, "modelName": model.name, token_name: token})
+    root = Element(
+        "fmiModelDescription", {"fmiVersion": version, "modelName": model.title, token_name: token}
+    )
     root.attrib |= {
         "description": model.doc,
         "author": "the jointfmu authors",

@@ -88,11 +88,13 @@ class NativePart:
     functions   : adds the functions that its C calls to a graph
     shared      : files of `runtime/` that it uses, beside those of every FMU
     definitions : its constants
+    memory      : numbers of its memory, where the parameters decide how many of them it needs
     """
 
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
     definitions: Callable[[Graph, Model], Definitions] = nothing
+    memory: int | None = None
 
     @property
     def tabulated(self) -> bool:
@@ -105,6 +107,8 @@ def _equations(g: Graph, model: Model) -> None:
     v: dict[str, Any] = {name: ca.SX.sym(name) for name in names}
     outputs = model.evaluate(g.joint, v)
     doc = "time, inputs, states -> outputs"
+    if model.events:
+        g.add("events", "-> times at which the course of the outputs has a corner", [], model.events(g.joint))
     g.add_with_seed("outputs", doc, list(v.values()), [outputs[o.name] for o in model.outputs])
 
 

@@ -35,6 +35,7 @@ def _model(
         | {v.name: (*(i.name for i in inputs), outputs[0].name) for v in outputs[states:] if states},
         states=states,
         moves=True,
+        events=getattr(parameters, "corners", None),
     )
 
 

@@ -6,6 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from conftest import refused_line
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
@@ -223,6 +224,13 @@ def test_files_are_read_and_written(law, tmp_path):
     assert load(path) == file
     assert file.law == law
     assert judge_file(file).level is None  # there is no interface to judge
+
+
+@pytest.mark.parametrize("law", ["catalogue", "table"])
+def test_a_file_without_an_interface_says_so(law, capsys):
+    path = KINDS["harmonic_drive"].default_file(law)
+    line = refused_line(capsys, "law", "hu2023", "--pressure", "1e6", "--params", path)
+    assert f"law = {law!r} is of no interface" in line
 
 
 @pytest.mark.slow

@@ -21,8 +21,9 @@ typedef struct {
     double springs[HEIGHTS]; /* normal stiffness of all springs of a range */
     double normal[HEIGHTS];  /* their normal force when the last one touches */
     double apart[HEIGHTS];   /* normal force by which the two sliders differ from then on */
-    /* Of the sliders of ranges whose springs all touch: stiffness, 1/K, limit over the approach. */
-    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS], grows[SLIDERS];
+    /* Of the sliders of ranges whose springs all touch: K, 1/K, and the limit at no approach, from which it grows
+     * by K mu/ratio. */
+    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS];
     double stick[HEIGHTS]; /* sum of K up to a range */
 } Foundation;
 

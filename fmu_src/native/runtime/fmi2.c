@@ -203,8 +203,11 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *eventInfo)
     if (!instance_allows(c, __func__, MODEL_EXCHANGE | EVENT) ||
         !instance_has(c, __func__, "the event information", eventInfo))
         return fmi2Error;
-    *eventInfo = (fmi2EventInfo){fmi2False, fmi2False, fmi2False, fmi2False, fmi2False, 0.0};
-    return STATUS(instance_accept(c)); /* with parameters that were changed in the event */
+    bool defined;
+    double next;
+    const Status status = instance_update_event(c, &defined, &next);
+    *eventInfo = (fmi2EventInfo){fmi2False, fmi2False, fmi2False, fmi2False, defined, next};
+    return STATUS(status);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)

@@ -48,17 +48,19 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     (void)resourcePath, (void)visible, (void)earlyReturnAllowed; /* a step never ends early */
     (void)requiredIntermediateVariables, (void)intermediateUpdate;
     const Reporter reporter = {deliver, (void (*)(void))logMessage, instanceEnvironment};
-    const char *problem = NULL;
-    if (eventModeUsed)
-        problem = "event mode is wanted in co-simulation; expected eventModeUsed = false, as the model "
-                  "description says";
-    else if (nRequiredIntermediateVariables)
-        problem = "intermediate variables are wanted; expected none, for there is no intermediate update";
-    if (problem) {
-        instance_not_made(__func__, instanceName, reporter, problem);
+    if (eventModeUsed) {
+        instance_not_made(__func__, instanceName, reporter,
+                          "event mode is wanted in co-simulation; expected eventModeUsed = false, as the model "
+                          "description says");
         return NULL;
     }
-    return instance_new(__func__, 3, CO_SIMULATION, instanceName, instantiationToken, loggingOn, reporter);
+    Instance *m =
+        instance_new(__func__, 3, CO_SIMULATION, instanceName, instantiationToken, loggingOn, reporter);
+    if (m && nRequiredIntermediateVariables)
+        instance_report(m, WARNING, LOG_WARNINGS,
+                        "fmi3InstantiateCoSimulation: intermediate variables are wanted and left out; "
+                        "expected none, for there is no intermediate update");
+    return m;
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(
@@ -366,7 +368,7 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, References unknowns, 
         instance_adjoint(instance, __func__, unknowns, nUnknowns, knowns, nKnowns, seed, sensitivity));
 }
 
-/* Events: none but those of the host, who may change parameters in them */
+/* Events: those of the host, who may change parameters in them, and corners of a course over time */
 
 fmi3Status fmi3EnterEventMode(fmi3Instance instance)
 {
@@ -395,9 +397,8 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
         !instance_has(instance, __func__, "nextEventTime", nextEventTime))
         return fmi3Error;
     *discreteStatesNeedUpdate = *terminateSimulation = *nominalsOfContinuousStatesChanged = fmi3False;
-    *valuesOfContinuousStatesChanged = *nextEventTimeDefined = fmi3False;
-    *nextEventTime = 0.0;
-    return STATUS(instance_accept(instance)); /* with parameters that were changed in the event */
+    *valuesOfContinuousStatesChanged = fmi3False;
+    return STATUS(instance_update_event(instance, nextEventTimeDefined, nextEventTime));
 }
 
 /* Model exchange: no event indicators, and states in systems only */

@@ -3,7 +3,7 @@
  *
  * The memory of a joint are N_MEMORY numbers, all zero where nothing moved yet; it lies in the instance
  * (memory.h), which says when a path is gone. A joint without memory looks at none and defines no
- * joint_accept. */
+ * joint_accept, one without events no joint_events. */
 #ifndef JOINTFMU_JOINT_H
 #define JOINTFMU_JOINT_H
 
@@ -36,5 +36,8 @@ unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs
 
 /* The warning of one such bit (1, 2, 4, ...). */
 void joint_warning(Joint *joint, const double *inputs, const double *outputs, unsigned bit, Text *text);
+
+/* The N_EVENTS times [s] at which the outputs' course over time has a corner, in any order. */
+void joint_events(Joint *joint, double *times);
 
 #endif

@@ -21,6 +21,27 @@ Status instance_initialize(Instance *m, const char *function)
     return OK;
 }
 
+Status instance_update_event(Instance *m, bool *defined, double *next)
+{
+    *defined = false;
+    *next = 0.0;
+    if (instance_accept(m) != OK)
+        return ERROR;
+#if N_EVENTS
+    const double now = m->now.values[0];
+    double times[N_EVENTS];
+    joint_events(m->joint, times);
+    for (size_t i = 0; i < N_EVENTS; i++) {
+        const double slack = 1e-14 * (fabs(now) + fabs(times[i])); /* hosts round times in their own ways */
+        if (isfinite(times[i]) && times[i] - now > slack && !(*defined && *next <= times[i])) {
+            *defined = true;
+            *next = times[i];
+        }
+    }
+#endif
+    return OK;
+}
+
 static bool has_slopes(const State *now)
 {
     bool any = false;

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
-PATCHES = 24
+PATCHES = 22
 """Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
 UNKNOWN, RESTING, ALONG, FREE = 0.0, 1.0, 2.0, 3.0

@@ -1,6 +1,6 @@
 """Inputs and outputs of the harmonic drive's models."""
 
-from ..model import BEYOND, Model, Outside, Ramp, Variable
+from ..model import BEYOND, Loop, Model, Outside, Ramp, Variable
 from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
@@ -18,6 +18,8 @@ _CONTACT = (
 
 _MOTION = ("phi1", "phi2")
 _HIDDEN = ("max_torque", "shear_traction", "table")
+_LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+"""One arcmin of hysteresis: the default drive has none."""
 _DAMPED = {"w2": "parameters"}
 _ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
 _FRICTION = ("friction_coulomb", "friction_stribeck", "stribeck_speed", "friction_viscous", "load_loss")
@@ -56,6 +58,7 @@ MODELS = (
         evolve=lambda s, v, memory: s.driven((v["phi1"], v["w1"], v["phi2"], v["w2"]), memory),
         outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
+        loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={
             "phi_rel": _MOTION,
             "K_WTS": _MOTION,
@@ -85,6 +88,7 @@ MODELS = (
         evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
         ramp=Ramp("tau", 5.0, 0.01),
+        loop=Loop("tau", 5.0, _LOSSY),
         dependencies={"K_FTS": ()},
         hidden=(*_HIDDEN, *_SPRING_ONLY),
     ),
