@@ -22,6 +22,7 @@ from matplotlib.patches import Rectangle
 from jointfmu import plots, validation
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load, write_text
+from jointfmu.systems import system
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
@@ -47,10 +48,11 @@ def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
     drive = load(ROOT / "models" / "catalogue" / "size_14_ratio_80.toml")
     with TemporaryDirectory() as folder:
-        ssp.build_systems(Path(folder), drive)
-        points = ringing.ring("robot_joint", Path(folder) / "fmi2")
+        ssp.build_systems(Path(folder), parameters=drive)
+        one = ringing.rung(system("robot_joint"))
+        points = ringing.ring(one, Path(folder) / "fmi2")
     with plots.drawing(path, SIZE) as canvas:
-        draw(canvas, points, ringing.body_on(drive.joint))
+        draw(canvas, points, one.body)
 
 
 def house() -> str:

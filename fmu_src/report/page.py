@@ -14,6 +14,7 @@ from jointfmu.validation import shown_claim, shown_error, shown_tolerance, summa
 from ..joints import part
 from ..templates import template
 from .figure import Figure
+from .motion import motions
 from .systems import resonances, ring_downs
 
 
@@ -30,7 +31,12 @@ def write_report(path: Path, outcome: Any) -> None:
         shown_tolerance=shown_tolerance,
         shown_claim=shown_claim,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
-        figures=[*_of_joints(outcome), *resonances(outcome.ringing), *ring_downs(outcome.decays)],
+        figures=[
+            *_of_joints(outcome),
+            *resonances(outcome.ringing),
+            *ring_downs(outcome.decays),
+            *motions(outcome.arms),
+        ],
     )
     write_text(path, page)
 

@@ -18,6 +18,7 @@ from . import (
     ring,
     surface,
     sweep,
+    system,
     uncertainty,
     validate,
 )
@@ -34,6 +35,7 @@ COMMANDS = (
     modes,
     ramp,
     ring,
+    system,
     surface,
     fit,
     uncertainty,
