@@ -24,7 +24,9 @@ PRELOADS = (2e3, 4.3e3, 9e3, 13e3, 25e3)
 """Of a bolt [N]."""
 MOMENTS = (0.0, 1200.0)
 """Of the joint [N.m]."""
-AMPLITUDES = (0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
+FIRST = (1.0, 0.8, 1.25, 0.5, 2.0)
+"""Preloads under which the joint first moved over the present ones [1]."""
+AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
 """Force of the loops over the friction [1]."""
 ALONG = 20
 """Displacements up to gross slip at which the force is compared."""
@@ -49,13 +51,13 @@ class Theorem:
 
     def force(self, along: float) -> float:
         """Per area [Pa], at a displacement [m] from rest."""
-        law = self.spring.foundation
+        law = self.spring.foundation()
         return float(self.share @ law.backbone(self.approach, along))
 
     @property
     def gross(self) -> float:
         """Displacement [m] from which on all of it slips."""
-        law = self.spring.foundation
+        law = self.spring.foundation()
         return float(law.friction * (np.max(self.approach) - self.spring.curve.displacement[0]) / law.ratio)
 
     def displacement(self, part: float) -> float:
@@ -65,14 +67,21 @@ class Theorem:
 
     def area(self, size: float) -> float:
         """Loss of a loop of an amplitude [m], per area [J/m2]."""
-        work = float(self.share @ self.spring.foundation.work(self.approach, size))
+        work = float(self.share @ self.spring.foundation().work(self.approach, size))
         return 8.0 * (work - 0.5 * self.force(size) * size)
 
 
-def deviations(spring: BoltedJointSpring, preload: float, moment: float) -> tuple[float, Array]:
-    """Largest deviation of the force over the friction [1], and of the areas (m) of the loops [1]."""
-    theorem, patches, law = Theorem.of(spring, preload, moment), spring.patches, spring.foundation
+def deviations(
+    spring: BoltedJointSpring, preload: float, moment: float, first: float = 1.0
+) -> tuple[float, Array]:
+    """Largest deviation of the force over the friction [1], and of the areas (m) of the loops [1].
+
+    first : preload under which the joint first moved over the present one [1]
+    """
+    theorem, patches = Theorem.of(spring, preload, moment), spring.patches
     approach = spring.curve.inverse(pressures(spring.joint, patches, preload, moment))
+    before = spring.curve.inverse(pressures(spring.joint, patches, first * preload, first * moment))
+    law = spring.foundation(before)
 
     def along(*ways: float) -> tuple[float, float]:
         force, loss = law.at_rest(approach.size), 0.0
@@ -96,15 +105,16 @@ def joints() -> Iterator[tuple[str, Bolted]]:
 
 def main() -> None:
     """Print the largest deviations over preloads and moments."""
-    print("| law | patches | sliders | force | " + " | ".join(f"loop {x:g}" for x in AMPLITUDES) + " |")
-    print("|---" * (4 + len(AMPLITUDES)) + "|")
+    print("| law | first | force | " + " | ".join(f"loop {x:g}" for x in AMPLITUDES) + " |")
+    print("|---" * (3 + len(AMPLITUDES)) + "|")
     for name, joint in joints():
         spring = BoltedJointSpring.of(joint)
-        found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
-        areas = np.max([a for _, a in found], axis=0)
-        row = [name, str(spring.patches.share.size), str(spring.foundation.sliders)]
-        cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
-        print("| " + " | ".join([*row, *cells]) + " |", flush=True)
+        for first in FIRST:
+            found = [deviations(spring, preload, moment, first) for preload in PRELOADS for moment in MOMENTS]
+            areas = np.max([a for _, a in found], axis=0)
+            cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
+            print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
+    print(f"{spring.patches.share.size} patches, {spring.foundation().sliders} sliders each")
 
 
 if __name__ == "__main__":

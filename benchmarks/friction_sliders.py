@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from jointfmu.curve import Curve
-from jointfmu.sliders import Foundation, levels
+from jointfmu.sliders import Foundation
 
 Array = NDArray[np.float64]
 
@@ -50,9 +50,28 @@ def sphere() -> Curve:
     return Curve(x, load(x), stiffness(x), np.concatenate([2.0 * bend[:1], bend[:-1]]), bend)
 
 
+def levels(lowest: float, working: tuple[float, float], step: float) -> Array:
+    """Loads of heights over the load at the end of a curve, from 0 to 1 [1].
+
+    Neighbours differ by the factor exp(step) in the range of working loads, by exp(2 step) between it and
+    `lowest` and between it and the end.
+    """
+    ends = np.log([lowest, *working, 1.0])
+    parts = [np.zeros(1)]
+    for low, high, by in zip(ends[:-1], ends[1:], (2.0 * step, step, 2.0 * step), strict=True):
+        count = int(np.ceil((high - low) / by))
+        parts.append(np.exp(np.linspace(low, high, count + 1)[:-1]))
+    return np.concatenate([*parts, np.ones(1)])
+
+
+def at_levels(curve: Curve, ratio: float, friction: float, level: ArrayLike) -> Foundation:
+    """Sliders of a curve; `level` are the loads of the heights over the one at its end."""
+    return Foundation(curve, ratio, friction, curve.inverse(np.asarray(level) * curve.end[1]))
+
+
 def foundation(step: float) -> Foundation:
     """Sliders of the sphere."""
-    return Foundation.of(sphere(), RATIO, FRICTION, levels(*RANGE, step))
+    return at_levels(sphere(), RATIO, FRICTION, levels(*RANGE, step))
 
 
 def backbone(approach: float, along: ArrayLike) -> Array:

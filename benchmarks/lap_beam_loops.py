@@ -8,10 +8,11 @@ sqrt(a/q)/(2 pi) and the damping ratio the loss of a cycle over 2 pi a q.
 from dataclasses import dataclass
 
 import numpy as np
+from friction_sliders import at_levels, levels
 from lap_beam_reduction import Reduced
 from scipy.linalg import lu_factor, lu_solve
 
-from jointfmu.sliders import Foundation, levels
+from jointfmu.sliders import Foundation
 
 WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.2
 """Pressures [Pa] between which the heights of the sliders lie close; lowest level, distance of levels [1]."""
@@ -24,7 +25,7 @@ MOST = 200
 def foundation(curve, ratio, friction):
     """Sliders of a curve of pressure over approach, K_T/K_N [1] and friction [1]."""
     end = curve.end[1]
-    return Foundation.of(curve, ratio, friction, levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP))
+    return at_levels(curve, ratio, friction, levels(LOWEST, (WORKING[0] / end, WORKING[1] / end), STEP))
 
 
 @dataclass(frozen=True)

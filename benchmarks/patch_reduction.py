@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
@@ -19,19 +20,19 @@ from jointfmu.footprint.shape import NodalField, PressureShape
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
-from jointfmu.sliders import Foundation, Moved, levels
+from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 
-COUNTS = (28, 48, 120, 160)
+COUNTS = (22, 48, 120, 160)
 PRELOAD = 9e3
 """Of a bolt of the default joint [N]."""
 ROUND = 400
 """Nodes of the field."""
 SEED = 3
-PATCHES = (28, 48)
-HEIGHTS, STEP, FINE = (1e-6, (1e-5, 2e-2)), 0.5, 0.12
-"""Loads of the heights over the hardness as in the spring, and their finer step for all nodes."""
+PATCHES = (22, 48)
+FINE = levels(1e-6, (1e-5, 2e-2), 0.12)
+"""Loads of the heights for all nodes over the hardness [1]."""
 WAYS = 1.5 * np.linspace(0.0, 1.0, 25)[1:] ** 2
 AMPLITUDES = (0.15, 0.3, 0.6, 1.2)
 """Ways over that of gross slip under the largest pressure [1]: 0.6 to 1 of the friction."""
@@ -163,19 +164,21 @@ def contacts() -> Iterator[tuple[str, PressureShape]]:
 
 
 def friction(
-    spring: BoltedJointSpring, shape: PressureShape, step: float, largest: float, motion: Motion
+    spring: BoltedJointSpring, shape: PressureShape, fine: bool, largest: float, motion: Motion
 ) -> tuple[Array, Array]:
     """Force or moment on 1 m2 [N], [N.m] from rest to the WAYS, and losses [J] of loops of the AMPLITUDES.
 
-    The joint's sliders with heights of a step stand on a shape under the preload; `largest` [m] is the
-    largest approach, over which the ways and the tilt are.
+    The joint's sliders, or fine ones, stand on a shape under the preload; `largest` [m] is the largest
+    approach, over which the ways and the tilt are.
     """
     ratio = float(shear_ratio(spring.joint))
-    sliders = Foundation.of(spring.curve, ratio, spring.joint.mu, levels(*HEIGHTS, step))
     (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * x / gyration
     along = np.column_stack([-y, x]) / gyration if motion.turns else np.column_stack([0.0 * x, 1.0 + 0.0 * x])
+    sliders = spring.on(shape).foundation(start)
+    if fine:
+        sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
     gross = spring.joint.mu / ratio * largest * along
 
     def moved(force: Array, way: float) -> Moved:
@@ -219,11 +222,11 @@ def print_friction(spring: BoltedJointSpring) -> None:
     for name, shape in contacts():
         largest = float(np.max(tightened(spring.curve, shape, (mean_pressure(spring), 0.0))))
         largest -= float(spring.curve.displacement[0])
-        exact = [friction(spring, shape, FINE, largest, motion) for motion in MOTIONS.values()]
+        exact = [friction(spring, shape, True, largest, motion) for motion in MOTIONS.values()]
         for count in PATCHES:
             points, cells = few_points(shape, count), []
             for (force, loss), motion in zip(exact, MOTIONS.values(), strict=True):
-                few, lost = friction(spring, points, STEP, largest, motion)
+                few, lost = friction(spring, points, False, largest, motion)
                 worst = np.max(np.abs(few - force)) / np.max(np.abs(force))
                 cells.append(f"{worst:.1e}, {np.max(np.abs(lost / loss - 1.0)):.1%}")
             print(f"| {name} | {points.share.size} | " + " | ".join(cells) + " |", flush=True)

@@ -5,10 +5,10 @@ twice as large (Masing). The same by the package's sliders, and a guess that kno
 """
 
 import numpy as np
+from friction_sliders import at_levels
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.curve import Curve
-from jointfmu.sliders import Foundation
 
 STATIONS = np.polynomial.legendre.leggauss(6)
 """On each branch of a loop, and their weights."""
@@ -48,7 +48,7 @@ def convex(approach, load):
 
 def sliders(curve, ratio, amplitudes):
     """Loop areas (amplitudes) of the package's sliders at the end of a curve."""
-    foundation = Foundation.of(curve, ratio, 1.0, HEIGHTS)
+    foundation = at_levels(curve, ratio, 1.0, HEIGHTS)
     delta, areas = curve.end[0], []
     for u in amplitudes:
         there = foundation.moved(foundation.at_rest(), delta, delta, [u, 0.0])

@@ -21,7 +21,9 @@ from matplotlib.patches import Rectangle
 
 from jointfmu import plots, validation
 from jointfmu.joints import KINDS
-from jointfmu.parameters import load, write_text
+from jointfmu.joints.harmonic_drive.fit import lines
+from jointfmu.joints.harmonic_drive.fit.row import Row
+from jointfmu.parameters import write_text
 from jointfmu.systems import system
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -46,7 +48,8 @@ def main() -> None:
 
 def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
-    drive = load(ROOT / "models" / "catalogue" / "size_14_ratio_80.toml")
+    row = Row(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
+    drive = lines.fit(row, ratio=100.0).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.rung(system("robot_joint"))

@@ -10,6 +10,8 @@ from mkdocs.structure.files import File
 ROOT = Path(__file__).resolve().parent.parent
 CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
+LABORATORY = "laboratory/page.html"
+"""Place of the laboratory in the site."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
@@ -37,8 +39,20 @@ def carried(name: str) -> str:
     )
 
 
+def laboratory() -> str:
+    """The page of the main job, else made here."""
+    made = ROOT / "dist" / "report" / "laboratory.html"
+    if made.is_file():
+        return made.read_text(encoding="utf-8")
+    from jointfmu_fmu_src.laboratory import page
+
+    return page()
+
+
 def on_files(files: Any, config: Any) -> Any:
-    """Add the texts of the repository that are pages, and every other linked file as `files/PATH`."""
+    """Add the laboratory, the texts of the repository that are pages, and every other linked file as
+    `files/PATH`."""
+    files.append(File.generated(config, LABORATORY, content=laboratory()))
     for name, page in CARRIED.items():
         files.append(File.generated(config, page, content=carried(name)))
     linked = set()

@@ -16,6 +16,7 @@ from . import cosimulation, decays
 from .building import FLAVOURS, build
 from .checks import Check, check, check_decays, check_ringing, default_ramp, published_through_fmus, same
 from .decays import Decay
+from .laboratory import write_laboratory
 from .master import Array
 from .report import write_report
 from .ringing import Ringing, examples
@@ -58,7 +59,7 @@ class Outcome:
 
 
 def run(out: Path) -> Outcome:
-    """Build all flavours, check, and write `out/report/index.html` with the ramps as CSV.
+    """Build all flavours, check, and write `out/report/index.html` with the ramps as CSV, and the laboratory.
 
     The ramps shown are those of the flavour `fmi2`; the others must repeat them.
     """
@@ -90,6 +91,7 @@ def run(out: Path) -> Outcome:
             outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
         else:
             write_report(out / "report" / "index.html", outcome)
+            write_laboratory(out / "report" / "laboratory.html")
     return outcome
 
 
@@ -110,7 +112,7 @@ def main(out: Path) -> int:
         f"compared: {validation.summary(outcome.rows)}; "
         f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
     )
-    print(f"report: {out / 'report' / 'index.html'}")
+    print(f"report: {out / 'report' / 'index.html'}; laboratory: {out / 'report' / 'laboratory.html'}")
     print(f"missed: {len(misses)}")
     for line in misses:
         print(f"  {line}")

@@ -25,5 +25,5 @@ def template(path: Path, *shared: Path) -> jinja2.Template:
 
 
 def law_terms(parameters: ParameterFile) -> dict[str, Any]:
-    """What the templates of joints ask of the interface law: `rough`, whether it is `roughness`."""
-    return {"rough": parameters.law == "roughness", "few_spots": FEW_SPOTS}
+    """What the templates of joints ask of the law: its name, and `rough`, whether it is `roughness`."""
+    return {"law": parameters.law, "rough": parameters.law == "roughness", "few_spots": FEW_SPOTS}

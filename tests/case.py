@@ -73,7 +73,7 @@ class Case:
     linear         : an output is linear in an input, with a factor that FMI may call constant or tunable
     others         : parameters with which such a constant factor stays
     jumps          : outputs that hold the third derivative of a table, which jumps at its nodes
-    rough          : {output: how far its derivative may be from differences} where it has small steps itself
+    kinks          : outputs that have kinks or jumps themselves, as friction does
     """
 
     name: str
@@ -108,7 +108,7 @@ class Case:
     linear: bool = False
     others: Mapping[str, float] = field(default_factory=dict)
     jumps: frozenset[str] = frozenset()
-    rough: Mapping[str, float] = field(default_factory=dict)
+    kinks: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -250,7 +250,7 @@ class Links(HTMLParser):
 
 def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
     pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.name != "404.html"}
-    assert len(pages) == len(PAGES) + 2  # README and CONTRIBUTING are pages too
+    assert len(pages) == len(PAGES) + 3  # README, CONTRIBUTING and the laboratory are pages too
     for page, content in pages.items():
         for link in content.links:
             parts = urlsplit(link)

@@ -247,7 +247,11 @@ BAD = {
     "wavy": ([HEADING, *WAVY], "does not rise with the torque between"),
     "huge": (
         [HEADING.replace("rad", "deg"), *[f"{T},{100 * T}" for T in np.linspace(-5, 5, 20)]],
-        "check the units",
+        "likely the angle is in arcsec, where the heading says deg",
+    ),
+    "degrees": (
+        [HEADING, *[f"{T},{np.degrees(T / 4e3)}" for T in np.linspace(-25, 25, 20)]],
+        "likely the angle is in deg, where the heading says rad; if both are right, start from",
     ),
     "stiff": (
         [HEADING.replace("rad", "arcsec"), *[f"{T},{0.1 * T}" for T in np.linspace(-5, 5, 20)]],

@@ -322,7 +322,11 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     for ssp in ("ssp", "ssp2"):
         assert {p.stem for p in (folder / ssp).iterdir()} == archives
     report = folder / "report"
-    assert {p.name for p in report.iterdir()} == {"index.html", *(f"{n}.csv" for n in NAMES)}
+    assert {p.name for p in report.iterdir()} == {
+        "index.html",
+        "laboratory.html",
+        *(f"{n}.csv" for n in NAMES),
+    }
     for name in NAMES:
         with (report / f"{name}.csv").open(newline="") as file:
             header, *rows = csv.reader(file)

@@ -424,7 +424,8 @@ def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
 def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
     """Stiffness and friction of the sliders that touch at a preload, of all patches."""
     joint, patches = spring.joint, spring.patches
-    carried = spring.foundation.carried(spring.curve.inverse(pressures(joint, patches, preload, 0.0)))
+    approach = spring.curve.inverse(pressures(joint, patches, preload, 0.0))
+    carried = spring.foundation(approach).carried(approach)
     area = joint.A_0 * patches.share[:, None]
     stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
     some = stiffness > 0.0

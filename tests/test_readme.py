@@ -66,6 +66,7 @@ def test_commands_run(line, folder, monkeypatch, capsys):
 def test_every_kind_of_command_is_shown():
     assert {line.split()[1] for line in commands} == {
         "new",
+        "catalogue",
         "law",
         "parameters",
         "build",

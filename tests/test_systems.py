@@ -846,7 +846,7 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
 def test_the_command_builds_a_system_of_ones_own(
     built: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """With a drive of its own: an FMU for it, archives that run, a Modelica model, a table and a picture."""
+    """With a drive of its own: an FMU for it, archives that run, a Modelica model, table and picture."""
     text = (files("jointfmu_models") / "systems" / "robot_joint.toml").read_text(encoding="utf-8")
     model = 'model = "HarmonicDriveSpring"'
     own = text.replace(model, f'{model}\nparameters = "drives/my_drive.toml"').replace(
@@ -881,7 +881,7 @@ def test_the_command_builds_a_system_of_ones_own(
 
 
 def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
-    """Until the middle of the motion; the layer in which sliders cease to stick leaves 1e-3 of their friction."""
+    """Until the middle of the motion; the layer in which sliders cease to stick leaves 1e-3 of friction."""
     rumoca = pytest.importorskip("rumoca")
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-6)

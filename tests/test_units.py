@@ -51,6 +51,15 @@ SIZES = {
     "MPa/um": constants.mega / constants.micron,
     "MPa/um2": constants.mega / constants.micron**2,
 }
+TENS = {
+    "1e4 N.m/rad": (1e4, "N.m/rad"),
+    "x10^4 Nm/rad": (1e4, "N.m/rad"),
+    "\u00d710\u2074 N·m/rad": (1e4, "N.m/rad"),
+    "10^-3 N.m": (1e-3, "N.m"),
+    "kgf.m/arcmin": (constants.g / constants.arcmin, "N.m/rad"),
+    "Nm/deg": (1.0 / constants.degree, "N.m/rad"),
+}
+"""As columns of catalogues are headed."""
 EXPONENTS = {  # of kg, m, s, rad
     "1": (0, 0, 0, 0),
     "s": (0, 0, 1, 0),
@@ -77,6 +86,18 @@ EXPONENTS = {  # of kg, m, s, rad
     "kg.m2": (1, 2, 0, 0),
     "kg/m3": (1, -3, 0, 0),
 }
+
+
+@pytest.mark.parametrize("written", TENS)
+def test_units_of_catalogues(written):
+    expected, unit = TENS[written]
+    assert factor(written, unit) == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("wrong", ["1e4", "1e99 N.m", "10^ N.m", "1e4 1e4 N"])
+def test_a_power_of_ten_alone_is_no_unit(wrong):
+    with pytest.raises(ValueError, match="unit"):
+        factor(wrong, "N.m")
 
 
 @pytest.mark.parametrize("unit", SIZES)

@@ -9,7 +9,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -29,11 +29,15 @@ _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Columns of a file in SI units, in the order of its rows, which are on the named lines."""
+    """Columns of a file in SI units, in the order of its rows, which are on the named lines.
+
+    units : {name: unit in the heading}
+    """
 
     path: Path
     columns: Mapping[str, Array]
     lines: Sequence[int] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def require(self, name: str, spec: Mapping[str, Sizes]) -> Array:
         """A column; ValueError if the file has none."""
@@ -69,9 +73,9 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
         check_length(path, line, row, len(head))
     columns = {
         name: _column(path, name, numbers, [row[place] for row in rows]) * size
-        for name, (place, size) in places.items()
+        for name, (place, size, _) in places.items()
     }
-    return Columns(path, columns, numbers)
+    return Columns(path, columns, numbers, {name: unit for name, (_, _, unit) in places.items()})
 
 
 def names(path: str | Path) -> list[str]:
@@ -123,9 +127,9 @@ def number(cell: str) -> float | None:
         return None
 
 
-def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float]]:
-    """{name: (place, size of its unit)} of the columns asked for."""
-    places: dict[str, tuple[int, float]] = {}
+def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float, str]]:
+    """{name: (place, size of its unit, the unit)} of the columns asked for."""
+    places: dict[str, tuple[int, float, str]] = {}
     for place, cell in enumerate(head):
         match = _HEADING.match(cell)
         name = match["name"].lower() if match else ""
@@ -139,7 +143,7 @@ def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[
                 f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
             )
         try:
-            places[name] = place, measured(match["unit"], spec[name])
+            places[name] = place, measured(match["unit"], spec[name]), match["unit"]
         except ValueError:
             raise ValueError(
                 f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed} and others that "

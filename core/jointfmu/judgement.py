@@ -124,7 +124,7 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Jud
     """
     kind = KINDS[file.joint]
     how = pressing(kind)
-    if how is None:
+    if how is None or kind.law_of(file.values) is None:
         return Judgement(None, ())
     if loads is None and file.start(how.load) > 0.0:
         loads = [file.start(how.load)]

@@ -30,18 +30,38 @@ SPREAD = 1.0 / np.sqrt(12.0)
 """Standard deviation of evenly spread springs over the range of their heights [1]."""
 
 
-def levels(lowest: float, working: tuple[float, float], step: float) -> Array:
-    """Loads of the heights over the load at the end of a curve, from 0 to 1 [1].
+BELOW, ABOVE = 10, 7
+"""Heights of `around` between none and the reference, and between it and the end of the curve."""
+LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
+"""Least and largest load of a reference, and that without one, over the load at the end of the curve [1]."""
 
-    Neighbours differ by the factor exp(step) in the range of working loads, by exp(2 step) between it and
-    `lowest` and between it and the end.
+
+def offsets(count: int) -> Array:
+    """Offsets (count) [1] of `around` for foundations side by side: multiples of the golden section."""
+    return np.asarray((np.arange(count) + 0.5) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0)
+
+
+def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
+    """Heights (..., n) [m] for contacts that move along their surface at about an approach.
+
+    They lie close to it, where the first springs slip, and where the last ones touch.
+
+    reference : (...) [m] the approach; without contact there a usual one is taken
+    offset    : (...) in (0, 1) [1] shifts the heights; where those of several foundations differ, so do the
+                steps in which their springs slip, and cancel in the sum
     """
-    ends = np.log([lowest, *working, 1.0])
-    parts = [np.zeros(1)]
-    for low, high, by in zip(ends[:-1], ends[1:], (2.0 * step, step, 2.0 * step), strict=True):
-        count = int(np.ceil((high - low) / by))
-        parts.append(np.exp(np.linspace(low, high, count + 1)[:-1]))
-    return np.concatenate([*parts, np.ones(1)])
+    given, part = np.asarray(reference, dtype=np.float64), np.asarray(offset, dtype=np.float64)[..., None]
+    end = curve.end[1]
+    load = curve.derivatives(given, 0)[0]
+    touches = load > LOWEST * end
+    load = np.where(touches, np.minimum(load, HIGHEST * end), USUAL * end)[..., None]
+    first = np.where(touches & (load[..., 0] < HIGHEST * end), given, curve.inverse(load[..., 0]))[..., None]
+    down = (np.arange(BELOW)[::-1] + part) / BELOW
+    up = (np.arange(ABOVE) + part) / ABOVE
+    below = load * (1.0 - down) ** 2 / (down**2 + (1.0 - down) ** 2)
+    above = load * np.exp(np.log(end / load) * up**2)
+    lowest, last = (curve.inverse(y * end) + 0.0 * first for y in (0.0, 1.0))
+    return np.concatenate([lowest, curve.inverse(below), first, curve.inverse(above), last], axis=-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +106,8 @@ class Foundation:
     curve    : pressure [Pa] over approach [m], convex
     ratio    : K_T/K_N [1]
     friction : mu [1]
-    height   : (n/2 + 1) [m] between which the springs are taken together, increasing
+    height   : (..., n/2 + 1) [m] between which the springs are taken together, increasing; foundations side
+               by side may have heights of their own
 
     The sliders stand in the order of the heights, of each range first that of the springs that slip earlier.
     """
@@ -96,15 +117,10 @@ class Foundation:
     friction: float
     height: Array
 
-    @classmethod
-    def of(cls, curve: Curve, ratio: float, friction: float, level: ArrayLike) -> "Foundation":
-        """The foundation of a curve; `level` are the loads of the heights over the one at its end."""
-        return cls(curve, ratio, friction, curve.inverse(np.asarray(level) * curve.end[1]))
-
     @property
     def sliders(self) -> int:
         """How many there are."""
-        return 2 * (self.height.size - 1)
+        return 2 * int(self.height.shape[-1] - 1)
 
     def at_rest(self, *shape: int) -> Array:
         """Forces (*shape, 2, n) of sliders that have not moved."""
@@ -130,19 +146,23 @@ class Foundation:
         now, moved = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
         return now, np.asarray(now - moved / (self.friction / self.ratio))
 
+    def _ranges(self) -> tuple[Array, Array]:
+        """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
+        return self.height[..., :-1], self.height[..., 1:]
+
     def carried(self, approach: ArrayLike) -> Carried:
         """What the sliders have at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
-        low, high = self.height[:-1], self.height[1:]
+        low, high = self._ranges()
         full, touches = delta >= high, delta > low
         now, ends = self.curve.derivatives(delta, 2), self.curve.derivatives(self.height, 1)
-        first, last = ([end[part] for end in ends] for part in (slice(-1), slice(1, None)))
+        first, last = ([end[..., part] for end in ends] for part in (slice(-1), slice(1, None)))
         load, springs = (np.where(full, b, a) for a, b in zip(now[:2], last, strict=True))
         springs = np.where(touches, np.maximum(springs - first[1], 0.0), 0.0)
         inside = np.minimum(delta, high)
         normal = load - first[0] - first[1] * (inside - low)
         normal = np.where(touches, np.maximum(normal, 0.0), 0.0)
-        rises = touches & ~full
+        rises = (delta >= low) & ~full
         bend = np.where(rises, now[2], 0.0)
         spread = SPREAD * np.where(touches, inside - low, 0.0)
         narrow = springs * spread < normal  # else the springs begin at the lower height
@@ -217,7 +237,7 @@ class Foundation:
 
     def _stays(self, path: "_Path") -> NDArray[np.bool_]:
         """Whether all, some or none of the springs of sliders (..., n) touch at both ends of a path alike."""
-        low, high = (np.repeat(h, 2) for h in (self.height[:-1], self.height[1:]))
+        low, high = (np.repeat(h, 2, axis=-1) for h in self._ranges())
         first, last = path.first, path.last
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
@@ -225,7 +245,7 @@ class Foundation:
         """Stiffness (..., n) of the sliders on average over a path."""
         change = path.change
         ends = 0.5 * (start.stiffness + end.stiffness) + change * (start.slope - end.slope) / 12.0
-        small = np.abs(change) < SMALL * np.repeat(np.diff(self.height), 2)
+        small = np.abs(change) < SMALL * np.repeat(np.diff(self.height), 2, axis=-1)
         differs = (change != 0.0) & ~(self._stays(path) & small)
         rise = (end.limit - start.limit).reshape(*ends.shape[:-1], -1, 2).sum(axis=-1)
         half = 0.5 * self.ratio * np.repeat(rise, 2, axis=-1)

@@ -1,7 +1,8 @@
 """The one table of units: what each measures, how large it is, and in which unit people read it.
 
 A unit is written as FMI and Modelica write it: symbols with exponents, joined by dots, after a slash what
-divides, `N.m.s/rad`. What is read may be written as people do: `Nm`, `N*m`, `N·m`, `mm²`, `N/mm^2`, `°`.
+divides, `N.m.s/rad`. What is read may be written as people do: `Nm`, `N*m`, `N·m`, `mm²`, `N/mm^2`, `°`,
+and with a power of ten before it, as columns of catalogues have: `1e4 N.m/rad`, `x10^4 Nm/rad`.
 Sizes are exact fractions of the symbols' and rounded once.
 """
 
@@ -40,7 +41,13 @@ _PREFIXES = {"G": 9, "M": 6, "k": 3, "c": -2, "m": -3, "u": -6, "µ": -6, "μ": 
 """Powers of ten, before _PREFIXED; both Unicode signs for micro."""
 _PREFIXED = ("m", "s", "rad", "Hz", "N", "Pa", "J")
 _FACTOR = re.compile(r"([^\W\d_]+|1(?!\d))(\d*)")
-
+_POWER_OF_TEN = re.compile(
+    r"[x\u00d7]?\s*(?:1e|10\s?\^\s?|10(?=[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]))([+-]?\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)\s*[.*·⋅]?\s*(?=\D)"
+)
+"""Before a unit."""
+MOST_POWER = 12
+"""Largest power of ten before a unit, either way [1]."""
+_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 
 _WRITTEN = (
     (re.compile(r"[·⋅*]"), "."),
@@ -106,6 +113,10 @@ def _parsed(unit: str) -> tuple[Fraction, dict[str, int]]:
     """Size and exponents of a unit."""
     whole, exponents = Fraction(1), dict[str, int]()
     plain = unit
+    if ten := _POWER_OF_TEN.match(plain):
+        power = int(ten[1].translate(_RAISED))
+        if abs(power) <= MOST_POWER:
+            whole, plain = whole * Fraction(10) ** power, plain[ten.end() :]
     for other, ours in _WRITTEN:
         plain = other.sub(ours, plain)
     above, slash, below = plain.partition("/")

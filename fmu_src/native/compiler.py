@@ -23,10 +23,13 @@ TARGETS = {
 }
 """FMI's names of the platforms, and zig's with the oldest glibc or macOS."""
 
-_OPTIONS = (
+_COMPILED = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
-    "-fvisibility=hidden", "-DNDEBUG", "-shared", "-s",
+    "-fvisibility=hidden", "-DNDEBUG", "-s",
 )  # fmt: skip
+_OPTIONS = (*_COMPILED, "-shared")
+_WEB = ("-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED, "-Wl,--export-dynamic")
+"""A module that takes nothing from its host: what is visible is exported, and `_initialize` comes first."""
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Parts of the C runtime that belongs to Windows 10 and newer."""
 
@@ -54,6 +57,15 @@ def libraries(
 
     with ThreadPoolExecutor(cpu_count()) as pool:
         return dict(zip(platforms, pool.map(library, platforms), strict=True))
+
+
+def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
+    """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
+    folder = _folder({**_headers(), **sources})
+    with tempfile.TemporaryDirectory() as out:
+        file = Path(out) / f"{name}.wasm"
+        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        return file.read_bytes()
 
 
 def file_name(name: str, platform: str) -> str:

@@ -86,9 +86,7 @@ BOLTED = Case(
     | {f"flange_turn_{a}": f"theta_{a} omega_{a} m_{a}" for a in "xyz"},
     domain="Translational Rotational",
     jumps=frozenset({"K_zz", "K_rx", "K_ry", "eta_loop", "C_loop"}),
-    rough=dict.fromkeys(("f_x", "f_y", "m_z", "slip"), 2e-3)  # sliders touch and slip between differences
-    | dict.fromkeys(("K_xx", "K_yy", "K_rz"), 0.5)  # and where it does they jump
-    | {"E_loss": 0.05},  # the rule that integrates the work of a slider changes where its springs touch
+    kinks=frozenset({"f_x", "f_y", "m_z", "slip", "K_xx", "K_yy", "K_rz", "E_loss"}),  # of single sliders
 )  # fmt: skip
 JOINT = Joint(
     cases=(BOLTED,),

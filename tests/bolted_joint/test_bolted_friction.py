@@ -231,7 +231,7 @@ def test_the_stiffness_matrix_is_symmetric_and_holds_the_outputs(preload, moment
     spring = BoltedJointSpring.of(replace(JOINT, memory=memory))
     loads = {"preload": preload, "moment": moment}
     # of SIZE, far from slip; the tilted joint has patches that open
-    K = stiffness(spring, np.array([0, 0, 5e-7, 3e-6, 2e-6, 0]), 1e-4 * SIZE, **loads)
+    K = stiffness(spring, np.array([0, 0, 5e-7, 3e-6, 2e-6, 0]), 1e-6 * SIZE, **loads)
     out = rest(spring, np.array([0, 0, 5e-7, 3e-6, 2e-6, 0]), **loads)
     size = np.sqrt(np.outer(np.diag(K), np.diag(K)))
     np.testing.assert_allclose(K / size, K.T / size, atol=1e-5)

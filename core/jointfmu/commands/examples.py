@@ -6,6 +6,7 @@ EXAMPLES = {
     "new materials": "new materials",
     "new finishes": "new finishes",
     "new bolts": "new bolts",
+    "catalogue": "catalogue CSG-17",
     "law": "law zhao2018 --pressure 1e6 2e6",
     "parameters": "parameters HarmonicDriveSpring",
     "build": "build GearContact --flavour fmi2 --out dist",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import columns, plots
+from ..drawing.reading import number
 from ..fitting.procedure import Option, Procedure
 from ..joints import KINDS
 from ..judgement import judge_file
@@ -59,7 +60,7 @@ def _option(sub: argparse.ArgumentParser, option: Option) -> None:
     metavar = "TEXT" if option.word else "VALUE"
     sub.add_argument(
         flag(option.name),
-        type=str if option.word else float,
+        type=str if option.word or option.unit else float,
         default=option.default,
         choices=option.choices or None,
         required=option.required,
@@ -78,8 +79,23 @@ def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
     procedure = choices[joint]
     start = load(args.params, joint) if args.params else None
     data = (args.file,) if procedure.file else ()
-    options = {option.name: getattr(args, option.name) for option in procedure.options}
-    return _finish(args, procedure.run(*data, start, args.free, **options))
+    return _finish(args, procedure.run(*data, start, args.free, **_options(procedure, args)))
+
+
+def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, Any]:
+    """Its options as its function takes them, numbers in SI units."""
+    units = {option.unit_by for option in procedure.options}
+    return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
+
+
+def _value(option: Option, args: argparse.Namespace) -> Any:
+    value = getattr(args, option.name)
+    if not option.unit or value is None:
+        return value
+    unit = (option.unit_by and getattr(args, option.unit_by)) or option.unit
+    if value.strip().lower() in ("nan", "inf", "-inf"):
+        return float(value)  # the procedure's to refuse
+    return number(option.name, value, unit, option.unit, None)
 
 
 def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
@@ -140,6 +156,8 @@ def _draw(figure: "Figure", pictures: Sequence["Picture"]) -> None:
     for (above, below), picture in zip(every.T, pictures, strict=True):
         x, y = picture.x, picture.y
         above.plot(*picture.line, color=plots.BLUE, label="fitted law")
+        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
+            above.plot(*line, "--", color=color, lw=1.0, label=name)
         above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
         below.axhline(0.0, color=plots.BLUE, lw=1.0)
         below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)

@@ -30,7 +30,10 @@ def add(commands: Any) -> None:
         help=f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})",
     )
     own = sub.add_mutually_exclusive_group()
-    own.add_argument("--law", choices=list(LAWS), metavar="LAW", help="interface law of the FMU or joint")
+    laws = sorted({law for kind in KINDS.values() for law in kind.laws})
+    own.add_argument(
+        "--law", choices=laws, metavar="LAW", help=f"law of the FMU or joint ({', '.join(laws)})"
+    )
     own.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other values (TOML)")
 
 

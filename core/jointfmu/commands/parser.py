@@ -6,6 +6,7 @@ from typing import Any
 from .. import __version__
 from . import (
     build,
+    catalogue,
     export,
     fit,
     footprint,
@@ -26,6 +27,7 @@ from .common import Parser
 
 COMMANDS = (
     new,
+    catalogue,
     law,
     parameters,
     build,

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 
 _DENSE = 64
 """Points per segment of a curve at which errors are measured."""
+_LEAST = 10_000
+"""The same of a whole curve at least: some have few segments."""
 _FEWEST = 12
 """Fewest of them on a line: a parabola's top is then met within a per cent."""
 
@@ -116,7 +118,8 @@ def _errors(
 def _dense(curve: Curve) -> tuple[Array, Array, Array]:
     """The curve at many points."""
     nodes = curve.displacement
-    part = np.arange(_DENSE) / _DENSE
+    dense = max(_DENSE, _LEAST // (nodes.size - 1))
+    part = np.arange(dense) / dense
     x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * part).ravel(), nodes[-1])
     load, stiffness = curve.derivatives(x, 1)
     return x, load, stiffness

@@ -1,6 +1,6 @@
 """A file's measurement of a joint with memory: loops, free vibration or a response."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,12 +19,14 @@ class Measurement:
 
     kind : one of those of `heads.read`
     span : over which motions, in words
+    units : {column: unit in the heading}
     """
 
     path: Path
     kind: str
     heads: heads.Heads
     data: Loops | Free | Response
+    units: Mapping[str, str]
 
     @property
     def motion(self) -> Array:
@@ -77,7 +79,7 @@ def measured(path: str | Path, columns: heads.Heads) -> Measurement:
             data = Response(*(table.columns[name] for name in ("frequency", columns.force, columns.motion)))
     except ValueError as error:
         raise ValueError(f"{table.path}: {error}") from None
-    return Measurement(table.path, kind, columns, data)
+    return Measurement(table.path, kind, columns, data, table.units)
 
 
 def _joined(parts: Sequence[Points]) -> Points:

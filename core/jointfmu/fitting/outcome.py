@@ -1,7 +1,7 @@
 """What every fit hands back: the parameter file, how well it is determined, and the plotted data."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,7 @@ class Picture:
     x, y      : (n) data;  misfit : (n) data minus law
     line      : (m), (m) the law
     marks     : (n) bool, points to stand out
+    also      : {name: as line} of further laws
     """
 
     x: Array
@@ -29,6 +30,7 @@ class Picture:
     line: tuple[Array, Array]
     labels: tuple[str, str, str]
     marks: NDArray[np.bool_] | None = None
+    also: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

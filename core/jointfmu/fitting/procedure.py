@@ -18,6 +18,8 @@ class Option:
     choices  : words that are allowed; none: any
     word     : it is a word; else a number
     required : it must be stated
+    unit     : of a number that may be stated with a unit of its own
+    unit_by  : the option that states the unit of numbers without one; it is not passed on
     """
 
     name: str
@@ -26,6 +28,8 @@ class Option:
     choices: Sequence[str] = ()
     word: bool = False
     required: bool = False
+    unit: str = ""
+    unit_by: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

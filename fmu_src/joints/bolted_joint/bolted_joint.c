@@ -22,6 +22,14 @@ static bool tabulate(Joint *joint, int steps, Text *why)
     return approach_tabulate(&kind->approach, &joint->curve, &kind->spots, joint->c, steps, why);
 }
 
+/* Lay the heights of a patch; its points are found again. */
+static void lay(Kind *kind, int j, double reference)
+{
+    Foundation *f = &kind->foundation[j];
+    foundation_lay(f, reference);
+    kind->from[j] = kind->to[j] = foundation_point(f, f->curve->end.x, 0);
+}
+
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
@@ -40,9 +48,15 @@ bool kind_tabulate(Joint *joint, Text *why)
         const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
         memcpy(kind->weight[i], weight, sizeof weight);
     }
-    foundation_tabulate(&kind->foundation, &joint->curve, &kind->energy, kind->mu, kind->ratio);
-    for (int j = 0; j < N_PATCHES; j++)
-        kind->from[j] = kind->to[j] = foundation_point(&kind->foundation, joint->curve.end.x, 0);
+    for (int j = 0; j < N_PATCHES; j++) {
+        Foundation *f = &kind->foundation[j];
+        f->curve = &joint->curve;
+        f->energy = &kind->energy;
+        f->mu = kind->mu;
+        f->ratio = kind->ratio;
+        f->offset = OFFSETS[j];
+        lay(kind, j, 0.0);
+    }
     return true;
 }
 
@@ -298,24 +312,23 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 
 /* Patches */
 
-static Point point_at(const Joint *joint, double approach, int near)
-{
-    return foundation_point(&joint->kind.foundation, approach, near);
-}
-
 /* The points of the patches at the ends of their paths from the memory to the inputs; before the memory begins it
  * is the shift alone. The last ones are kept where they are still right. */
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
+    const bool begun = memory[MOVED] != UNKNOWN;
     for (int j = 0; j < N_PATCHES; j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(PATCHES[j], inputs);
-        const double start = memory[BEGUN] != 0.0 ? memory[APPROACHES + j] : end;
+        const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
+        if (kind->foundation[j].reference != reference)
+            lay(kind, j, reference);
+        const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
-            *from = to->approach == start ? *to : point_at(joint, start, from->full);
+            *from = to->approach == start ? *to : foundation_point(f, start, from->full);
         if (to->approach != end)
-            *to = from->approach == end ? *from : point_at(joint, end, to->full);
+            *to = from->approach == end ? *from : foundation_point(f, end, to->full);
     }
 }
 
@@ -329,7 +342,7 @@ static inline PatchPath path_of(const Joint *joint, int j, const double *inputs,
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
                        .shift = {u, v},
-                       .straight = joint->kind.straight};
+                       .straight = joint->kind.moved < FREE};
 }
 
 /* The integral of the curve from its beginning, the load and its slope. */
@@ -402,19 +415,27 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
     dx[SUM_LOOP_ENERGY] += patch[SHARE] * stored_rate;
 }
 
+/* How it has moved after the way to inputs. */
+static int moved_on(const double *inputs, const double *memory)
+{
+    if (memory[MOVED] == FREE || inputs[S_REL + 1] != memory[RIGID + 1] || inputs[THETA + 2] != memory[RIGID + 2])
+        return FREE;
+    return memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
+}
+
 /* Sums over the patches. */
 static void slide_all(Joint *joint, const double *inputs, const double *memory, double *x)
 {
     Kind *kind = &joint->kind;
     double heat = 0.0;
-    kind->straight = memory[BEGUN] < 2.0 && inputs[S_REL + 1] == memory[RIGID + 1] && inputs[THETA + 2] == memory[RIGID + 2];
+    kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < N_PATCHES && kind->memory; j++) {
         const PatchPath path = path_of(joint, j, inputs, memory);
         double *const moved[2] = {kind->force[j][0], kind->force[j][1]};
         Shear shear;
-        foundation_move(&kind->foundation, &path, moved, &kind->work, &shear);
+        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
         add_shear(x, PATCHES[j], shear.traction, shear.tangent);
         heat += PATCHES[j][SHARE] * shear.loss;
     }
@@ -436,7 +457,7 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
         memcpy(after, before, N_MEMORY * sizeof *after);
         return;
     }
-    after[BEGUN] = kind->straight ? 1.0 : 2.0;
+    after[MOVED] = kind->moved;
     after[LOSS] = kind->loss;
     after[RIGID] = inputs[S_REL];
     after[RIGID + 1] = inputs[S_REL + 1];
@@ -445,9 +466,10 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
         const Point *from = &kind->from[j], *to = &kind->to[j];
         const int n = 2 * (from->touched > to->touched ? from->touched : to->touched);
         double *force = after + FORCES + 2 * j * SLIDERS;
+        after[REFERENCES + j] = kind->moved == RESTING ? to->approach : kind->foundation[j].reference;
         after[APPROACHES + j] = to->approach;
         copy_forces(kind->force[j][0], n, force);
-        copy_forces(kind->force[j][1], kind->straight ? 0 : n, force + SLIDERS);
+        copy_forces(kind->force[j][1], kind->moved < FREE ? 0 : n, force + SLIDERS);
     }
 }
 
@@ -553,12 +575,12 @@ static void patch_rates(const Joint *joint, const double *inputs, const double *
         const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
         const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {memory[BEGUN] != 0.0 ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {memory[MOVED] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
         add_loop_rate(joint, patch, path.to, inputs, loop, dx);
         if (!kind->memory)
             continue;
         Shear shear;
-        foundation_rates(&kind->foundation, &path, ends, shift, &shear);
+        foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
         add_shear(dx, patch, shear.traction, shear.tangent);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }

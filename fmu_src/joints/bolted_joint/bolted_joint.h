@@ -7,14 +7,15 @@
 #include "energy.h"
 #include "friction.h"
 
-/* The memory: 0 before it has begun, 1 after ways along x alone, 2 after others; heat so far, shift x, y and turn; then approaches, then forces. */
-enum { BEGUN, LOSS, RIGID, APPROACHES = RIGID + 3, FORCES = APPROACHES + N_PATCHES };
+/* The memory: how it has moved; heat so far, shift x, y and turn; then references, approaches, forces. */
+enum { MOVED, LOSS, RIGID, REFERENCES = RIGID + 3, APPROACHES = REFERENCES + N_PATCHES, FORCES = APPROACHES + N_PATCHES };
+enum { UNKNOWN, RESTING, ALONG, FREE }; /* how it has moved: not yet begun, not, along x alone, otherwise */
 
 typedef struct {
     Spots spots;
     Approach approach;
     Energy energy;
-    Foundation foundation;
+    Foundation foundation[N_PATCHES];
     bool memory;
     double mu, ratio, area;
     double weight[N_NODES][6]; /* share of a node alone, times x, y, y^2, x^2, x y */
@@ -27,7 +28,7 @@ typedef struct {
     bool pressed;                    /* the normal sums below are those at tightening and this displacement */
     double apart[3], normal[N_SUMS], p_max;
     Point from[N_PATCHES], to[N_PATCHES]; /* of the last evaluation */
-    bool straight;                   /* the last evaluation moved along x alone, as all did before */
+    int moved;                       /* how it has moved up to the last evaluation */
     double loss;                     /* heat up to it [J] */
     double force[N_PATCHES][2][SLIDERS];
     Work work; /* of the patch at hand */

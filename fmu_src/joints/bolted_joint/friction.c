@@ -5,17 +5,41 @@ typedef struct {
     double K, slope, limit[2], change[2];
 } Pair;
 
-void foundation_tabulate(Foundation *f, const Curve *curve, const Energy *energy, double mu, double ratio)
+static double inverse(const Foundation *f, double load)
 {
     int segment = 0;
-    double carried, y[2];
-    f->curve = curve;
-    f->energy = energy;
-    f->mu = mu;
-    f->ratio = ratio;
-    for (int i = 0; i < N_LEVELS; i++) {
-        f->height[i] = curve_inverse(curve, LEVELS[i] * curve->end.y, &segment, &carried);
-        curve_at(curve, f->height[i], 1, y);
+    double carried;
+    return curve_inverse(f->curve, load, &segment, &carried);
+}
+
+/* As `around` of the package. */
+static void lay_heights(Foundation *f, double reference)
+{
+    const double end = f->curve->end.y;
+    double y[1], *h = f->height;
+    curve_at(f->curve, reference, 0, y);
+    const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
+    const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);
+    *h++ = inverse(f, 0.0);
+    for (int k = N_BELOW - 1; k >= 0; k--) {
+        const double part = (k + f->offset) / N_BELOW, rest = (1.0 - part) * (1.0 - part);
+        *h++ = inverse(f, load * rest / (part * part + rest));
+    }
+    *h++ = given ? reference : inverse(f, load);
+    for (int k = 0; k < N_ABOVE; k++) {
+        const double part = (k + f->offset) / N_ABOVE;
+        *h++ = inverse(f, load * exp(over * (part * part)));
+    }
+    *h = inverse(f, end);
+}
+
+void foundation_lay(Foundation *f, double reference)
+{
+    double y[2];
+    f->reference = reference;
+    lay_heights(f, reference);
+    for (int i = 0; i < N_HEIGHTS; i++) {
+        curve_at(f->curve, f->height[i], 1, y);
         f->load[i] = y[0];
         f->stiffness[i] = y[1];
     }
@@ -24,14 +48,13 @@ void foundation_tabulate(Foundation *f, const Curve *curve, const Energy *energy
         f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
         f->normal[i] = f->load[i + 1] - f->load[i] - f->stiffness[i] * width;
         f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
-        f->stick[i] = ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
+        f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
         for (int late = 0; late < 2; late++) {
             const int k = 2 * i + late;
             const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
-            f->K[k] = 0.5 * ratio * f->springs[i];
+            f->K[k] = 0.5 * f->ratio * f->springs[i];
             f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
-            f->grows[k] = 0.5 * mu * f->springs[i];
-            f->limit[k] = 0.5 * mu * first - f->grows[k] * f->height[i + 1];
+            f->limit[k] = 0.5 * f->mu * (first - f->springs[i] * f->height[i + 1]);
         }
     }
 }
@@ -70,10 +93,10 @@ Point foundation_point(const Foundation *f, double approach, int near)
 static inline Pair pair_at(const Foundation *f, int i, const Point *p)
 {
     const double half = 0.5 * f->mu;
-    if (i >= p->touched)
+    if (p->approach < f->height[i])
         return (Pair){.K = 0.0};
     if (i < p->full) {
-        const double *limit = f->limit + 2 * i, grows = f->grows[2 * i];
+        const double *limit = f->limit + 2 * i, grows = half * f->springs[i];
         return (Pair){.K = f->K[2 * i],
                       .limit = {limit[0] + grows * p->approach, limit[1] + grows * p->approach},
                       .change = {grows, grows}};
@@ -162,8 +185,9 @@ static inline void try_forces(const Foundation *restrict f, int n, double u, dou
                               const double *restrict q_x, const double *restrict q_y, double *restrict x,
                               double *restrict y, Work *restrict w)
 {
+    const double grown = f->mu / f->ratio * to;
     for (int k = 0; k < n; k++) {
-        w->limit[k] = f->limit[k] + f->grows[k] * to;
+        w->limit[k] = f->limit[k] + f->K[k] * grown;
         x[k] = q_x[k] + f->K[k] * u;
         y[k] = q_y[k] + f->K[k] * v;
         w->over[k] = x[k] * x[k] + y[k] * y[k] - w->limit[k] * w->limit[k];
@@ -173,11 +197,11 @@ static inline void try_forces(const Foundation *restrict f, int n, double u, dou
 /* Those from the first that slips on: trial forces x, y become forces on the friction circle where they are
  * beyond it. Written are the changes of the tangent and the heat. */
 static inline void slip_all(const double *restrict K, const double *restrict per_K, const double *restrict fixed,
-                            const double *restrict grows, int first, int n, double from, const double *restrict q_x,
+                            double grown, int first, int n, const double *restrict q_x,
                             const double *restrict q_y, double *restrict x, double *restrict y, Work *restrict w)
 {
     for (int k = first; k < n; k++) {
-        const double limit = w->limit[k], before = fixed[k] + grows[k] * from, square = x[k] * x[k] + y[k] * y[k];
+        const double limit = w->limit[k], before = fixed[k] + K[k] * grown, square = x[k] * x[k] + y[k] * y[k];
         const bool slips = square > limit * limit;
         const double size = sqrt(slips ? square : 1.0), beyond = slips ? size - limit : 1.0;
         const double early = before * size - (q_x[k] * x[k] + q_y[k] * y[k]); /* margin times size */
@@ -247,7 +271,7 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, double 
     const double *q_x = path->force[0], *q_y = path->force[1], to = path->to->approach, from = path->from->approach;
     try_forces(f, n, path->shift[0], path->shift[1], to, q_x, q_y, moved[0], moved[1], w);
     const int first = first_over(w->over, n);
-    slip_all(f->K, f->per_K, f->limit, f->grows, first, n, from, q_x, q_y, moved[0], moved[1], w);
+    slip_all(f->K, f->per_K, f->limit, f->mu / f->ratio * from, first, n, q_x, q_y, moved[0], moved[1], w);
     add_up(moved[0], moved[1], w, first, n, sum);
 }
 
@@ -255,8 +279,9 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, double 
 static inline void try_along(const Foundation *restrict f, int n, double u, double to, const double *restrict q,
                              double *restrict x, Work *restrict w)
 {
+    const double grown = f->mu / f->ratio * to;
     for (int k = 0; k < n; k++) {
-        w->limit[k] = f->limit[k] + f->grows[k] * to;
+        w->limit[k] = f->limit[k] + f->K[k] * grown;
         x[k] = q[k] + f->K[k] * u;
         w->over[k] = fabs(x[k]) - w->limit[k];
     }
@@ -317,7 +342,7 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, doub
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    const double grows[2] = {0.0, 0.0}, *q_x = path->force[0] + 2 * i, *q_y = path->force[1] + 2 * i;
+    const double *q_x = path->force[0] + 2 * i, *q_y = path->force[1] + 2 * i;
     double *x = moved[0] + 2 * i, *y = moved[1] + 2 * i;
     for (int l = 0; l < 2; l++) {
         w->limit[l] = here.limit[l];
@@ -329,7 +354,7 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, doub
     }
     const int first = first_over(w->over, 2);
     if (first < 2)
-        slip_all(K, per_K, here.limit, grows, first, 2, 0.0, q_x, q_y, x, y, w);
+        slip_all(K, per_K, here.limit, 0.0, first, 2, q_x, q_y, x, y, w);
     add_up(x, y, w, first, 2, sum);
 }
 
@@ -556,7 +581,7 @@ static double heat_rate(const Foundation *f, const Point *inner, int i, int late
 static bool sticks(const Foundation *f, int k, const PatchPath *path)
 {
     const double x = path->force[0][k] + f->K[k] * path->shift[0], y = path->force[1][k] + f->K[k] * path->shift[1];
-    const double limit = f->limit[k] + f->grows[k] * path->to->approach;
+    const double limit = f->limit[k] + f->K[k] * (f->mu / f->ratio * path->to->approach);
     return !(x * x + y * y > limit * limit);
 }
 
@@ -578,8 +603,12 @@ static void add_rates(const Foundation *f, const Point *inner, int k, const Patc
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2], const double shift[2],
                       Shear *rate)
 {
-    const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
+    const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
+    const double approach = fmax(path->from->approach, path->to->approach);
+    int touched = touched_on(path);
     Inner inner = {.known = false};
+    if (touched < HEIGHTS && approach == f->height[touched]) /* springs that are about to touch */
+        touched++;
     *rate = (Shear){.loss = 0.0};
     if (touched > full)
         inner_points(f, path, &inner);

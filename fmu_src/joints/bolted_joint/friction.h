@@ -6,7 +6,8 @@
 #include "energy.h"
 
 enum {
-    HEIGHTS = N_LEVELS - 1, /* ranges of heights, whose springs two sliders stand for */
+    N_HEIGHTS = N_BELOW + N_ABOVE + 3,
+    HEIGHTS = N_HEIGHTS - 1, /* ranges of heights, whose springs two sliders stand for */
     SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
 };
 
@@ -14,12 +15,15 @@ typedef struct {
     const Curve *curve;
     const Energy *energy; /* its integral */
     double mu, ratio;
-    double height[N_LEVELS], load[N_LEVELS], stiffness[N_LEVELS];
+    double offset;    /* of the heights, see `around` */
+    double reference; /* approach around which they lie */
+    double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS];
     double springs[HEIGHTS]; /* normal stiffness of all springs of a range */
     double normal[HEIGHTS];  /* their normal force when the last one touches */
     double apart[HEIGHTS];   /* normal force by which the two sliders differ from then on */
-    /* Of the sliders of ranges whose springs all touch: stiffness, 1/K, limit over the approach. */
-    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS], grows[SLIDERS];
+    /* Of the sliders of ranges whose springs all touch: K, 1/K, and the limit at no approach, from which it grows
+     * by K mu/ratio. */
+    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS];
     double stick[HEIGHTS]; /* sum of K up to a range */
 } Foundation;
 
@@ -48,8 +52,8 @@ typedef struct {
     double traction[2], tangent[3], loss;
 } Shear;
 
-/* Both tables are looked up later on. */
-void foundation_tabulate(Foundation *foundation, const Curve *curve, const Energy *energy, double mu, double ratio);
+/* Lay the heights around an approach; curve, energy, mu, ratio and offset are given. */
+void foundation_lay(Foundation *foundation, double reference);
 /* The search begins at a number of ranges that are near to be full. */
 Point foundation_point(const Foundation *foundation, double approach, int near);
 /* Carry the sliders along a path; `moved` are the forces after it, along x and y, of those that

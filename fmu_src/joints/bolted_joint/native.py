@@ -57,10 +57,13 @@ def _shear(g: Graph) -> None:
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
-    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in ("SMALL", "SPREAD", "LOBATTO")}
-    shape = spring.points(g.joint.pattern)
-    points = _points("NODES", shape) | _points("PATCHES", spring.patches(g.joint.pattern))
-    return Definitions(counts, numbers) | column("LEVELS", "N_LEVELS", spring.LEVELS) | points
+    names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
+    numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
+    counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
+    patches = spring.patches(g.joint.pattern)
+    points = _points("NODES", spring.points(g.joint.pattern)) | _points("PATCHES", patches)
+    offsets = column("OFFSETS", "N_OFFSETS", sliders.offsets(patches.share.size))
+    return Definitions(counts, numbers) | offsets | points
 
 
 def _points(name: str, shape: PressureShape) -> Definitions:

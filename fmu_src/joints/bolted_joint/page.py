@@ -26,7 +26,7 @@ def loops(spring: Any, end: float) -> Callable[[Figure], None]:
     """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
     preload = PART * end
     approach = spring.tightened(preload, 0.0)
-    foundation, share = spring.foundation, spring.shape.share
+    foundation, share = spring.foundation(), spring.shape.share
     mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
     slips = foundation.friction / foundation.ratio * float(mean)
 

@@ -1,23 +1,45 @@
 /* Repeats `torque_curve` of the package: the table that is made for every parameter set; the laws in it are
- * generated. */
+ * generated. A law that gives the table's nodes defines GIVEN_NODES, how many. */
 #include "harmonic_drive.h"
 
 #include <math.h>
 
 #include "tabulated.h"
 
+#ifdef GIVEN_NODES
+enum { N_GIVEN_NODES = (int)GIVEN_NODES };
+_Static_assert(CURVE_NODES >= N_GIVEN_NODES, "all of them");
+
+/* Each segment is a piece of its own: its bend may jump at the nodes. */
+static bool midline_of(Joint *joint, Text *why)
+{
+    double given[N_GIVEN_NODES][5];
+    (void)why;
+    given_nodes(0, joint->c, given[0]);
+    curve_begin(&joint->curve, 0.0);
+    for (int k = 0; k + 1 < N_GIVEN_NODES; k++) {
+        const double *left = given[k], *right = given[k + 1];
+        curve_piece(&joint->curve, (Node){.x = left[0], .y = left[1], .s = left[2], .bend = left[4]});
+        if (!curve_add(&joint->curve, (Node){.x = right[0], .y = right[1], .s = right[2], .bend = right[3]}))
+            return false;
+    }
+    curve_finish(&joint->curve);
+    return true;
+}
+#else
+enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_HEAD }; /* of the pair's numbers */
 _Static_assert(CURVE_NODES > DRIVE_STEPS, "one curve at least");
 
-static void no_stiffness(const Kind *kind, double K, Text *why)
+static void no_stiffness(const double *head, double K, Text *why)
 {
     text_add(why, "K_FTS0 = ");
-    text_number(why, kind->K_FTS0, 6);
+    text_number(why, head[K_FTS0], 6);
     text_add(why, " N.m/rad and the contact pair give K_WTS = ");
     text_number(why, K, 6);
     text_add(why, " N.m/rad, allowed is (");
     text_number(why, SOFTEST, 6);
     text_add(why, ", ");
-    text_number(why, kind->K_FTS0, 6);
+    text_number(why, head[K_FTS0], 6);
     text_add(why, ") N.m/rad with K_TS at most ");
     text_number(why, 1.0 / STIFFEST, 6);
     text_add(why, " times K_FTS0");
@@ -25,16 +47,17 @@ static void no_stiffness(const Kind *kind, double K, Text *why)
 
 static bool windup(Joint *joint, int steps, Text *why)
 {
-    const Kind *kind = &joint->kind;
-    const double step = asinh(kind->max_torque / kind->smoothing) / steps, half = 0.5 * step;
-    double phi = 0.0, K[2];
+    double head[N_HEAD], phi = 0.0, K[2];
+    pair_head(0, joint->c, head);
+    const double smoothing = head[SMOOTHING];
+    const double step = asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
     curve_begin(&joint->curve, 0.0);
     for (int k = 0; k <= steps; k++) {
-        const double xi = k * step, torque = kind->smoothing * sinh(xi);
+        const double xi = k * step, torque = smoothing * sinh(xi);
         stiffness(&torque, joint->c, K);
-        if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * kind->K_FTS0)) {
-            stiffness(&kind->max_torque, joint->c, K);
-            no_stiffness(kind, K[0], why);
+        if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * head[K_FTS0])) {
+            stiffness(&head[MAX_TORQUE], joint->c, K);
+            no_stiffness(head, K[0], why);
             return false;
         }
         const Node node = {.x = phi, .y = torque, .s = K[0], .bend = K[0] * K[1]};
@@ -44,9 +67,9 @@ static bool windup(Joint *joint, int steps, Text *why)
             return false;
         double rise = 0.0;
         for (int i = 0; i < N_DRIVE_GAUSS && k < steps; i++) {
-            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = kind->smoothing * sinh(at);
+            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * sinh(at);
             stiffness(&inner, joint->c, K);
-            rise += DRIVE_GAUSS_WEIGHTS[i] * kind->smoothing * cosh(at) / K[0];
+            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * cosh(at) / K[0];
         }
         phi += half * rise;
     }
@@ -54,15 +77,19 @@ static bool windup(Joint *joint, int steps, Text *why)
     return true;
 }
 
+static bool midline_of(Joint *joint, Text *why)
+{
+    return refined(joint, windup, DRIVE_STEPS, why);
+}
+#endif
+
 bool kind_tabulate(Joint *joint, Text *why)
 {
-    Kind *kind = &joint->kind;
-    double head[6], share[2 * SLIDERS];
-    drive_head(0, joint->c, head);
-    *kind = (Kind){.smoothing = head[0], .max_torque = head[1], .K_FTS0 = head[2]};
+    double head[3], share[2 * SLIDERS];
+    hysteresis_head(0, joint->c, head);
     slider_shares(0, joint->c, share);
-    return refined(joint, windup, DRIVE_STEPS, why) &&
-        hysteresis_of(&kind->hysteresis, head + 3, share, &joint->curve, why);
+    return midline_of(joint, why) &&
+        hysteresis_of(&joint->kind.hysteresis, head, share, &joint->curve, why);
 }
 
 /* Wind-up at inputs, coming from a memory; they are motion or torque. */

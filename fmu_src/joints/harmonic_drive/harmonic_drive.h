@@ -5,7 +5,6 @@
 #include "hysteresis.h"
 
 typedef struct {
-    double smoothing, max_torque, K_FTS0; /* of the drive */
     Hysteresis hysteresis;
     double phi; /* wind-up of the last evaluation */
 } Kind;

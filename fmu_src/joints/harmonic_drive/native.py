@@ -3,6 +3,7 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import hysteresis, law, spring
+from jointfmu.joints.harmonic_drive.given import Given, Node
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, symbols
@@ -11,13 +12,17 @@ from ...native.part import CURVE, Definitions, Named, NativePart, named, quadrat
 
 def _functions(g: Graph, model: Model) -> None:
     drive = g.joint
-    (torque,) = symbols("x", 1)
-    doc = "torque -> K_WTS, its slope"
-    g.add("stiffness", doc, [torque], law.drive_stiffness(drive, torque))
-    head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
-    head += [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
-    doc = "-> T_s, largest torque, K_FTS0, hysteresis: loss and stiffness, rated torque"
-    g.add("drive_head", doc, [], head)
+    if isinstance(drive, Given):
+        doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after"
+        g.add("given_nodes", doc, [], [number for node in drive.nodes() for number in node])
+    else:
+        (torque,) = symbols("x", 1)
+        doc = "torque -> K_WTS, its slope"
+        g.add("stiffness", doc, [torque], law.drive_stiffness(drive, torque))
+        head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
+        g.add("pair_head", "-> T_s, largest torque, K_FTS0", [], head)
+    head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
+    g.add("hysteresis_head", "-> loss, stiffness, rated torque", [], head)
     springs, friction = hysteresis.shares(hysteresis.exponent(drive))
     g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *friction])
     v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
@@ -47,7 +52,9 @@ COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"))
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {"ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"), "DRIVE_STEPS": spring.STEPS}
-    return named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    every = named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
+    return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 
 PART = NativePart(_functions, CURVE, _definitions)

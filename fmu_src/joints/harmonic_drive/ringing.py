@@ -30,10 +30,7 @@ def _rest(folder: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
 
 
 def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
-    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m].
-
-    The torque from rest grows at least as the midline, whose stiffness K_WTS grows with it.
-    """
+    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m], which grows with the wind-up."""
 
     def missing(angle: float) -> float:
         drive.set(angle, 0.0)
@@ -41,6 +38,8 @@ def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
 
     drive.set(0.0, 0.0)
     end = torque / drive.get()[1]
+    while missing(end) * torque < 0.0:
+        end *= 2.0
     angle = brentq(missing, 0.0, end, xtol=1e-12 * abs(end), rtol=1e-13) if torque else 0.0
     drive.set(angle, 0.0)
     return angle, drive.get()[1]

@@ -1,5 +1,6 @@
 """The exported bolted joint: six degrees of freedom under uneven pressure, with friction that remembers."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -12,7 +13,7 @@ from ...footprint.patches import few_points
 from ...footprint.shape import PressureShape
 from ...interface import largest_spot
 from ...quantity import Number
-from ...sliders import Foundation, levels
+from ...sliders import Foundation, around, offsets
 from .contact import (
     Place,
     along,
@@ -29,11 +30,11 @@ Array = NDArray[np.float64]
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
-PATCHES = 24
-"""Points that carry the friction [1], each with the sliders of LEVELS."""
-LEVELS = levels(5e-6, (8e-5, 1.5e-2), 0.3)
-"""Pressures over the hardness between which sliders are taken together [1]."""
+PATCHES = 22
+"""Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
+UNKNOWN, RESTING, ALONG, FREE = 0.0, 1.0, 2.0, 3.0
+"""How friction has moved so far, see `_Memory`."""
 
 
 @lru_cache(maxsize=8)
@@ -83,9 +84,19 @@ class BoltedJointSpring:
         return replace(self, shape=nodes, patches=nodes)
 
     @cached_property
-    def foundation(self) -> Foundation:
-        """The sliders of each of them."""
-        return Foundation.of(self.curve, float(shear_ratio(self.joint)), self.joint.mu, LEVELS)
+    def _foundations(self) -> Callable[[bytes], Foundation]:
+        """The sliders of the patches around approaches, of which the last ones are kept."""
+        ratio, mu, shifts = float(shear_ratio(self.joint)), self.joint.mu, offsets(self.patches.share.size)
+
+        def build(reference: bytes) -> Foundation:
+            return Foundation(self.curve, ratio, mu, around(self.curve, np.frombuffer(reference), shifts))
+
+        return lru_cache(maxsize=4)(build)
+
+    def foundation(self, reference: Array | None = None) -> Foundation:
+        """The sliders of patches which first move at approaches (m) [m]; None: not yet known."""
+        first = np.zeros(self.patches.share.size) if reference is None else reference
+        return self._foundations(np.ascontiguousarray(first).tobytes())
 
     def tightened(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the nodes at tightening."""
@@ -122,7 +133,8 @@ class BoltedJointSpring:
     def at_rest(self) -> Array:
         """Memory of a joint that has not moved yet, see `_Memory`."""
         patches = self.patches.share.size
-        return _Memory(0.0, 0.0, np.zeros(3), np.zeros(patches), self.foundation.at_rest(patches)).flat()
+        none, forces = np.zeros(patches), self.foundation().at_rest(patches)
+        return _Memory(UNKNOWN, 0.0, np.zeros(3), none, none, forces).flat()
 
     def evolve(
         self, preload: float, moment: float, place: Place, rates: tuple[float, ...], memory: Array
@@ -150,7 +162,7 @@ class BoltedJointSpring:
             "elastic": shape.share @ elastic,
             **shear,
             **loop_sums(
-                self.foundation, self.patches.share, approach, np.hypot(*place.along(self.patches).T)
+                self.foundation(), self.patches.share, approach, np.hypot(*place.along(self.patches).T)
             ),
         }
         p_max = np.max(derivatives[0])
@@ -161,12 +173,18 @@ class BoltedJointSpring:
         patches, area = self.patches, self.joint.A_0
         before = _Memory.of(memory, patches.share.size)
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        first = before.approach if before.begun > 0.0 else approach
         shift = along(patches, rigid - before.rigid)
-        moved = self.foundation.moved(before.force, first, approach, shift)
+        begins = before.state == UNKNOWN
+        first, reference = (approach, approach) if begins else (before.approach, before.reference)
+        moved = self.foundation(reference).moved(before.force, first, approach, shift)
         loss = before.loss + area * float(patches.share @ moved.loss)
-        straight = before.begun < 2.0 and np.array_equal(rigid[1:], before.rigid[1:])
-        after = _Memory(1.0 if straight else 2.0, loss, rigid, approach, moved.force)
+        rests, straight = before.state < ALONG, before.state < FREE
+        state = FREE
+        if straight and np.array_equal(rigid[1:], before.rigid[1:]):
+            state = RESTING if rests and rigid[0] == before.rigid[0] else ALONG
+        if state == RESTING:
+            reference = approach
+        after = _Memory(state, loss, rigid, reference, approach, moved.force)
         return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after.flat()
 
     def works(self, p: Array) -> tuple[Array, Array]:
@@ -183,27 +201,32 @@ class BoltedJointSpring:
 class _Memory:
     """What friction remembers.
 
-    begun    : 0 before it has moved: the path begins at the present approach without a shift; 1 while it has
-               moved along x alone, 2 after it has along y or turned
-    loss     : [J] turned into heat so far
-    rigid    : (3) shift along x and y [m] and turn about the normal [rad]
-    approach : (m) [m] of the patches
-    force    : (m, 2, n) [Pa] of the sliders
+    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
+                shift; RESTING: it has not moved along its surface; ALONG: it has along x alone; FREE: along
+                y or by a turn, too
+    loss      : [J] turned into heat so far
+    rigid     : (3) shift along x and y [m] and turn about the normal [rad]
+    reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
+    approach  : (m) [m] of the patches
+    force     : (m, 2, n) [Pa] of the sliders
     """
 
-    begun: float
+    state: float
     loss: float
     rigid: Array
+    reference: Array
     approach: Array
     force: Array
 
     @classmethod
     def of(cls, flat: Array, patches: int) -> "_Memory":
         """From an array as `flat` gives it."""
-        force = flat[5 + patches :].reshape(patches, 2, -1)
-        return cls(float(flat[0]), float(flat[1]), flat[2:5], flat[5 : 5 + patches], force)
+        reference, approach, force = np.split(flat[5:], [patches, 2 * patches])
+        return cls(
+            float(flat[0]), float(flat[1]), flat[2:5], reference, approach, force.reshape(patches, 2, -1)
+        )
 
     def flat(self) -> Array:
         """All in one array, in this order."""
-        head = [self.begun, self.loss]
-        return np.concatenate([head, self.rigid, self.approach, self.force.ravel()])
+        head = [self.state, self.loss]
+        return np.concatenate([head, self.rigid, self.reference, self.approach, self.force.ravel()])

@@ -1,6 +1,7 @@
 """Harmonic drive: the contact of flexspline and flexible bearing."""
 
 from ..kind import Kind, RoughSurface
+from .given import CatalogueDrive, TableDrive
 from .law import HarmonicDrive, RoughHarmonicDrive
 from .variables import MODELS
 
@@ -8,7 +9,12 @@ KIND = Kind(
     name="harmonic_drive",
     package=__name__,
     default="cd_14_100",
-    laws={"hu2023": HarmonicDrive, "roughness": RoughHarmonicDrive},
+    laws={
+        "hu2023": HarmonicDrive,
+        "roughness": RoughHarmonicDrive,
+        "catalogue": CatalogueDrive,
+        "table": TableDrive,
+    },
     law_of=lambda drive: drive.law,
     models=MODELS,
     surfaces=(RoughSurface("surface", areal=True),),

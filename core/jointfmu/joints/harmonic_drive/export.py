@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from ...export.exports import Exports, LoadCurve
 from . import KIND
-from .law import Drive
+from .drive import Drive
 from .spring import HarmonicDriveSpring
 
 if TYPE_CHECKING:

@@ -20,7 +20,8 @@ from ...curve import Curve
 from ...interface import MOST_STEPS
 from ...powerlaw import exprel
 from ...quantity import Number
-from .law import Drive, pair_log_area
+from .drive import Drive
+from .law import PairDrive, pair_log_area
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,13 @@ that the loop hardly opens as far as it should."""
 
 
 def exponent(drive: Drive) -> Number:
-    """m [1] of K_N ~ P^m of the contact pair, at the pressure without torque."""
+    """m [1] of K_N ~ P^m of the contact pair, at the pressure without torque; 1 of a law without a pair.
+
+    1 is that of rough surfaces under any pressure and of Hu's law: T_h = M_f (1 - exp(-K_h phi/M_f)), as in
+    Dahl's model of friction.
+    """
+    if not isinstance(drive, PairDrive):
+        return 1.0
     spots, u = drive.pair_law.spots(), pair_log_area(drive, 0.0)
     power = spots.log_total("load", 0.0)[1]
     return spots.slope("normal", u) / (spots.total("normal", u) * power)

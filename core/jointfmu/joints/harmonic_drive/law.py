@@ -1,14 +1,17 @@
-"""Harmonic drive: its parameters, and the stiffness of flexspline and flexible bearing (Hu 2023)."""
+"""Harmonic drive with a contact pair: its parameters, and the stiffness of flexspline and flexible bearing
+(Hu 2023).
+"""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...asperity.hu2023 import Hu2023, elastic_pressure
 from ...asperity.roughness import Roughness, RoughSurfaces
-from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
+from ...quantity import Interval, Limit, Number, choice, group, quantity, where
 from ...surface import ArealSurface, Elastic, ElasticPlastic
+from .drive import Drive
 
 SETTLED = 2.0
 """Torque over rated torque [1] at whose pressure the pair settles under any larger torque."""
@@ -17,8 +20,8 @@ _SCANNED = 0.5e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drive(ABC):
-    """Parameters of a harmonic drive but for the law of its contact pair.
+class PairDrive(Drive):
+    """Parameters of a harmonic drive with a contact pair but for the law of the pair.
 
     What `calibration` marks was fitted to published points.
     """
@@ -32,12 +35,9 @@ class Drive(ABC):
     eccentricity: float = quantity(
         "m", "installation eccentricity of flexspline and bearing", ge=0.0, lt=1e-3
     )
-    ratio: float = quantity("1", "speed ratio of wave generator and output", gt=0.0)
     K_FTS0: float = quantity(
         "N.m/rad", "stiffness K_FTS of circular spline and flexspline", gt=0.0, calibration=True
     )
-    d: float = quantity("N.m.s/rad", "viscous damping at the output", ge=0.0)
-    rated_torque: float = quantity("N.m", "rated torque", gt=0.0)
     max_torque: float = quantity("N.m", "end of the tabulated law", gt=0.0)
     zero_torque_pressure: float = quantity(
         "Pa", "peak contact pressure without torque, at the optimum deformation", gt=0.0, calibration=True
@@ -53,19 +53,6 @@ class Drive(ABC):
     eccentricity_loss: float = quantity(
         "Pa/m", "loss of peak pressure per eccentricity", ge=0.0, calibration=True
     )
-    hysteresis_loss: float = quantity(
-        "rad", "angle between the branches at zero torque, after rated torque; 0: none", ge=0.0, default=0.0
-    )
-    hysteresis_stiffness: float = quantity(
-        "N.m/rad",
-        "extra stiffness of tiny motions, before friction slips; 0: as K_WTS at zero torque or as needed",
-        ge=0.0,
-        default=0.0,
-    )
-
-    def __post_init__(self) -> None:
-        check(self)
-        check_limits(self, self.limits())
 
     @property
     @abstractmethod
@@ -78,9 +65,18 @@ class Drive(ABC):
         """K_TS on the drive's scale over the tangential stiffness of the pair's law [m2]."""
 
     @property
-    def pair_units(self) -> Number:
-        """K_TS on the drive's scale over that of the paper's figures [1]."""
-        return 1.0
+    def reach(self) -> Number:
+        """max_torque."""
+        return self.max_torque
+
+    @property
+    def K_FTS(self) -> Number:
+        """K_FTS0."""
+        return self.K_FTS0
+
+    def pressure(self, torque: Number) -> Number:
+        """As `peak_pressure`."""
+        return peak_pressure(self, torque)[0]
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
@@ -90,14 +86,11 @@ class Drive(ABC):
             reach = np.sqrt(zero / np.maximum(loss, 1e-290))
             reserve = (zero - self._deformation_loss) / np.maximum(self.eccentricity_loss, 1e-290)
         return [
+            *super().limits(),
             Limit("rated_pressure", Interval.of(gt=zero), "it must exceed zero_torque_pressure"),
             Limit("radial_deformation", Interval.of(gt=best - reach, lt=best + reach), no_contact),
             Limit("eccentricity", Interval.of(ge=0.0, lt=reserve), no_contact),
         ]
-
-    def table_limits(self) -> list[Limit]:
-        """Intervals that the tabulated law needs beside."""
-        return []
 
     @property
     def _deformation_loss(self) -> float:
@@ -110,7 +103,7 @@ class Drive(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicDrive(Drive):
+class HarmonicDrive(PairDrive):
     """Parameters of the harmonic drive with the law of Hu 2023, read as printed."""
 
     surface: ArealSurface = group("equivalent rough surface of the contact pair")
@@ -174,7 +167,7 @@ class HarmonicDrive(Drive):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoughHarmonicDrive(RoughSurfaces, Drive):
+class RoughHarmonicDrive(RoughSurfaces, PairDrive):
     """Parameters of the harmonic drive with the law `roughness`: no scale, energy of a unit twist."""
 
     H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
@@ -206,7 +199,7 @@ class RoughHarmonicDrive(RoughSurfaces, Drive):
         return self.radius**2
 
 
-def peak_pressure(drive: Drive, torque: Number) -> tuple[Number, Number]:
+def peak_pressure(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     """Peak contact pressure (...) [Pa] at the major axis and opening, and its torque derivative [Pa/(N.m)].
 
     `sqrt(p_0^2 + (p_r^2 - p_0^2) g(t(T))/g(t(T_r))) - loss` with `g(t) = sqrt(t^2 + T_s^2) - T_s`: the peak
@@ -237,14 +230,14 @@ def peak_pressure(drive: Drive, torque: Number) -> tuple[Number, Number]:
     return free - drive.pressure_loss, 0.5 * factor * turn / distance(square) / free
 
 
-def pair_log_area(drive: Drive, torque: Number) -> Number:
+def pair_log_area(drive: PairDrive, torque: Number) -> Number:
     """u (...) [1] of the pair's law at its mean pressure under a torque: the load is a power of exp(u)."""
     law = drive.pair_law
     start, power = law.spots().log_total("load", 0.0)
     return (np.log(drive.mean_over_peak * peak_pressure(drive, torque)[0] * law.A_0) - start) / power
 
 
-def pair_stiffness(drive: Drive, torque: Number) -> tuple[Number, Number]:
+def pair_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     """K_TS (...) [N.m/rad] of the contact pair on the drive's scale, and dK_TS/dT [1/rad].
 
     Every point of the pair has a tangential stiffness in proportion to its pressure, or nearly so; the
@@ -257,7 +250,7 @@ def pair_stiffness(drive: Drive, torque: Number) -> tuple[Number, Number]:
     return drive.twist * spots.total("tangential", u), drive.twist * slope * rise
 
 
-def drive_stiffness(drive: Drive, torque: Number) -> tuple[Number, Number]:
+def drive_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     """K_WTS (...) [N.m/rad] by Eq. 46, 1/K_WTS = 1/K_FTS + 1/K_TS, and dK_WTS/dT [1/rad]."""
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)

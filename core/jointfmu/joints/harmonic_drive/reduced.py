@@ -11,13 +11,17 @@ from ...batch import chebyshev
 from ...batch.samples import columns
 from ..reduced import Reduced
 from . import KIND
-from .law import Drive, drive_stiffness
-from .spring import HarmonicDriveSpring
+from .drive import Drive
+from .given import CatalogueDrive, TableDrive
+from .law import PairDrive, drive_stiffness
+from .spring import HarmonicDriveSpring, torque_curve
 
 Array = NDArray[np.float64]
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""
+CORRECTIONS = 20
+"""Newton steps [1] within a corner of a catalogue's lines: the stiffness changes by a few tenths there."""
 
 
 def evaluate(
@@ -28,6 +32,15 @@ def evaluate(
     values : by structured name, numbers or samples (n)
     """
     drive = columns(parameters, values, 1)
+    if isinstance(drive, PairDrive):
+        return _pair(drive, loads, factor)
+    torque = factor * loads
+    K, phi = _lines(drive, torque) if isinstance(drive, CatalogueDrive) else _table(drive, torque)
+    return {"K_WTS": np.broadcast_to(K, torque.shape), "phi_rel": np.broadcast_to(phi, torque.shape)}
+
+
+def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
+    """Of drives with a contact pair."""
     smoothing = float(np.median(drive.torque_smoothing))
     xi = np.arcsinh(loads / smoothing)
     span = xi[-1] * chebyshev.nodes(RAMP)
@@ -40,6 +53,32 @@ def evaluate(
     }
 
 
+def _table(drive: TableDrive, torque: Array) -> tuple[Array, Array]:
+    """K_WTS and wind-up of a measured midline, which no sample changes."""
+    curve = torque_curve(drive)
+    phi = curve.inverse(torque)
+    return curve.derivatives(phi, 1)[1], phi
+
+
+def _lines(drive: CatalogueDrive, torque: Array) -> tuple[Array, Array]:
+    """K_WTS and wind-up of a catalogue's three lines: along a line, or by Newton's method within a corner."""
+    first, second = drive.corners
+    K = np.where(torque < drive.T1, drive.K1, np.where(torque < drive.T2, drive.K2, drive.K3))
+    phi = np.minimum(torque, drive.T1) / drive.K1 + np.maximum(torque - drive.T2, 0.0) / drive.K3
+    phi = phi + np.clip(torque - drive.T1, 0.0, drive.T2 - drive.T1) / drive.K2
+    for at, T, low, high in ((first, drive.T1, drive.K1, drive.K2), (second, drive.T2, drive.K2, drive.K3)):
+        half = drive.corner * at
+        beyond = (torque - T + low * half) / (2.0 * half)  # torque within the corner over its width
+        t = np.clip(beyond / low, 0.0, 1.0)
+        for _ in range(CORRECTIONS):
+            slope = low + (high - low) * t**2 * (3.0 - 2.0 * t)
+            t = np.clip(t + (beyond - low * t - (high - low) * t**3 * (1.0 - 0.5 * t)) / slope, 0.0, 1.0)
+        inside = (beyond > 0.0) & (beyond < 0.5 * (low + high))
+        K = np.where(inside, low + (high - low) * t**2 * (3.0 - 2.0 * t), K)
+        phi = np.where(inside, at + half * (2.0 * t - 1.0), phi)
+    return K, phi
+
+
 def exact(joint: Drive, loads: Array) -> dict[str, Array]:
     """K_WTS and phi_rel (m) of the exported spring's midline at torques (m) [N.m]."""
     state = HarmonicDriveSpring.of(replace(joint, hysteresis_loss=0.0)).windup(loads)
@@ -50,7 +89,7 @@ REDUCED = Reduced(
     load=KIND.variables["tau"],
     outputs=tuple(KIND.variables[name] for name in ("K_WTS", "phi_rel")),
     to=lambda drive: float(drive.rated_torque),
-    most=lambda drive: drive.max_torque,
+    most=lambda drive: drive.reach,
     evaluate=evaluate,
     exact=exact,
 )

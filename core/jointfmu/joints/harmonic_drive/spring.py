@@ -8,8 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
+from .drive import Drive
+from .given import Given
 from .hysteresis import Hysteresis, Slid
-from .law import Drive, drive_stiffness, peak_pressure
+from .law import PairDrive, drive_stiffness
 
 Array = NDArray[np.float64]
 
@@ -21,18 +23,23 @@ GAUSS = np.polynomial.legendre.leggauss(4)
 
 
 def torque_curve(drive: Drive) -> Curve:
-    """Torque [N.m] over wind-up [rad] for phi >= 0 (the law is odd): the integral of dT/K_WTS.
+    """Torque [N.m] over wind-up [rad] for phi >= 0 (the law is odd): as given, or the integral of dT/K_WTS.
 
-    Nodes are evenly spaced in asinh(T/T_s), dense where the stiffness bends; the wind-up is integrated
-    by four Gauss-Legendre nodes per step.
+    Nodes of the integral are evenly spaced in asinh(T/T_s), dense where the stiffness bends; the wind-up is
+    integrated by four Gauss-Legendre nodes per step.
 
-    Raises ValueError if spots of the pair would yield within the table.
+    Raises ValueError if spots of a contact pair would yield within the table.
     """
     check_limits(drive, drive.table_limits())
-    return refined(lambda steps: _windup(drive, steps), STEPS)
+    if isinstance(drive, PairDrive):
+        return refined(lambda steps: _windup(drive, steps), STEPS)
+    if isinstance(drive, Given):
+        x, y, s, before, after = np.array(drive.nodes(), dtype=np.float64).T
+        return Curve(x, y, s, after[:-1], before[1:])
+    raise TypeError(f"{type(drive).__name__} is no PairDrive and not Given")
 
 
-def _windup(drive: Drive, steps: int) -> Curve:
+def _windup(drive: PairDrive, steps: int) -> Curve:
     """The table with a number of steps."""
     smoothing = drive.torque_smoothing
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
@@ -125,11 +132,11 @@ def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
 
     K_TS_pair is K_TS on the scale of the paper's Fig. 11.
     """
-    K_TS = stiffness * drive.K_FTS0 / (drive.K_FTS0 - stiffness)
+    K_TS = stiffness * drive.K_FTS / (drive.K_FTS - stiffness)
     return {
         "K_WTS": stiffness,
         "K_TS": K_TS,
-        "K_FTS": drive.K_FTS0 + 0.0 * stiffness,
+        "K_FTS": drive.K_FTS + 0.0 * stiffness,
         "K_TS_pair": K_TS / drive.pair_units,
-        "p_max": peak_pressure(drive, load)[0],
+        "p_max": drive.pressure(load),
     }

@@ -14,7 +14,7 @@ _CONTACT = (
 )
 
 _MOTION = ("phi1", "phi2")
-_HIDDEN = ("max_torque", "shear_traction")
+_HIDDEN = ("max_torque", "shear_traction", "table")
 _SPEEDS = {"w1": "parameters", "w2": "parameters"}
 
 MODELS = (

@@ -16,7 +16,7 @@ from ....modelica.text import identifier, matrix
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
-    own = {"ratio": drive.ratio, "d": drive.d, "K_FTS0": drive.K_FTS0}
+    own = {"ratio": drive.ratio, "d": drive.d, "K_FTS0": drive.K_FTS}
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
         Record(

@@ -1,9 +1,4 @@
-"""A catalogue's torsional stiffness to a smooth law.
-
-Catalogue practice: the angle over the torque is three straight lines, K1 up to T1, K2 up to T2, K3
-beyond,
-
-    theta(T) = T1/K1 + (T2 - T1)/K2 + (T - T2)/K3   for T > T2.
+"""A catalogue's torsional stiffness to the law of the contact pair.
 
 The law keeps the angle at T1, T2 and the rated torque; between them and up to max_torque it follows
 the polygon as well as a smooth curve can. The unknowns are those of a measured curve.
@@ -12,18 +7,17 @@ stiffness starts to rise; it becomes a fourth unknown if three do not keep the a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise, product
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ....fitting.least_squares import Array, Solution, solve
-from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from ....fitting.outcome import Outcome, fitted, model, unknowns
 from ....parameters import ParameterFile, default
-from ....quantity import check, quantity
-from ....units import factor
 from . import drive
+from .row import Row
+from .row_pictures import angle_picture, stiffness_picture
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
 FURTHER = "torque_smoothing"
@@ -36,67 +30,6 @@ LOOSE = 0.2
 """Standard deviation of the angle elsewhere [1]: the polygon's corners are no property of the drive."""
 MAX_OVER_RATED = 4.0
 """max_torque over rated torque [1]: about the repeated peak torque of catalogue drives."""
-ARCMIN = np.pi / 10800.0
-
-
-PRINTED = ("1e4 N.m/rad", "N.m/arcmin", "kN.m/rad", "kgf.m/arcmin", "N.m/mrad", "N.mm/rad")
-"""Units in which catalogues print stiffness."""
-
-
-def _likely(angle: float) -> str:
-    """The unit that brings a wind-up [rad] nearest to what is usual, the middle of WINDUP."""
-    usual = np.sqrt(np.prod(drive.WINDUP))
-    sizes = {u: factor(u.split()[-1], "N.m/rad") * (1e4 if " " in u else 1.0) for u in PRINTED}
-    best = min(sizes, key=lambda u: abs(np.log(angle / sizes[u] / usual)))
-    if not 0.1 < angle / sizes[best] / usual < 10.0:
-        return "no usual unit explains it"
-    return f"likely they are in {best}: times {sizes[best]:g}"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
-    """A row of a catalogue."""
-
-    K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0)
-    K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0)
-    K3: float = quantity("N.m/rad", "stiffness above T2", gt=0.0)
-    T1: float = quantity("N.m", "torque at the first corner", gt=0.0)
-    T2: float = quantity("N.m", "torque at the second corner", gt=0.0)
-    rated: float = quantity("N.m", "rated torque", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
-        for low, high in (("K1", "K2"), ("K2", "K3")):
-            if not getattr(self, low) <= getattr(self, high):
-                raise ValueError(
-                    f"{high} = {getattr(self, high):g} N.m/rad is outside [{getattr(self, low):g}, inf): "
-                    f"the drive stiffens, {high} is at least {low}"
-                )
-        if not self.T1 < self.T2:
-            raise ValueError(f"T2 = {self.T2:g} N.m is outside ({self.T1:g}, inf): T2 exceeds T1")
-        least, most = drive.WINDUP
-        if not least <= (angle := float(self.angle(self.rated))) <= most:
-            raise ValueError(
-                f"K1 = {self.K1:g} N.m/rad winds up {angle:.3g} rad at the rated torque {self.rated:g} N.m, "
-                f"allowed are {least:g} to {most:g} rad: are K1, K2 and K3 in N.m/rad? {_likely(angle)}"
-            )
-
-    def angle(self, torque: ArrayLike) -> Array:
-        """theta (...) [rad] at torques (...) >= 0 [N.m]."""
-        T = np.asarray(torque, dtype=np.float64)
-        first, second = np.minimum(T, self.T1), np.clip(T - self.T1, 0.0, self.T2 - self.T1)
-        return np.asarray(first / self.K1 + second / self.K2 + np.maximum(T - self.T2, 0.0) / self.K3)
-
-    @property
-    def kept(self) -> Array:
-        """The torques [N.m], ascending, at which the law keeps the angle."""
-        return np.unique([self.T1, self.T2, self.rated])
-
-    def __str__(self) -> str:
-        return (
-            f"K1 = {self.K1:g}, K2 = {self.K2:g}, K3 = {self.K3:g} N.m/rad, "
-            f"T1 = {self.T1:g}, T2 = {self.T2:g} N.m"
-        )
 
 
 def fit(
@@ -118,7 +51,7 @@ def fit(
     if ratio is not None:
         file = file.with_values({"ratio": ratio}, "catalogue", origin)
     file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
-    torque, most = _torques(row, file.values.max_torque), file.values.max_torque
+    torque, most = torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
     file = drive.scaled(file, choices[0], torque, row.angle(torque))
     solution, tight = _solved(row, file, choices, torque)
@@ -143,10 +76,17 @@ def fit(
         f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
-    return Outcome(result, solution, facts, _picture(row, result, torque), notes=[note])
+    return Outcome(
+        result,
+        solution,
+        facts,
+        angle_picture(row, result.values, {}, torque),
+        notes=[note],
+        beside=stiffness_picture(row, result.values, {}, most),
+    )
 
 
-def _torques(row: Row, most: float) -> Array:
+def torques(row: Row, most: float) -> Array:
     """The torques [N.m] at which law and polygon are compared: kept ones and some between."""
     ends = np.array([0.0, row.T1, row.T2, max(most, 1.5 * row.T2)])
     between = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
@@ -182,18 +122,4 @@ def _solved(
     raise RuntimeError(
         f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
         f"{row.rated:g} N.m within {100 * AIMED:g} %: the best misses it by {100 * best:.2g} %"
-    )
-
-
-def _picture(row: Row, result: ParameterFile, torque: Array) -> Picture:
-    """The polygon's points and the law."""
-    grid = np.linspace(0.0, torque[-1], 400)
-    target = row.angle(torque)
-    return Picture(
-        x=torque,
-        y=target / ARCMIN,
-        misfit=100.0 * (target / drive.windup(result.values, torque) - 1.0),
-        line=(grid, drive.windup(result.values, grid) / ARCMIN),
-        labels=("torque [N.m]", "wind-up [arcmin]", "catalogue / law - 1 [%]"),
-        marks=np.isin(torque, row.kept),
     )

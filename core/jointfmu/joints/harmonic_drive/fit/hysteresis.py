@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ....fitting import memory, memory_pictures
+from ....fitting.branches import Loops
 from ....fitting.heads import Heads
 from ....fitting.hysteresis import Elastic, Hysteresis
 from ....fitting.least_squares import Array
@@ -18,7 +19,7 @@ from ....fitting.measurement import measured
 from ....fitting.outcome import Outcome, fitted, unknowns
 from ....parameters import ParameterFile, default
 from ....units import sizes
-from ..law import Drive
+from ..drive import Drive
 from ..spring import HarmonicDriveSpring
 from . import drive as own
 
@@ -28,6 +29,7 @@ HEADS = Heads(
     sizes("N.m", "mN.m", "kN.m"),
     sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
 )
+_UNITS = {HEADS.force: HEADS.forces, HEADS.motion: HEADS.motions}
 LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")
 ARCMIN = HEADS.motions["arcmin"]
 FIRST = {LOSS: ARCMIN, STIFFNESS: 1.0}
@@ -77,7 +79,12 @@ def fit(
     """
     data = measured(path, HEADS)
     names = list(free or FREE)
-    file, rest = _begun(start or default("harmonic_drive"), names)
+    begun = start or default("harmonic_drive")
+    if isinstance(data.data, Loops):
+        reach = 0.5 * float(np.ptp(data.data.force))
+        wound = float(own.windup(begun.values, np.array(reach)))
+        own.check_level(data.path, wound / data.amplitude, data.units, _UNITS, begun)
+    file, rest = _begun(begun, names)
 
     def drive(values: Mapping[str, float]) -> Drive:
         parameters: Drive = file.with_values(values, "calibration", "fit").values

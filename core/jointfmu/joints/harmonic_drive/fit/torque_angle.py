@@ -7,17 +7,19 @@ they stay as they are unless asked for.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from .... import columns
 from ....fitting import loop
-from ....fitting.least_squares import Array, solve
+from ....fitting.least_squares import Array, Solution, solve
 from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
 from ....parameters import ParameterFile, default
 from ....refusal import Refusal
 from ....units import Sizes, sizes
+from ..law import PairDrive
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -34,29 +36,35 @@ ALIKE = 0.5
 """Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
 
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A file's mid-line and the drive to start from, of its size."""
+
+    path: Path
+    line: loop.Backbone
+    start: ParameterFile
+
+
 def fit(
     path: str | Path,
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
     rated_torque: float | None = None,
 ) -> Outcome:
-    """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement; `free` None: FREE.
+    """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
 
     The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
-    scales the start's torques (max_torque, smoothing) to another size of drive.
+    scales the start's torques (max_torque, smoothing) to another size of drive. `free` None: FREE, of lines
+    of a catalogue their stiffnesses.
 
     Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
     that cannot be fitted. RuntimeError if the fit finds no end.
     """
-    table = columns.read(path, COLUMNS, LEAST)
-    names = tuple(free or FREE)
-    torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
-    try:
-        line = loop.backbone(torque, angle)
-    except ValueError as error:
-        raise ValueError(f"{table.path}: {error}") from None
-    file = _sized(start or default("harmonic_drive"), line.torque, rated_torque, table.path)
-    _check_size(line, file, table.path)
+    record = read(path, start, rated_torque)
+    line, file = record.line, record.start
+    if file.law == "table":
+        raise ValueError(f"{record.path}: the law table has nothing to fit; --law table makes a new table")
+    names = tuple(free or (FREE if file.law != "catalogue" else drive.LEVELS["catalogue"]))
     centred = line.angle - np.interp(0.0, line.torque, line.angle)
     file = drive.scaled(file, names, line.torque, centred)
     weight = np.sqrt(line.count)
@@ -74,13 +82,37 @@ def fit(
         lambda values: miss(angles(values)),
         nuisances=1,
     )
-    ends = line.torque[0], line.torque[-1]
-    result = fitted(
-        file, solution.values, "calibration", table.path.name, f"torque {ends[0]:.4g} to {ends[1]:.4g} N.m"
-    )
-    shift = offset(angles(solution.values))
-    grid = np.linspace(*ends, 400)
-    rest = solution.residuals / weight * size
+    result = fitted(file, solution.values, "calibration", record.path.name, span(line))
+    return outcome(record, result, solution, offset(angles(solution.values)), solution.noise * size)
+
+
+def read(path: str | Path, start: ParameterFile | None, rated_torque: float | None) -> Record:
+    """The mid-line of a file and the drive to start from; ValueError as `fit`."""
+    table = columns.read(path, COLUMNS, LEAST)
+    torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
+    try:
+        line = loop.backbone(torque, angle)
+    except ValueError as error:
+        raise ValueError(f"{table.path}: {error}") from None
+    begun = start or default("harmonic_drive")
+    file = _sized(begun, line.torque, rated_torque, table.path)
+    _check_size(line, file, table)
+    size = begun.values.rated_torque / file.values.rated_torque
+    usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
+    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, COLUMNS, begun)
+    return Record(table.path, line, file)
+
+
+def span(line: loop.Backbone) -> str:
+    """Over which torques, in words."""
+    return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
+
+
+def outcome(record: Record, result: ParameterFile, solution: Solution, shift: float, noise: float) -> Outcome:
+    """What is told of a drive beside its mid-line; offset of the angle and noise of a sample in rad."""
+    line = record.line
+    rest = line.angle - drive.windup(result.values, line.torque) - shift
+    grid = np.linspace(line.torque[0], line.torque[-1], 400)
     picture = Picture(
         x=line.torque,
         y=(line.angle - shift) / ARCMIN,
@@ -88,18 +120,16 @@ def fit(
         line=(grid, drive.windup(result.values, grid) / ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
-    return Outcome(
-        result, solution, _facts(line, shift, rest, solution.noise * size), picture, notes=_notes(line, rest)
-    )
+    return Outcome(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
     """The start for a drive of this size; its table must reach the curve's end."""
     drive_, reach = start.values, float(np.max(np.abs(torque)))
     if rated is not None:
-        factor = drive_.max_torque / drive_.rated_torque
+        factor = drive_.reach / drive_.rated_torque
         start = drive.resized(start, rated, factor, "user", "stated with the torque-angle curve")
-    if reach > start.values.max_torque:
+    if isinstance(start.values, PairDrive) and reach > start.values.max_torque:
         raise Refusal(
             f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start.values.max_torque:g} N.m of "
             f"{start.name}: state the drive's rated torque, max_torque is scaled with it",
@@ -108,17 +138,18 @@ def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path)
     return start
 
 
-def _check_size(line: loop.Backbone, start: ParameterFile, path: Path) -> None:
+def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
     """Refuse a wind-up that no drive of this size has, before a long fit; and a loop that creates energy."""
     turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
     rated = start.values.rated_torque
     low, high = drive.WINDUP
-    if not low <= turned * rated / span <= high:
+    path, at_rated = table.path, turned * rated / span
+    if not low <= at_rated <= high:
+        usual = float(np.sqrt(low * high))
         raise Refusal(
             f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
-            f"{turned * rated / span:.3g} rad at the rated torque {rated:g} N.m, "
-            f"allowed are {low:g} to {high:g}: check the units of both columns, or "
-            "state the drive's rated torque",
+            f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
+            f"{drive.likely_unit(usual / at_rated, table.units, COLUMNS)}, or state the drive's rated torque",
             "rated_torque",
         )
     if line.loop_area is not None:

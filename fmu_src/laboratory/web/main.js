@@ -1,0 +1,183 @@
+/* The page: one joint at a time, its values, and what is redrawn when they change. */
+
+const at = (id) => document.getElementById(id);
+
+class Laboratory {
+  constructor(known) {
+    this.known = known;
+    this.file = null;
+    const models = [...new Set(known.modules.map((m) => m.name))];
+    at("model").append(...models.map((name) => element("option", { value: name }, `${known.modules.find((m) => m.name === name).title}: ${name}`)));
+    at("model").onchange = () => this.choose(at("model").value, 0);
+    at("set").onchange = () => this.choose(at("model").value, Number(at("set").value));
+    at("reset").onclick = () => this.take(this.set);
+    at("copy").onclick = () => this.copy();
+    at("save").onclick = () => this.save();
+    at("open").onchange = () => at("open").files[0] && this.read(at("open").files[0]);
+    at("forget").onclick = () => { this.file = null; at("forget").hidden = true; this.redraw(); };
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) this.read(event.dataTransfer.files[0]); });
+    addEventListener("resize", () => this.redraw());
+  }
+
+  /** All parameter sets of a model, with the module that runs them. */
+  sets(model) {
+    return this.known.modules.filter((m) => m.name === model).flatMap((about) => about.sets.map((set) => ({ about, set })));
+  }
+
+  async choose(model, index) {
+    const sets = this.sets(model), { about, set } = sets[index];
+    at("model").value = model;
+    at("set").replaceChildren(...sets.map((s, i) => element("option", { value: i }, `${s.set.name} (${s.about.law})`)));
+    at("set").value = index;
+    this.about = about;
+    this.set = set;
+    this.joint = await (about.running ??= Joint.of(about));
+    at("doc").textContent = `${about.doc}. Interface law ${about.law}.`;
+    const views = ["curves", "path", "map", "body"].map((id) => at(id));
+    views.forEach((view) => view.replaceChildren());
+    this.values = this.start(set);
+    this.end = about.ramp.end;
+    this.controls = controls(at("controls"), about, this.values, (name, value) => { this.values.set(name, value); this.redraw(); });
+    this.rampControl(about);
+    const warm = about.variables.some((v) => v.causality !== "output" && ["K", "degC"].includes(v.unit));
+    const bound = about.variables.filter((v) => v.bound).map((v) => v.name);
+    at("left-out").textContent = [warm ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
+    this.curves = new Curves(views[0], this.joint);
+    at("map-part").hidden = !about.map;
+    this.map = about.map && new PressureMap(views[2], this.joint);
+    this.body = new Body(views[3], this.joint, this);
+    this.path = new Path(views[1], this.joint, this);
+    this.draw();
+  }
+
+  /** Values of a parameter set; a load that the path does not move begins at a third of its ramp. */
+  start(set) {
+    const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
+    if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
+    return values;
+  }
+
+  rampControl(about) {
+    const v = about.variables.find((each) => each.name === about.ramp.input);
+    const ramp = { ...v, name: "ramp to", doc: `end of the ramp of ${v.name}: ${v.doc}`, span: [0.02 * about.ramp.end, 3 * about.ramp.end], log: true };
+    const control = new Control(ramp, this.end, (x) => { if (x > 0) { this.end = x; this.redraw(); } });
+    at("ramp").replaceChildren(control.node);
+  }
+
+  /** Other values, shown at the controls. */
+  take(set) {
+    this.values = this.start(set);
+    for (const name in this.controls) this.controls[name].show(this.values.get(name));
+    this.redraw();
+  }
+
+  redraw() {
+    this.asked ??= requestAnimationFrame(() => { this.asked = null; this.draw(); });
+  }
+
+  /** Everything again; the path comes last, as the joint stays at its end. */
+  draw() {
+    if (!this.joint) return;
+    const began = performance.now();
+    this.joint.messages.clear();
+    this.good = this.joint.begin(this.values);
+    document.body.classList.toggle("refused", !this.good);
+    if (this.good) {
+      const now = Object.fromEntries(this.about.variables.filter((v) => v.causality !== "parameter").map((v) => [v.name, this.joint.get(v.name)]));
+      this.map?.draw();
+      const said = new Set(this.joint.messages), stiffness = [], found = ramp(this.joint, this.values, this.end, () => stiffness.push(this.body.stiffness()));
+      this.curves.draw(this, found, now);
+      this.body.draw(found, stiffness);
+      this.published();
+      this.joint.messages = said; // of the sliders and of the path, not of a ramp that begins without load
+      this.path.draw();
+    }
+    this.tell();
+    this.took = performance.now() - began;
+  }
+
+  /** Published points beside what the joint gives with the present parameters and the point's own. */
+  published() {
+    at("points-part").hidden = !this.about.points.length;
+    const rest = new Map(this.values);
+    for (const name in this.set.inputs) rest.set(name, 0);
+    const rows = this.about.points.map((p) => {
+      const good = this.joint.begin(new Map([...rest, ...Object.entries(p.at)]));
+      const v = this.joint.variables.get(p.output), now = good ? this.joint.get(p.output) : NaN;
+      return [p.id, p.place, p.doc, v.name, p.value * v.factor, now * v.factor, unitText(v.shown), `${digits(Number((100 * (now / p.value - 1)).toFixed(6)), 2)} %`];
+    });
+    at("points").replaceChildren(table("Published points and this joint", ["point", "where", "role", "output", "published", "here", "unit", "difference"], rows));
+  }
+
+  /** What the joint said. */
+  tell() {
+    const lines = [...this.joint.messages];
+    at("said").replaceChildren(...lines.slice(0, 4).map((line) => element("p", {}, line)));
+    at("said").classList.toggle("error", !this.good);
+  }
+
+  say(text) {
+    at("done").textContent = text;
+  }
+
+  toml() {
+    return written(this.set, this.about, this.values);
+  }
+
+  async copy() {
+    try {
+      await navigator.clipboard.writeText(this.toml());
+      this.say("The parameters are on the clipboard.");
+    } catch {
+      this.say("The browser gives no clipboard here; save the file instead.");
+    }
+  }
+
+  save() {
+    const link = element("a", { href: URL.createObjectURL(new Blob([this.toml()], { type: "application/toml" })), download: `${this.about.joint}.toml` });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    this.say("The parameters are saved; jointfmu build --params takes the file.");
+  }
+
+  async read(file) {
+    try {
+      const text = await file.text();
+      if (file.name.toLowerCase().endsWith(".toml")) await this.readParameters(text, file.name);
+      else {
+        this.file = readCsv(text, file.name, this.known.units);
+        at("forget").hidden = false;
+        this.say(`${file.name}: ${this.file.columns[0].values.length} points beside the curves that measure the same.`);
+        this.redraw();
+      }
+    } catch (error) {
+      this.say(`${file.name}: ${error.message}`);
+    }
+  }
+
+  async readParameters(text, name) {
+    const found = readToml(text);
+    const models = this.known.modules.filter((m) => m.joint === found.joint);
+    const fitting = models.filter((m) => !found.law || m.law === found.law);
+    if (!fitting.length) throw new Error(`joint = ${found.joint}, law = ${found.law ?? "the first"}; the page has none of that`);
+    const about = fitting.find((m) => m.name === this.about.name) || fitting[0];
+    const others = bakedOtherwise(found, about.sets[0]);
+    await this.choose(about.name, this.sets(about.name).findIndex((s) => s.about === about));
+    for (const [key, value] of found.values) if (this.values.has(key)) this.values.set(key, value);
+    for (const key in this.controls) this.controls[key].show(this.values.get(key));
+    this.say(`${name}: ${found.name ?? "parameters"} shown.` + (others.length ? ` Baked into this page and other there: ${others.join(", ")}.` : ""));
+    this.redraw();
+  }
+}
+
+const laboratory = (async () => {
+  const known = await unpacked(at("content").textContent);
+  const lab = new Laboratory(known);
+  await lab.choose(known.modules[0].name, 0);
+  at("waiting").remove();
+  at("bench").hidden = false;
+  lab.draw();
+  return lab;
+})();
+laboratory.catch((error) => (at("waiting").textContent = `This browser does not run the page: ${error.message}`));

@@ -1,0 +1,100 @@
+"""The drives whose catalogue ships: their names, their numbers, and the command that lists them."""
+
+import csv
+import json
+from importlib.resources import files
+
+import pytest
+from conftest import refused_line
+
+from jointfmu import cli
+from jointfmu.joints.harmonic_drive import catalogue
+
+REFERENCE = files("jointfmu_models") / "reference"
+
+
+def rows(name):
+    text = (REFERENCE / f"harmonic_drive_catalogue_{name}.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
+
+
+def test_every_row_of_stiffness_has_its_drives():
+    names = {item.name for item in catalogue.items()}
+    for row in rows("stiffness"):
+        group = row["series"].removeprefix("HD ")
+        series = [group] if "/" not in group else [f"{s}-{row['size']}" for s in group.split("/")]
+        ratio = "100" if row["ratio"] == "80+" else row["ratio"]
+        for one in series:
+            found = catalogue.find(f"{one}-{ratio}")
+            assert found.name in names
+            assert found.numbers["K1"].value == float(row["K1_Nm_per_rad"])
+            assert found.numbers["K3"].value == float(row["K3"] or row["K2"])
+            assert found.numbers["K3"].kind == ("catalogue" if row["K3"] else "estimate")
+            assert found.numbers["T2"].value == float(row["T2_Nm"])
+
+
+def test_every_row_of_torque_is_told_as_printed():
+    """Size 11 has no row of stiffness."""
+    for row in rows("torque"):
+        name = f"{row['series']}-{row['size']}-{row['ratio']}"
+        if row["size"] != "11":
+            numbers = catalogue.find(name).numbers
+            assert numbers["rated_torque"][:2] == (float(row["rated_Nm"]), "catalogue")
+            assert numbers["peak_torque"][:2] == (float(row["repeated_peak_Nm"]), "catalogue")
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("CSG-17-100", "CSG-17-100"),
+        ("csf 25_80", "CSF-25-80"),
+        ("SHG-32-160-2SO", "SHG-32-160"),
+        ("RSF-8B-50", "RSF-8B-50"),
+        ("CSG-14-1000", None),
+    ],
+)
+def test_names(name, found):
+    if found is None:
+        with pytest.raises(ValueError, match="nearest are CSG-14-100"):
+            catalogue.find(name)
+    else:
+        assert catalogue.find(name).name == found
+
+
+def test_a_torque_that_is_not_printed_is_a_marked_estimate():
+    """The catalogue gives the CSG 30 % more torque than the CSF; an SHG is as strong as a CSG."""
+    strong = catalogue.find("CSG-17-100").numbers["rated_torque"]
+    weak = catalogue.find("CSF-17-100").numbers["rated_torque"]
+    assert (weak.kind, strong.kind) == ("estimate", "catalogue")
+    assert weak.value == pytest.approx(strong.value / 1.3)
+    like = catalogue.find("SHG-14-50").numbers["rated_torque"]
+    assert (like.value, like.kind, like.source) == (7.0, "estimate", "that of CSG-14-50")
+    assert "rated_torque" not in catalogue.find("RSF-3C-100").numbers
+
+
+def test_the_command(capsys):
+    assert cli.main(["catalogue", "csg-17"]) == 0
+    head, *lines, foot = capsys.readouterr().out.splitlines()
+    assert "hysteresis_loss [arcmin]" in head
+    assert [line.split()[0] for line in lines] == [
+        "CSG-17-30",
+        "CSG-17-50",
+        "CSG-17-80",
+        "CSG-17-100",
+        "CSG-17-120",
+    ]
+    assert lines[3].split()[-3:] == ["31", "70", "~1"]
+    assert foot.startswith("~ is an estimate")
+
+
+def test_json(capsys):
+    assert cli.main(["catalogue", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert len(found) == len(catalogue.items()) > 300
+    assert all(
+        n["kind"] in ("catalogue", "estimate") and n["source"] for d in found for n in d["numbers"].values()
+    )
+
+
+def test_an_unknown_word_is_refused(capsys):
+    assert "'nope'" in refused_line(capsys, "catalogue", "nope")

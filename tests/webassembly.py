@@ -1,0 +1,90 @@
+"""The laboratory's modules in a WebAssembly runtime, and the native FMUs of the same parameter files."""
+
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from jointfmu_fmu_src.laboratory.modules import Module
+from jointfmu_fmu_src.native.compiler import file_name, libraries
+from jointfmu_fmu_src.native.description import fmi3_xml
+from jointfmu_fmu_src.native.generate import sources, token
+
+
+def native_fmu(module: Module, folder: Path) -> Path:
+    """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
+    name, file = module.model.name, module.files[0]
+    files = sources(name, file)
+    units = [unit for unit in files if unit.endswith(".c") and unit != "fmi2.c"]
+    here = fmpy.platform_tuple
+    (library,) = libraries(name, files, units, [here]).values()
+    folder.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, token(files), "tunable"))
+        archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
+    return folder / f"{name}.fmu"
+
+
+class Instance:
+    """An instance in wasmtime, with the methods of `conftest.Fmu`."""
+
+    def __init__(self, module: Module, binary: bytes) -> None:
+        import wasmtime
+
+        self.store = wasmtime.Store()
+        compiled = wasmtime.Module(self.store.engine, binary)
+        self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
+        self("_initialize")
+        self.it = self("lab_new")
+        model = module.model
+        self.outputs = [v.name for v in model.outputs]
+        names = [*(v.name for v in model.inputs), *self.outputs, *model.parameter_fields()]
+        self.references = {name: i for i, name in enumerate(names, start=1)}
+
+    def __call__(self, function: str, *arguments: Any) -> Any:
+        return self.exports[function](self.store, *arguments)
+
+    def start(self, values: Mapping[str, Any]) -> bool:
+        """From rest with parameters and inputs; whether they are accepted."""
+        self("lab_reset", self.it)
+        self.set(values)
+        return self("lab_begin", self.it) == 0
+
+    def set(self, values: Mapping[str, Any]) -> None:
+        for name, value in values.items():
+            self("lab_set", self.it, self.references[name], float(value))
+
+    def step(self) -> bool:
+        return self("lab_step", self.it, 1.0) == 0
+
+    def get(self) -> dict[str, float]:
+        return {name: self("lab_get", self.it, self.references[name]) for name in self.outputs}
+
+    def derivative(self, output: str, known: str) -> float:
+        return self("lab_derivative", self.it, self.references[output], self.references[known])
+
+    @property
+    def said(self) -> list[str]:
+        """Messages since they were last asked for."""
+        at, memory = self("lab_said"), self.exports["memory"]
+        return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
+
+
+def random_values(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+    """Parameters around those of the first file, some so far off that they are refused; Booleans too if
+    `switched`."""
+    found: dict[str, Any] = {}
+    flat = module.files[0].flat
+    for name, item in module.model.parameter_fields().items():
+        value, meta = flat[name], item.metadata
+        if isinstance(value, bool):
+            found[name] = bool(rng.integers(2)) if switched else value
+        elif meta["whole"]:
+            found[name] = value
+        else:
+            width = 0.02 * (meta["interval"].high - meta["interval"].low)
+            moved = value * np.exp(rng.normal(0.0, 0.15))
+            found[name] = float(value + rng.uniform(-width, width) if np.isfinite(width) else moved)
+    return found
