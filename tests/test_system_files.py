@@ -45,7 +45,7 @@ def second(model: str) -> str:
             [('model = "HarmonicDriveSpring"', 'model = "HarmonicDrive"')],
             "drive.model = 'HarmonicDrive', allowed",
         ),
-        ([("hysteresis_loss", "hysteresis")], "drive: unknown name 'hysteresis', allowed are mu,"),
+        ([("hysteresis_loss", "hysteresis")], "drive: unknown name 'hysteresis', allowed are"),
         (
             [("[link]\n", "[link]\nlength = 3\n")],
             "link.length = 3, expected a table { value, unit, kind, source }",
@@ -258,7 +258,7 @@ def test_the_tip_is_where_the_links_lead() -> None:
 
 
 def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
-    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; the fit of the law leaves 1 %."""
+    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners leave 0.5 %."""
     rows = {
         "base": (29, 108, 67e3, 110e3),
         "shoulder": (54, 196, 130e3, 200e3),
@@ -273,7 +273,7 @@ def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
         assert file is not None
         midline = HarmonicDriveSpring.of(replaced(file.values, {"hysteresis_loss": 0.0}))
         angle = float(midline.windup(float(second_))["phi_rel"])
-        assert angle == pytest.approx(first / k1 + (second_ - first) / k2, rel=0.01)
+        assert angle == pytest.approx(first / k1 + (second_ - first) / k2, rel=5e-3)
 
 
 def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
