@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmu_src import ringing, ssp
+from jointfmu_fmu_src import cosimulation, ringing, ssp
 from jointfmu_fmu_src.checks import default_ramp
 from jointfmu_fmu_src.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_fmu_src.joints.harmonic_drive import figures
 from jointfmu_fmu_src.python.build import runtime_sources
+from jointfmu_fmu_src.report import motion
 from jointfmu_fmu_src.report.systems import SIZE, draw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -44,6 +45,17 @@ def main() -> None:
     picture = figures.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
+    robot(IMAGES / "six_axis_robot.png")
+
+
+def robot(path: Path) -> None:
+    """Draw what the robot of the systems does."""
+    found = system("six_axis_robot")
+    with TemporaryDirectory() as folder:
+        ssp.build_systems(Path(folder), [found])
+        run = cosimulation.simulate(found, Path(folder) / "fmi2")
+    with plots.drawing(path, motion.SIZE) as canvas:
+        motion.draw(canvas, found, run)
 
 
 def resonance(path: Path) -> None:

@@ -38,15 +38,11 @@ def build_systems(
     """
     chosen = list(systems().values()) if wanted is None else list(wanted)
     if parameters:
-        kinds = {joint.kind for system in chosen for joint in system.joints.values()}
+        kinds = {kind for system in chosen for kind in system.kinds}
         if parameters.joint not in kinds:
             allowed = ", ".join(sorted(kinds))
             raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
-        chosen = [
-            system.with_joint(parameters)
-            for system in chosen
-            if parameters.joint in {joint.kind for joint in system.joints.values()}
-        ]
+        chosen = [system.with_joint(parameters) for system in chosen if parameters.joint in system.kinds]
     used: dict[str, Component] = {}
     for system in chosen:
         wires(system)

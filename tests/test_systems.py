@@ -323,9 +323,18 @@ def test_an_archive_is_complete_and_its_connections_fit(
     described = {n: content for n, content in members.items() if n.endswith(".fmu")}
     assert {f"resources/{fmu}.fmu" for fmu in fmus.values()} == set(described)
     fmi = {"1.0": b'fmiVersion="2.0"', "2.0": b'fmiVersion="3.0"'}[version]
-    for content in described.values():
+    variables = {}
+    for n, content in described.items():
         with zipfile.ZipFile(io.BytesIO(content)) as fmu:
-            assert fmi in fmu.read("modelDescription.xml")
+            description = fmu.read("modelDescription.xml")
+        assert fmi in description
+        read = read_model_description(io.BytesIO(content))
+        variables[Path(n).stem] = {v.name: v for v in read.modelVariables}
+    for own, fmu_name in fmus.items():
+        for parameter in etree.fromstring(members[f"parameters/{own}.ssv"]).iter("{*}Parameter"):
+            typed, variable = parameter[0], variables[fmu_name][parameter.get("name")]
+            assert etree.QName(typed).localname == variable.type
+            assert (typed.get("unit") or None) == (variable.unit or None)
 
 
 @ARCHIVES

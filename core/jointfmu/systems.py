@@ -93,6 +93,11 @@ class System:
     sources: Mapping[str, str] = field(default_factory=dict)
 
     @property
+    def kinds(self) -> set[str]:
+        """Kinds of the joints that have the parameters of their model's FMU."""
+        return {joint.kind for joint in self.joints.values() if not joint.own}
+
+    @property
     def joints(self) -> dict[str, Component]:
         """The joints by name."""
         return {name: part for name, part in self.components.items() if part.file}
@@ -107,18 +112,10 @@ class System:
         }
 
     def with_joint(self, file: ParameterFile) -> "System":
-        """The same system with these parameters for all joints of their kind.
-
-        Raises ValueError if there is none.
-        """
-        kinds = sorted({joint.kind for joint in self.joints.values()})
-        if file.joint not in kinds:
-            raise ValueError(
-                f"{self.name}: no joint is of the kind {file.joint!r}, allowed are {', '.join(kinds)}"
-            )
+        """The same system with these parameters for all joints of their kind that have none of their own."""
         parts = dict(self.components)
         for name, part in self.joints.items():
-            if part.kind == file.joint:
+            if part.kind == file.joint and not part.own:
                 given = {key: value for key, value in part.values.items() if key not in part.state}
                 parts[name] = replace(part, file=file.with_values(given, "user", f"system {self.name}"))
         return replace(self, components=parts)

@@ -156,8 +156,7 @@ def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
     classes = {}
     for system in systems().values():
         for joint in joints:
-            if joint.kind.name in {part.kind for part in system.joints.values() if not part.own}:
-                system = system.with_joint(joint.file)
+            system = system.with_joint(joint.file)
         classes[model_name(system)] = system_model(
             system, shared, partial(_known, by_kind), f"{NAME}.Examples"
         )
