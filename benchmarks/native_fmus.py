@@ -23,7 +23,7 @@ from time import perf_counter
 import fmpy
 import numpy as np
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native import compiler, generate
+from jointfmu_fmu_src.native import compiler, data, generate
 
 from jointfmu.host import Fmi2
 from jointfmu.joints import MODELS
@@ -100,20 +100,18 @@ def pass_through(name: str) -> dict[str, str]:
     shared = (*generate.COMMON, "joint", "variables", *NATIVE)
     files = {p.name: p.read_text(encoding="utf-8") for p in generate.RUNTIME.iterdir() if p.stem in shared}
     rows = [
-        ("time", 0.0),
-        *((f"u{i}", 0.0) for i in range(inputs)),
-        *((f"y{i}", 0.0) for i in range(outputs)),
+        "time",
+        *(f"u{i}" for i in range(inputs)),
+        *(f"y{i}" for i in range(outputs)),
     ]
     any_number = '"1", "", "(-inf, inf)"'
-    texts = [
-        f'{{"{v}", {any_number}, {start}, -INFINITY, INFINITY, 1, 1, 0, 0}}'
-        for v, start in (*rows, ("gain", 1.0))
-    ]
+    texts = [f'{{"{v}", {any_number}, -INFINITY, INFINITY, 1, 1, 0, 0}}' for v in (*rows, "gain")]
+    own = data.block(name, f"{{{name}}}", [*(0.0 for _ in rows), 1.0])
     return files | {
         "joint.c": (HOSTS / "passthrough" / "joint.c").read_text(encoding="utf-8"),
-        "model.h": f'#define MODEL_NAME "{name}"\n#define MODEL_TOKEN "{{{name}}}"\n'
-        '#define MODEL_VERSION "1"\n'
-        f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
+        "data.h": own.header(),
+        "data.c": own.source(),
+        "model.h": f"enum {{ N_INPUTS = {inputs}, N_OUTPUTS = {outputs}, N_PARAMETERS = 1 }};\n",
         "variables.c": '#include "variables.h"\n\n#include <math.h>\n\n'
         f"const Variable variables[N_VALUES] = {{{', '.join(texts)}}};\n"
         "const unsigned char depends[N_OUTPUTS][N_INPUTS] = {{1}};\n",
@@ -135,7 +133,7 @@ def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
         outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
         files = sources(name) if model else pass_through(name)
         for flavour in NATIVE:
-            units = generate.exported(list(files), flavour[-1])
+            units = compiler.exported(list(files), flavour[-1])
             file = folder / flavour / f"{name}.so"
             file.parent.mkdir(exist_ok=True)
             made = compiler.libraries(LOOPS.get(name, name), files, units, [PLATFORM])

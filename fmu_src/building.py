@@ -7,15 +7,16 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 
+from .naming import checked_name
 from .native.build import build_fmi2, build_fmi3
 from .python.build import build as build_python
 from .xml_parts import VARIABILITIES
 
-FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str], Path]] = {
+FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str, str], Path]] = {
     "fmi2": build_fmi2,
     "fmi3": build_fmi3,
     # its parameters are fixed in any case
-    "python": lambda name, parameters, out, _: build_python(name, parameters, out),
+    "python": lambda name, parameters, out, _, alias: build_python(name, parameters, out, alias),
 }
 
 
@@ -25,13 +26,16 @@ def build(
     parameters: ParameterFile | None,
     out: Path,
     variability: str = VARIABILITIES[0],
+    alias: str | None = None,
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
 
     variability : of the parameters of native FMUs, one of VARIABILITIES
+    alias       : the name that one FMU has instead of its own
 
-    Raises ValueError for an unknown name or flavour, a parameter file of another joint, or a folder
-    that cannot be written, before anything is built where that can be known.
+    Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
+    no identifier or for several FMUs, or a folder that cannot be written, before anything is built where
+    that can be known.
     """
     for noun, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
         if unknown := [name for name in given if name not in allowed]:
@@ -39,6 +43,10 @@ def build(
     if not names:
         joint = parameters.joint if parameters else None
         names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
+    if alias is not None and len(set(names)) != 1:
+        raise ValueError(f"name {alias!r} is for one FMU, expected one of {', '.join(names)}")
+    if alias is not None:
+        checked_name(alias)
     for name in names:
         if parameters:
             MODELS[name].of(parameters.joint, parameters.values)
@@ -46,5 +54,5 @@ def build(
     built = []
     for flavour, name in track(jobs, "build", len(jobs)):
         file = parameters or default(MODELS[name].joint)
-        built.append(FLAVOURS[flavour](name, file, out / flavour, variability))
+        built.append(FLAVOURS[flavour](name, file, out / flavour, variability, alias or ""))
     return built

@@ -1,6 +1,7 @@
 """The folder of what is an FMU's own: that of its joint, or of the joints' partners."""
 
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
@@ -16,7 +17,8 @@ def part(model: Model, builder: str) -> ModuleType | None:
     """What a builder finds in the folder, the module of the builder's name; None if there is none."""
     if model.joint in KINDS:
         return joints.part(KINDS[model.joint], builder)
-    return import_module(f".{_PARTNERS}.{builder}", __package__)
+    name = f"{__package__}.{_PARTNERS}.{builder}"
+    return import_module(name) if find_spec(name) else None
 
 
 def own_folder(model: Model) -> Path:

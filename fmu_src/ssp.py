@@ -53,7 +53,8 @@ def build_systems(
     built = []
     for fmu, one, version in track(jobs, "build FMUs of systems", len(jobs)):
         file = one.file or partner_parameters(one.model)
-        built.append(_build(fmu, one.model, file, out / f"fmi{version}", version, variability))
+        alias = "" if fmu == one.model else fmu
+        built.append(build(one.model, file, out / f"fmi{version}", version, variability, alias))
     return built + [path for system in chosen for path in pack_system(system, out)]
 
 
@@ -125,12 +126,3 @@ def fmu_names(system: System) -> dict[str, str]:
         if not same:
             variants.append((component.model, baked, found[name]))
     return found
-
-
-def _build(fmu: str, model: str, file: ParameterFile, out: Path, version: str, variability: str) -> Path:
-    """Write `out/fmu.fmu` of a model."""
-    if fmu == model:
-        return build(model, file, out, version, variability)
-    with workshop(out / f"{fmu}.fmu") as work:
-        build(model, file, work, version, variability).rename(work / f"{fmu}.fmu")
-    return out / f"{fmu}.fmu"

@@ -62,7 +62,10 @@ def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
         (("footprint", "compute", "absent.toml", "--preload", "9e3"), "skfem"),
     ],
 )
-def test_what_is_missing_is_named_in_one_line(words: tuple[str, ...], package: str, tmp_path: Path) -> None:
+def test_what_is_missing_is_named_in_one_line(
+    words: tuple[str, ...], package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     done = bare(tmp_path, *words)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert package in done.stderr

@@ -12,24 +12,23 @@ import zipfile
 from collections.abc import Callable
 from contextlib import redirect_stdout, suppress
 from dataclasses import replace
-from functools import partial
 from html.parser import HTMLParser
 from pathlib import Path
 from shutil import copytree, rmtree
 
 import pytest
+from browser import PROGRAM, browser
 from conftest import refused_line
-from fmpy import platform_tuple, read_model_description
+from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native import build as native_build
-from jointfmu_fmu_src.native import compiler, generate
+from jointfmu_fmu_src.native import generate
 from jointfmu_fmu_src.partners import PARTNERS
 from pythonfmu import FmuBuilder
 
 from jointfmu import cli, ramp, systems, validation
-from jointfmu.joints import MODELS
+from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump
 
 pytestmark = pytest.mark.slow
@@ -103,11 +102,8 @@ def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
     assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
 
 
-def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> None:
     """All flavours list them, use them without being told, and the page says so."""
-    monkeypatch.setattr(native_build, "libraries", partial(compiler.libraries, platforms=(platform_tuple,)))
     file = replace(default("bolted_joint"), inputs={"preload": 9e3})
     model = MODELS["BoltedJoint"]
     loaded = model.evaluate(model.spring(file.values), {v.name: file.start(v.name) for v in model.inputs})
@@ -217,12 +213,14 @@ def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None
 
 
 def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+
     def swallowing(*_: object) -> dict[str, str]:
         with suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         return {}
 
-    monkeypatch.setattr(generate, "sources", swallowing)
+    monkeypatch.setattr(generate, "code", swallowing)
     with pytest.raises(KeyboardInterrupt):
         build(["GearContact"], ["fmi3"], None, tmp_path / "new")
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -232,6 +230,7 @@ def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pyt
 def test_a_refused_build_leaves_no_folder(
     tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     monkeypatch.setitem(sys.modules, "ziglang", None)
     line = refused_line(capsys, "build", "GearContact", "--out", tmp_path / "new" / "dist")
     assert "the package ziglang is missing" in line
@@ -346,6 +345,32 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     counted = validation.summary(validation.validate())  # the command, the job and the page count alike
     assert f"compared: {counted}; " in out
     assert f"<p>{counted}.</p>" in page
+
+
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+def test_the_report_can_be_read_on_a_phone(job: tuple[Path, str]) -> None:
+    """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
+    with browser() as shown:
+        shown.shape(390, 800, phone=True)
+        shown.open(job[0] / "report" / "index.html")
+        rows = 0
+        for name in KINDS:
+            shown.run(f"document.getElementById('tab-{name}').click()")
+            panel = f"document.getElementById('of-{name}')"
+            assert not shown.run(f"{panel}.hidden")
+            assert shown.run("document.querySelectorAll('[role=tabpanel]:not([hidden])').length") == 1
+            drawn = shown.run(
+                f"[...{panel}.querySelectorAll('svg.plot')].map((s) => s.querySelector('path') !== null)"
+            )
+            assert drawn
+            assert all(drawn)
+            assert shown.run("document.documentElement.scrollWidth") <= 390
+            sizes = f"[...{panel}.querySelectorAll('*')].map((e) => parseFloat(getComputedStyle(e).fontSize))"
+            assert shown.run(f"Math.min(...{sizes})") >= 11.0
+            rows += (
+                shown.run(f"{panel}.querySelectorAll('[aria-label=\"Checks of the ramps\"] tr').length") - 1
+            )
+        assert f"; {rows} checks of the ramps" in job[1]
 
 
 def test_the_main_job_fails_when_a_check_misses(

@@ -163,6 +163,26 @@ def test_arrow_keys_and_the_pointer_draw_a_path(shown: Browser) -> None:
 
 
 @needed
+def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
+    choose(shown, next(iter(MODELS)))
+    asked = "laboratory.then((lab) => lab.curves.panels[0].chart.zoom)"
+    box = shown.run(
+        "laboratory.then((lab) => { const { svg } = lab.curves.panels[0].chart; svg.scrollIntoView(); "
+        "svg.focus(); const b = svg.getBoundingClientRect(); return [b.x, b.y, b.width, b.height] })"
+    )
+    for kind, part in (("mousePressed", 0.4), ("mouseReleased", 0.7)):
+        where = {"x": box[0] + part * box[2], "y": box[1] + 0.5 * box[3]}
+        shown.call("Input.dispatchMouseEvent", type=kind, button="left", buttons=1, clickCount=1, **where)
+    low, high = shown.run(asked)
+    assert 0.0 < low < high
+    shown.call("Input.dispatchKeyEvent", type="keyDown", key="+", text="+")
+    inner = shown.run(asked)
+    assert inner[1] - inner[0] == pytest.approx(0.5 * (high - low))
+    shown.call("Input.dispatchKeyEvent", type="keyDown", key="Escape")
+    assert shown.run(asked) is None
+
+
+@needed
 def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path: Path) -> None:
     for module in modules():
         name, first = module.model.name, module.files[0]

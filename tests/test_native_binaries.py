@@ -190,6 +190,7 @@ def test_another_process_with_a_cold_cache_builds_the_same_bytes(
     """One FMU has the whole runtime; that sources repeat for every FMU is tested beside descriptions."""
     name = next(iter(MODELS))
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     monkeypatch.setenv("PYTHONHASHSEED", "7")
     script = "import sys; from jointfmu import cli; sys.exit(cli.main(sys.argv[1:]))"
     done = run_host(script, "build", name, "--flavour", *VERSIONS, "--out", tmp_path / "out")
@@ -237,7 +238,10 @@ def test_what_does_not_compile_is_named_in_one_line(text: str, part: str) -> Non
 
 
 @pytest.mark.parametrize("package", ["ziglang", "casadi"])
-def test_a_missing_package_is_one_line_that_says_what_to_install(tmp_path: Path, package: str) -> None:
+def test_a_missing_package_is_one_line_that_says_what_to_install(
+    tmp_path: Path, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     done = run_host(WITHOUT_PACKAGE, package, tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("\n") == 1
@@ -253,7 +257,7 @@ def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.Monk
     def fail(*arguments: object) -> None:
         raise RuntimeError("law.c:1:1: error: no")
 
-    monkeypatch.setattr("jointfmu_fmu_src.native.build.libraries", fail)
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.part_of", fail)
     with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
         build(["GearContact"], ["fmi3"], None, tmp_path)
     assert sorted(tmp_path.rglob("*")) == [built.parent, built]
@@ -264,7 +268,7 @@ def test_an_unwritable_place_is_refused_before_anything_is_compiled(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setattr("jointfmu_fmu_src.native.build.libraries", lambda *arguments: pytest.fail("compiled"))
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.part_of", lambda *arguments: pytest.fail("compiled"))
     with pytest.raises(ValueError, match="cannot be written") as raised:
         build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
     assert "\n" not in str(raised.value)

@@ -5,20 +5,17 @@ FMI 2.0 and 3.0 are tested alike, co-simulation and model exchange wherever they
 
 import json
 import math
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import Fmu
-from fmpy import platform_tuple, simulate_fmu
+from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES, RANGES, STATE, TUNED, law, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native import build as native_build
-from jointfmu_fmu_src.native import compiler
 from natives import VERSIONS, Host, attempt, close, near, package, settle, slope
 
 from jointfmu.joints import MODELS
@@ -345,12 +342,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 @pytest.mark.parametrize(
     ("name", "changes"), [(name, changes) for name, case in CASES.items() for changes in case.baked]
 )
-def test_a_parameter_file_is_baked_in(
-    host: Host, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, changes: dict[str, Any]
-) -> None:
-    # for this machine only, which is quicker; the sources are those of every platform
-    here = partial(compiler.libraries, platforms=(platform_tuple,))
-    monkeypatch.setattr(native_build, "libraries", here)
+def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
     file = default(MODELS[name].joint).with_values(changes, "user", "test")
     build([name], ["fmi3"], file, tmp_path)
     instance, plain = host(name, folder=tmp_path).start(STATE[name]), host(name).start(STATE[name])

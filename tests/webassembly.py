@@ -65,6 +65,12 @@ class Instance:
     def derivative(self, output: str, known: str) -> float:
         return self("lab_derivative", self.it, self.references[output], self.references[known])
 
+    def map(self) -> Any:
+        """Rows (n, 4) of x, y, share and value over the contact."""
+        at, memory = self("lab_map", self.it), self.exports["memory"]
+        n = self("lab_map_size")
+        return np.frombuffer(memory.read(self.store, at, at + 32 * n)).reshape(n, 4)
+
     @property
     def said(self) -> list[str]:
         """Messages since they were last asked for."""

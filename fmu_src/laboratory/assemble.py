@@ -50,11 +50,12 @@ def page() -> str:
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
     return template(_FOLDER / "page.html").render(
         version=__version__,
-        style=_read("style.css"),
-        script="\n".join(_read(f"{name}.js") for name in _SCRIPTS),
+        style=web_file("style.css"),
+        script="\n".join(web_file(f"{name}.js") for name in _SCRIPTS),
         content=b64encode(content).decode(),
     )
 
 
-def _read(name: str) -> str:
+def web_file(name: str) -> str:
+    """A file of the page as text; the report takes its charts from here."""
     return (_FOLDER / name).read_text(encoding="utf-8")

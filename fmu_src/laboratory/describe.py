@@ -156,10 +156,14 @@ def _set(file: ParameterFile, model: Model) -> dict[str, Any]:
 
 def _points(model: Model, bench: Bench) -> Iterator[dict[str, Any]]:
     outputs = {v.name: v for v in model.outputs}
+    known = {v.name for v in model.inputs} | set(model.parameter_fields())
     for paper in KINDS[model.joint].papers:
         for point in points(paper):
             shown = bench.points.get(point.quantity)
             if shown is None or not set(point.where) <= set(shown.arguments):
+                continue
+            at = {shown.arguments[name]: value for name, value in point.where.items()}
+            if not set(at) <= known:  # a law without this parameter
                 continue
             factor = units.factor(point.unit, outputs[shown.output].unit)
             yield {
@@ -169,7 +173,7 @@ def _points(model: Model, bench: Bench) -> Iterator[dict[str, Any]]:
                 "doc": ROLES[point.role],
                 "output": shown.output,
                 "value": factor * float(point.value),
-                "at": {shown.arguments[name]: value for name, value in point.where.items()},
+                "at": at,
             }
 
 

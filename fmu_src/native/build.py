@@ -1,6 +1,7 @@
 """Build the native flavours: FMI 2.0 and FMI 3.0, one set of C sources per joint, five platforms."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from jointfmu.joints import MODELS
@@ -10,31 +11,43 @@ from jointfmu.parameters import ParameterFile
 from ..archive import pack, workshop
 from ..partners import PARTNERS
 from ..xml_parts import VARIABILITIES
-from .compiler import file_name, libraries, universal
+from .binary import finished
+from .compiler import exported, file_name, universal
+from .data import data_of, placeholder, split
+from .description import build_description, fmi2_xml, fmi3_xml
+from .kept import part_of
+from .page import documentation
+from .terminals import terminals_and_icons
 
 
-def build_fmi2(name: str, parameters: ParameterFile, out: Path, variability: str) -> Path:
+def build_fmi2(name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "") -> Path:
     """Write `out/name.fmu` of FMI 2.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "2", variability)
+    return build(name, parameters, out, "2", variability, alias)
 
 
-def build_fmi3(name: str, parameters: ParameterFile, out: Path, variability: str) -> Path:
+def build_fmi3(name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "") -> Path:
     """Write `out/name.fmu` of FMI 3.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "3", variability)
+    return build(name, parameters, out, "3", variability, alias)
 
 
 def build(
-    name: str, parameters: ParameterFile, out: Path, version: str, variability: str = VARIABILITIES[0]
+    name: str,
+    parameters: ParameterFile,
+    out: Path,
+    version: str,
+    variability: str = VARIABILITIES[0],
+    alias: str = "",
 ) -> Path:
     """Write `out/name.fmu`; an existing file is replaced in one go. Equal content gives an equal file.
 
     variability : of the parameters, one of VARIABILITIES
+    alias       : the name that the FMU has instead of its own
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
     """
-    model = (MODELS | PARTNERS)[name].of(parameters.joint, parameters.values)
-    target = out / f"{name}.fmu"
+    model = replace((MODELS | PARTNERS)[name].of(parameters.joint, parameters.values), alias=alias)
+    target = out / f"{model.title}.fmu"
     with workshop(target) as work:
         pack(_members(model, parameters, version, variability), work / target.name)
     return target
@@ -42,30 +55,29 @@ def build(
 
 def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
     """{path: content} of an FMU."""
-    from .description import build_description, fmi2_xml, fmi3_xml
-    from .generate import exported, sources, token
-    from .interrupt import interrupt_after
-    from .page import documentation
-    from .terminals import terminals_and_icons
-
-    with interrupt_after():
-        both = sources(model.name, parameters)
-    units = exported(list(both), version)
+    given = split(model, parameters)
+    part = part_of(model, parameters, given)
+    data, before = data_of(model, parameters, given, part.sources), placeholder(model, given)
+    both = part.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
+    units = exported(sorted(both), version)
     own = {path: text for path, text in both.items() if path in units or path.endswith(".h")}
-    built = libraries(model.name, both, units)
+    built = {
+        platform: finished(library, before, data, model.title)
+        for platform, library in part.libraries[version].items()
+    }
     icons = terminals_and_icons(model)
     if version == "2":
         top = {
-            "modelDescription.xml": fmi2_xml(model, parameters, token(both), units, variability),
+            "modelDescription.xml": fmi2_xml(model, parameters, data.token, units, variability),
             "model.png": icons["icon.png"],
         }
-        binaries = _fmi2_binaries(model.name, built)
+        binaries = _fmi2_binaries(model.title, built)
     else:
         top = {
-            "modelDescription.xml": fmi3_xml(model, parameters, token(both), variability),
+            "modelDescription.xml": fmi3_xml(model, parameters, data.token, variability),
             "sources/buildDescription.xml": build_description(model, units),
         }
-        binaries = {f"{p}/{file_name(model.name, p)}": content for p, content in built.items()}
+        binaries = {f"{p}/{file_name(model.title, p)}": content for p, content in built.items()}
     return (
         top
         | _below("binaries", binaries)

@@ -6,7 +6,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from os import cpu_count
@@ -35,23 +35,28 @@ _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "ut
 
 
 def libraries(
-    name: str, sources: Mapping[str, str], units: Sequence[str], platforms: Sequence[str] = tuple(TARGETS)
+    name: str,
+    sources: Mapping[str, str],
+    units: Sequence[str],
+    platforms: Sequence[str] = tuple(TARGETS),
+    stem: str = "",
 ) -> dict[str, bytes]:
     """{platform: shared library} of the .c files `units`, with FMI's functions exported.
 
-    `sources` are all files by flat name, FMI's headers come from fmpy. What units of the same sources
-    share is compiled once, in this and in later builds. Equal sources give equal bytes.
+    `sources` are all files by flat name, FMI's headers come from fmpy; `stem` is the libraries' file
+    name. What units of the same sources share is compiled once, in this and in later builds. Equal sources
+    give equal bytes.
 
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
     """
-    options = {platform: _options(platform, name) for platform in platforms}
+    options = {platform: _options(platform, stem or name) for platform in platforms}
     own = Path(__file__).with_name("windows.c")
     folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
 
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
-            file = Path(out) / file_name(name, platform)
+            file = Path(out) / file_name(stem or name, platform)
             _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, "-o", str(file))
             return file.read_bytes()
 
@@ -66,6 +71,12 @@ def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> 
         file = Path(out) / f"{name}.wasm"
         _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
         return file.read_bytes()
+
+
+def exported(files: Iterable[str], version: str) -> list[str]:
+    """C files of one FMI version."""
+    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    return [name for name in files if name.endswith(".c") and name != other]
 
 
 def file_name(name: str, platform: str) -> str:

@@ -83,7 +83,7 @@ def fmi2_xml(
     root = _root(model, "2.0", "guid", token)
     root.set("numberOfEventIndicators", "0")
     for kind, flags in _FMI2_INTERFACES.items():
-        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.rest and kind == "ModelExchange":
             interface.set("completedIntegratorStepNotNeeded", "false")
         files = SubElement(interface, "SourceFiles")
@@ -107,7 +107,7 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: s
     variables = [_TIME, *listed(model, parameters)]
     root = _root(model, "3.0", "instantiationToken", token)
     for kind, flags in _FMI3_INTERFACES.items():
-        interface = SubElement(root, kind, {"modelIdentifier": model.name} | flags)
+        interface = SubElement(root, kind, {"modelIdentifier": model.title} | flags)
         if model.rest and kind == "ModelExchange":
             interface.set("needsCompletedIntegratorStep", "true")
     root.append(unit_definitions(variables))
@@ -140,7 +140,7 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
     """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     for platform in (None, "x86_64-linux", "aarch64-linux"):
-        build = SubElement(root, "BuildConfiguration", modelIdentifier=model.name)
+        build = SubElement(root, "BuildConfiguration", modelIdentifier=model.title)
         files = SubElement(build, "SourceFileSet", language="C11")
         for name in sources:
             SubElement(files, "SourceFile", name=name)
@@ -157,7 +157,9 @@ def serialized(root: Element) -> bytes:
 
 
 def _root(model: Model, version: str, token_name: str, token: str) -> Element:
-    root = Element("fmiModelDescription", {"fmiVersion": version, "modelName": model.name, token_name: token})
+    root = Element(
+        "fmiModelDescription", {"fmiVersion": version, "modelName": model.title, token_name: token}
+    )
     root.attrib |= {
         "description": model.doc,
         "author": "the jointfmu authors",

@@ -12,9 +12,10 @@ import casadi as ca
 
 from jointfmu.curve import closing
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile
 from jointfmu.powerlaw import Power, Smooth, Spots, Term
 from jointfmu.quantity import Limit, build
+
+from .data import Split
 
 Symbols = Sequence[Any]
 
@@ -33,7 +34,7 @@ class Function:
 class Graph:
     """All functions of an FMU, and the parameters they depend on.
 
-    theta     : symbols of the parameters, in the order of the variable list
+    theta     : symbols of the parameters, in the order of the variable list, then of those that are fixed
     constants : expressions of theta that the functions use; c is theta and then these
     """
 
@@ -74,10 +75,8 @@ class Graph:
         return ca.vertcat(*self.theta.values(), *self.symbols)
 
 
-def graph(
-    model: Model, parameters: ParameterFile, functions: Callable[["Graph", Model], None], tabulated: bool
-) -> Graph:
-    """All functions of an FMU; parameters that it does not expose have their value.
+def graph(model: Model, given: Split, functions: Callable[["Graph", Model], None], tabulated: bool) -> Graph:
+    """All functions of an FMU, of the parameters that are exposed or data; the others have their value.
 
     functions : adds those of the joint
     tabulated : whether it has a curve, and so ends
@@ -85,8 +84,8 @@ def graph(
     before = ca.GlobalOptions.getNumpyMode()
     ca.GlobalOptions.setNumpyMode(1)
     try:
-        theta = {name: ca.SX.sym(name) for name in model.parameter_fields()}
-        joint = build(model.parameters, {**parameters.flat, **theta})
+        theta = {name: ca.SX.sym(name) for name in (*given.exposed, *given.fixed)}
+        joint = build(model.parameters, {**given.code, **theta})
         made = Graph(theta, joint, limits(joint))
         functions(made, model)
         if tabulated:

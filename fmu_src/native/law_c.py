@@ -112,7 +112,7 @@ def _tabulated(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
         array("static const Warning warnings[N_WARNINGS]", watched),
         *(f"extern const double {declared};" for declared in given.arrays),
         "",
-        "/* y = name(x); c are the constants: the parameters, then what law_constants computes of them. */",
+        "/* y = name(x); c are the constants: parameters, fixed ones, then what law_constants computes. */",
         *(f"void {name}(const double *x, const double *c, double *y);" for name in prototypes),
         *(["typedef void Law(const double *x, const double *c, double *y);"] if series else []),
         *(f"extern Law *const {name}[N_LAW_SWITCHES + 1];" for name in series),

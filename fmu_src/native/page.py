@@ -1,25 +1,24 @@
 """The folder documentation: one page about the joint, its connection, law, limits and parameters."""
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from jinja2 import Template
-from matplotlib.figure import Figure
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
+from jointfmu.plots import BLUE, GREEN, RED
 from jointfmu.quantity import flat_fields, problem
 from jointfmu.units import UNITS, display_unit
 
-from ..drawing import BLUE, GREEN, RED, labels, short, svg
 from ..folders import asset, part
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
+from .plot import Plot, svg
 from .terminals import terminals
 
 _POINTS = 41
@@ -173,31 +172,18 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
         factor = UNITS[variables[name].unit].display[shown]
         return [factor * row[name] for row in rows]
 
-    def draw(figure: Figure) -> None:
-        panels = _panels(model)
-        row = figure.subplots(1, len(panels), squeeze=False)[0]
-        for axes, (over, names) in zip(row, panels, strict=True):
-            x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
-            for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
-                axes.plot(column(over, x), column(name, y), color=color, label=name)
-            labels(axes, f"{over} [{x}]", f"{', '.join(names)} [{y}]")
-            if len(names) > 1:
-                axes.legend()
-
-    return _picture(draw, "ramp")
+    plots = []
+    for over, names in _panels(model):
+        x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
+        plot = Plot(f"{over} [{x}]", f"{', '.join(names)} [{y}]")
+        for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
+            plot.add(column(over, x), column(name, y), color, name)
+        plots.append(plot)
+    return svg(plots)
 
 
 def _drawings(model: Model, spring: Any) -> dict[str, str]:
-    """Further ones: DRAWINGS, {FMU: {name: (spring, end of the ramp) -> what draws}}, of the joint."""
+    """Further ones: DRAWINGS, {FMU: {name: (spring, end of the ramp) -> plots in a row}}, of the joint."""
     own = part(model, "page")
     named = getattr(own, "DRAWINGS", {}).get(model.name, {})
-    return {name: _picture(drawing(spring, model.ramp.end), name) for name, drawing in named.items()}
-
-
-def _picture(draw: Callable[[Figure], None], name: str) -> str:
-    """As SVG, whose ids are those that it needs itself, with its name in front."""
-    picture = short(svg(draw, (9.6, 3.8), {"svg.fonttype": "none"}))
-    needed = set(re.findall(r"#([\w.-]+)", picture))
-    picture = re.sub(r' id="([^"]*)"', lambda i: f' id="{name}-{i[1]}"' if i[1] in needed else "", picture)
-    picture = re.sub(r'(href="#|url\(#)', rf"\g<1>{name}-", picture)
-    return picture.replace("font-family: 'DejaVu Sans'; ", "")  # the page names the font once
+    return {name: svg(plots(spring, model.ramp.end)) for name, plots in named.items()}

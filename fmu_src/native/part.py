@@ -88,11 +88,13 @@ class NativePart:
     functions   : adds the functions that its C calls to a graph
     shared      : files of `runtime/` that it uses, beside those of every FMU
     definitions : its constants
+    memory      : numbers of its memory, where the parameters decide how many of them it needs
     """
 
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
     definitions: Callable[[Graph, Model], Definitions] = nothing
+    memory: int | None = None
 
     @property
     def tabulated(self) -> bool:

@@ -1,24 +1,22 @@
-"""variables.c: the list of variables with intervals and start values, and which output depends on what."""
+"""variables.c: the list of variables with their intervals, and which output depends on what."""
 
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
 
 from .c_text import array, number, string
 
 
-def variables_c(model: Model, parameters: ParameterFile) -> str:
+def variables_c(model: Model) -> str:
     """The file."""
-    values = parameters.flat
-    rows = [_row("time", "s", "time", 0.0, Interval())]
-    rows += [_row(v.name, v.unit, v.doc, parameters.start(v.name), v.interval) for v in model.inputs]
-    rows += [_row(v.name, v.unit, v.doc, 0.0, Interval()) for v in model.outputs]
+    rows = [_row("time", "s", "time", Interval())]
+    rows += [_row(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
+    rows += [_row(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
     for name, item in model.parameter_fields().items():
-        meta, start = item.metadata, float(values[name])
+        meta = item.metadata
         if "allowed" in meta:
-            rows.append(_row(name, "1", meta["doc"], start, Interval.of(ge=0.0, le=1.0), boolean=True))
+            rows.append(_row(name, "1", meta["doc"], Interval.of(ge=0.0, le=1.0), boolean=True))
         else:
-            rows.append(_row(name, meta["unit"], meta["doc"], start, meta["interval"], meta["whole"]))
+            rows.append(_row(name, meta["unit"], meta["doc"], meta["interval"], meta["whole"]))
     states = model.outputs[: model.states]
     links = [
         "{" + ", ".join(str(int(i.name in model.depends(o.name))) for i in (*model.inputs, *states)) + "}"
@@ -38,13 +36,12 @@ def _row(
     name: str,
     unit: str,
     doc: str,
-    start: float,
     allowed: Interval,
     whole: bool = False,
     boolean: bool = False,
 ) -> str:
     flags = ", ".join(str(int(flag)) for flag in (allowed.low_open, allowed.high_open, whole, boolean))
-    numbers = ", ".join(number(x) for x in (start, allowed.low, allowed.high))
+    numbers = ", ".join(number(x) for x in (allowed.low, allowed.high))
     interval = "" if boolean else str(allowed)
     texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, interval))
     return f"{{{texts}, {numbers}, {flags}}}"

@@ -4,6 +4,7 @@ import re
 import sys
 import zipfile
 from collections.abc import Collection
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -47,7 +48,7 @@ from {package}.{kind} import KIND
 
 class {name}(slave.JointSlave):
     kind = KIND
-    fmu = "{name}"
+    fmu = "{fmu}"
     content = "{digest}"
 '''
 
@@ -83,8 +84,8 @@ def _private(text: str, roots: Collection[str]) -> str:
     return text
 
 
-def build(name: str, parameters: ParameterFile, out: Path) -> Path:
-    """Write `out/name.fmu`; an existing file is replaced in one go.
+def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> Path:
+    """Write `out/name.fmu`, or `out/alias.fmu` with that name; an existing file is replaced in one go.
 
     Raises ValueError if the parameters are of another joint or the folder cannot be written,
     ImportError if pythonfmu is missing.
@@ -92,14 +93,15 @@ def build(name: str, parameters: ParameterFile, out: Path) -> Path:
     from pythonfmu import FmuBuilder
 
     kind = KINDS[MODELS[name].joint]
-    MODELS[name].of(parameters.joint, parameters.values)
+    title = replace(MODELS[name].of(parameters.joint, parameters.values), alias=alias).title
     sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
-    target = out / f"{name}.fmu"
+    target = out / f"{title}.fmu"
     with workshop(target) as work:
-        script = work / "src" / f"{name}_{digest}.py"
-        _write(script, _ENTRY.format(name=name, package=package, kind=_inside(kind.package), digest=digest))
+        script = work / "src" / f"{title}_{digest}.py"
+        entry = {"package": package, "kind": _inside(kind.package), "digest": digest}
+        _write(script, _ENTRY.format(name=title, fmu=name, **entry))
         for inside, text in sources.items():
             root = work / "src" if inside == "parameters.toml" else work / "src" / package
             _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)

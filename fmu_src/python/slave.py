@@ -71,10 +71,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             register(self.kind)
         file = load(Path(self.resources) / "parameters.toml", self.kind.name)
         self.model: Model = MODELS[self.fmu].of(file.joint, file.values)
-        self.modelName = self.fmu
+        self.modelName = type(self).__name__
         self.description = self.model.doc
         self.version, self.license, self.author = __version__, "MIT", "jointfmu"
-        self.guid = uuid5(NAMESPACE_URL, f"jointfmu/{self.fmu}/{self.content}")
+        self.guid = uuid5(NAMESPACE_URL, f"jointfmu/{self.modelName}/{self.content}")
         self.default_experiment = DefaultExperiment(
             start_time=0.0, stop_time=stop_time(self.model), step_size=1.0
         )
@@ -207,7 +207,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     @surviving
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         if state.keys() != self._get_fmu_state().keys() or state["values"].keys() != self.values.keys():
-            self.refuse(f"the FMU state is none of {self.fmu}; expected one that this FMU gave")
+            self.refuse(f"the FMU state is none of {self.modelName}; expected one that this FMU gave")
         changed = any(self.values[name] != state["values"][name] for name in self.start)
         self.values, self.initialized = dict(state["values"]), state["initialized"]
         self.warned = set(state["warned"])

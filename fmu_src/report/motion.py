@@ -1,21 +1,20 @@
 """What a system does over time: loads of its joints; of an arm also wind-up and the tip's error."""
 
 from collections.abc import Mapping
-from functools import partial
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
 
 from jointfmu.joints import KINDS
 from jointfmu.systems import System
 
-from ..drawing import svg
 from ..master import Array
 from ..wiring import model_of, wires
-from .figure import Figure
+from .figure import Figure, Panel, Series, drawn
 
-SIZE = (9.6, 4.0)
+SIZE = (11.4, 3.8)
+_THIN = 20
+"""Points of a run from one that is drawn to the next."""
 Run = Mapping[str, Array]
 """{COMPONENT.OUTPUT: values} and `time` [s]."""
 
@@ -52,36 +51,39 @@ def windup(system: System, run: Run) -> tuple[Array, Array, Array]:
     return q, real - q, error
 
 
-def draw(canvas: Canvas, system: System, run: Run) -> None:
+def panels(system: System, run: Run) -> list[Panel]:
     """Loads of the joints over time; of an arm wind-up and the tip's error beside them."""
-    count = 3 if system.arm else 1
-    axes = canvas.subplots(1, count, squeeze=False)[0]
-    _draw_loads(axes[0], system, run)
+    time, over = run["time"][::_THIN], "time [s]"
+    shown = loads(system)
+    unit = " or ".join(dict.fromkeys(unit for _, unit in shown.values()))
+    carried = [
+        Series(name.removesuffix("_drive"), time, run[output][::_THIN]) for name, (output, _) in shown.items()
+    ]
+    found = [Panel("Loads of the joints", over, f"load [{unit}]", carried)]
     if system.arm:
         _, wound, error = windup(system, run)
-        for name, values in zip(system.arm.names, wound.T, strict=True):
-            axes[1].plot(run["time"], 1e3 * values, lw=1.0, label=name)
-        axes[1].set_ylabel("wind-up [mrad]")
-        axes[1].legend(fontsize=8)
-        axes[2].plot(run["time"], 1e3 * error, lw=1.0)
-        axes[2].set_ylabel("error of the tip [mm]")
-        axes[2].set_ylim(bottom=0.0)
-    for one in axes:
-        one.set_xlabel("time [s]")
-        one.set_xlim(run["time"][0], run["time"][-1])
+        turned = [
+            Series(name, time, 1e3 * values[::_THIN])
+            for name, values in zip(system.arm.names, wound.T, strict=True)
+        ]
+        found.append(Panel("Wind-up of the drives", over, "wind-up [mrad]", turned))
+        tip = [Series("tip", time, 1e3 * error[::_THIN])]
+        found.append(Panel("Error of the tip", over, "error [mm]", tip))
+    return found
 
 
-def _draw_loads(axes: Axes, system: System, run: Run) -> None:
-    shown = loads(system)
-    for name, (output, _) in shown.items():
-        axes.plot(run["time"], run[output], lw=1.0, label=name.removesuffix("_drive"))
-    axes.set_ylabel(f"load [{' or '.join(dict.fromkeys(unit for _, unit in shown.values()))}]")
-    axes.legend(fontsize=8)
+def draw(canvas: Canvas, system: System, run: Run) -> None:
+    """The same as a picture."""
+    drawn(canvas, panels(system, run))
 
 
-def motions(runs: Mapping[str, tuple[System, Run]]) -> list[Figure]:
-    """A figure for each arm."""
-    return [_motion(system, run) for system, run in runs.values()]
+def motions(runs: Mapping[str, tuple[System, Run]], joint: str) -> list[Figure]:
+    """A figure for each arm with such joints."""
+    return [
+        _motion(system, run)
+        for system, run in runs.values()
+        if joint in {part.kind for part in system.joints.values()}
+    ]
 
 
 def _motion(system: System, run: Run) -> Figure:
@@ -90,11 +92,10 @@ def _motion(system: System, run: Run) -> Figure:
     soft = system.arm.names[int(np.argmax(largest))]
     return Figure(
         f"In a system: the {system.name.replace('_', ' ')}",
-        f"The motors turn from upright to the end of the motion within {system.arm.duration:g} s. Left: "
-        "the torques of the drives on their links; middle: what the drives wind up; right: the distance of "
-        f"the tip from where rigid drives would bring it, at most {1e3 * worst:.2f} mm, "
-        f"{1e3 * error[-1]:.2f} mm at the end, under the weight. The {soft} winds up most, by "
-        f"{1e3 * np.max(largest):.2f} mrad. Motion and weight of the rigid arm load the drives; that the "
-        "wind-up of one moves the others is left out.",
-        svg(partial(draw, system=system, run=run), SIZE),
+        f"The motors turn from upright to the end of the motion within {system.arm.duration:g} s. Torques of "
+        "the drives on their links; what the drives wind up; distance of the tip from where rigid drives "
+        f"would bring it, at most {1e3 * worst:.2f} mm, {1e3 * error[-1]:.2f} mm at the end, under the "
+        f"weight. The {soft} winds up most, by {1e3 * np.max(largest):.2f} mrad. Motion and weight of the "
+        "rigid arm load the drives; that the wind-up of one moves the others is left out.",
+        panels(system, run),
     )

@@ -1,21 +1,30 @@
-"""The page: figures, the table of published against computed, the checks."""
+"""The page: a tab per joint with figures, the table of published against computed, the checks."""
 
+import json
 import platform
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from jointfmu import __version__
 from jointfmu.joints import KINDS
+from jointfmu.joints.kind import Kind
 from jointfmu.parameters import write_text
 from jointfmu.reference import ROLES
 from jointfmu.stamp import build_time
+from jointfmu.systems import systems
 from jointfmu.validation import shown_claim, shown_error, shown_tolerance, summary
 
 from ..joints import part
+from ..laboratory import web_file
 from ..templates import template
 from .figure import Figure
 from .motion import motions
 from .systems import resonances, ring_downs
+
+_DIGITS = 7
+"""Of the numbers of a curve: more than a screen shows."""
 
 
 def write_report(path: Path, outcome: Any) -> None:
@@ -31,17 +40,52 @@ def write_report(path: Path, outcome: Any) -> None:
         shown_tolerance=shown_tolerance,
         shown_claim=shown_claim,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
-        figures=[
-            *_of_joints(outcome),
-            *resonances(outcome.ringing),
-            *ring_downs(outcome.decays),
-            *motions(outcome.arms),
-        ],
+        tabs=[_tab(kind, outcome) for kind in KINDS.values()],
+        style=web_file("style.css") + (Path(__file__).with_name("report.css")).read_text(encoding="utf-8"),
+        script=web_file("text.js") + web_file("chart.js") + _script(),
     )
     write_text(path, page)
 
 
-def _of_joints(outcome: Any) -> list[Figure]:
-    """The figures that the joints' files draw of an outcome."""
-    modules = [part(kind, "figures") for kind in KINDS.values()]
-    return [figure for module in modules if module for figure in module.figures(outcome)]
+def _script() -> str:
+    return Path(__file__).with_name("report.js").read_text(encoding="utf-8")
+
+
+def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
+    """What the page shows of a joint."""
+    module = part(kind, "figures")
+    figures = module.figures(outcome) if module else []
+    figures += [*resonances(outcome.ringing, kind.name), *ring_downs(outcome.decays, kind.name)]
+    figures += motions(outcome.arms, kind.name)
+    names = [model.name for model in kind.models]
+    names += [
+        name for name, system in systems().items() if kind.name in {j.kind for j in system.joints.values()}
+    ]
+    return {
+        "name": kind.name,
+        "title": kind.title,
+        "figures": [(figure, _panels(figure)) for figure in figures],
+        "rows": [row for row in outcome.rows if row.point.joint == kind.name],
+        "checks": [check for check in outcome.checks if check.fmu in names],
+    }
+
+
+def _panels(figure: Figure) -> str:
+    """The panels as JSON."""
+
+    def numbers(values: Any) -> list[float]:
+        return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
+
+    panels = [
+        {
+            "title": panel.title,
+            "x": panel.x,
+            "y": panel.y,
+            "series": [
+                s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
+                for s in panel.series
+            ],
+        }
+        for panel in figure.panels
+    ]
+    return json.dumps(panels, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")

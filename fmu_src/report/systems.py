@@ -1,23 +1,22 @@
 """Figures of joints in systems."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from ..decays import Decay
-from ..drawing import BLUE, GREY, RED, labels, svg
 from ..ringing import Body, Ringing, Rung, rings
-from .figure import Figure
+from .figure import Figure, Panel, Series, drawn
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
+_WAYS = ((1.0, "above"), (-1.0, "below"))
 
 
-def resonances(found: Mapping[str, Sequence[Ringing]]) -> list[Figure]:
-    """A figure per system that rings."""
-    bodies = rings()
-    return [_resonance(name, bodies[name], points) for name, points in found.items()]
+def resonances(found: Mapping[str, Sequence[Ringing]], joint: str) -> list[Figure]:
+    """A figure per system of a joint that rings."""
+    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    return [_resonance(name, bodies[name], points) for name, points in found.items() if name in bodies]
 
 
 def _resonance(name: str, one: Rung, points: Sequence[Ringing]) -> Figure:
@@ -25,16 +24,16 @@ def _resonance(name: str, one: Rung, points: Sequence[Ringing]) -> Figure:
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load.name}",
         f"The {moving} rings about a working point, {body.doc}. Circles: peak of the simulated signal's "
-        f"spectrum; line: square root of {body.stiffness} over the {moving}'s inertia. Right: the decay at "
+        f"spectrum; line: square root of {body.stiffness} over the {moving}'s inertia. Then the decay at "
         f"the first {body.load.name}, between the envelopes of the stated damping. Friction is left out.",
-        svg(partial(draw, points=points, body=body), SIZE),
+        resonance_panels(points, body),
     )
 
 
-def ring_downs(decays: Mapping[str, Sequence[Decay]]) -> list[Figure]:
-    """A figure per system whose joint slips."""
-    bodies = rings()
-    return [_ring_down(name, bodies[name], points) for name, points in decays.items()]
+def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
+    """A figure per system of a joint that slips."""
+    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    return [_ring_down(name, bodies[name], points) for name, points in decays.items() if name in bodies]
 
 
 def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
@@ -50,58 +49,62 @@ def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
         "included"
         + ("; dashes: half of eta_loop, the law without its division into sliders. " if said else ". ")
         + "The joint's friction alone makes it stiffer and less damped as the motion dies out.",
-        svg(partial(draw_decays, points=points, body=body), WIDE),
+        decay_panels(points, body),
     )
 
 
-def draw(canvas: Canvas, points: Sequence[Ringing], body: Body) -> None:
+def resonance_panels(points: Sequence[Ringing], body: Body) -> list[Panel]:
     """Resonance over the load, and one free decay with the envelope of the stated damping."""
-    left, right = canvas.subplots(1, 2)
     points = sorted(points, key=lambda point: point.load)
     x = [body.load.factor * point.load for point in points]
-    left.plot(x, [p.expected / (2.0 * np.pi) for p in points], color=BLUE, label="sqrt(K/J)")
-    peaks = [p.frequency / (2.0 * np.pi) for p in points]
-    left.plot(x, peaks, "o", color=RED, mfc="white", label="simulated", clip_on=False, zorder=3)
-    left.legend()
-    labels(left, body.load.label, "resonance [Hz]")
-    if min(x) < 0.0:
-        left.set_xlim(left=None, auto=True)
+    hertz = 0.5 / np.pi
+    over = [
+        Series("sqrt(K/J)", x, [hertz * p.expected for p in points]),
+        Series("simulated", x, [hertz * p.frequency for p in points], "empty"),
+    ]
     first, scale = points[0], body.deflection.factor
-    envelope = first.signal[0] * np.exp(-first.stated * first.expected * first.time)
-    right.plot(1e3 * first.time, scale * first.signal, color=BLUE)
-    for sign in (1.0, -1.0):
-        right.plot(1e3 * first.time, sign * scale * envelope, "--", color=GREY)
-    right.set_title(f"free decay at {x[0]:g} {body.load.unit}", fontsize=10)
-    right.set_xlabel("time [ms]")
-    right.set_ylabel(body.deflection.label)
-    right.set_xlim(left=0.0)
+    envelope = scale * first.signal[0] * np.exp(-first.stated * first.expected * first.time)
+    time = 1e3 * first.time
+    decay = [Series("decay", time, scale * first.signal)]
+    decay += [Series(f"envelope, {way}", time, sign * envelope, dashed=True) for sign, way in _WAYS]
+    return [
+        Panel("Resonance over the load", body.load.label, "resonance [Hz]", over),
+        Panel(f"Free decay at {x[0]:g} {body.load.unit}", "time [ms]", body.deflection.label, decay),
+    ]
+
+
+def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
+    """The first decay; frequency and damping over the amplitude, with those of the joint's loops."""
+    scale, hertz, first = body.deflection.factor, 0.5 / np.pi, points[0]
+    frequency, damping = [], []
+    for point in points:
+        at = f", {body.load.factor * point.load:g} {body.load.unit}" if len(points) > 1 else ""
+        x = scale * point.amplitude
+        frequency += [
+            Series(f"loops{at}", x, hertz * point.expected),
+            Series(f"decay{at}", x, hertz * point.frequency, "empty"),
+        ]
+        damping += [
+            Series(f"loops{at}", x, 100.0 * point.stated),
+            Series(f"decay{at}", x, 100.0 * point.damping, "empty"),
+        ]
+        if point.law is not None:
+            damping.append(Series(f"eta_loop/2{at}", x, 100.0 * point.law, dashed=True))
+    over = f"amplitude [{body.deflection.unit}]"
+    signal = [Series("decay", 1e3 * first.time, scale * first.signal)]
+    shown = f"Decay at {body.load.factor * first.load:g} {body.load.unit}"
+    return [
+        Panel(shown, "time [ms]", body.deflection.label, signal),
+        Panel("Frequency over the amplitude", over, "frequency [Hz]", frequency),
+        Panel("Damping over the amplitude", over, "damping ratio [%]", damping),
+    ]
+
+
+def draw(canvas: Canvas, points: Sequence[Ringing], body: Body) -> None:
+    """Resonance and decay as a picture."""
+    drawn(canvas, resonance_panels(points, body))
 
 
 def draw_decays(canvas: Canvas, points: Sequence[Decay], body: Body) -> None:
-    """The first decay; frequency and damping over the amplitude, with those of the joint's loops."""
-    left, middle, right = canvas.subplots(1, 3)
-    scale = body.deflection.factor
-    left.plot(1e3 * points[0].time, scale * points[0].signal, color=BLUE, lw=0.8)
-    left.set_title(f"{body.load.factor * points[0].load:g} {body.load.unit}", fontsize=10)
-    left.set_xlabel("time [ms]")
-    left.set_ylabel(body.deflection.label)
-    left.set_xlim(left=0.0)
-    for k, point in enumerate(points):
-        hertz = 0.5 / np.pi
-        shown = (
-            (middle, hertz * point.frequency, hertz * point.expected),
-            (right, 100.0 * point.damping, 100.0 * point.stated),
-        )
-        for axes, found, loops in shown:
-            axes.plot(scale * point.amplitude, loops, color=BLUE, label="" if k else "loops")
-            axes.plot(scale * point.amplitude, found, "o", color=RED, mfc="white", label="" if k else "decay")
-        if point.law is not None:
-            label = "" if k else "eta_loop/2"
-            right.plot(scale * point.amplitude, 100.0 * point.law, "--", color=GREY, label=label)
-            right.legend()
-    for axes, label in ((middle, "frequency [Hz]"), (right, "damping ratio [%]")):
-        axes.set_xlabel(f"amplitude [{body.deflection.unit}]")
-        axes.set_ylabel(label)
-        axes.set_xlim(left=0.0)
-    right.set_ylim(bottom=0.0)
-    middle.legend()
+    """Frequency and damping over the amplitude as a picture."""
+    drawn(canvas, decay_panels(points, body))

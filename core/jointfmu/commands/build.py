@@ -24,6 +24,12 @@ def add(commands: Any) -> None:
         metavar="FLAVOUR",
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
+    make.add_argument(
+        "--name",
+        metavar="NAME",
+        help="model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
+        "names stand side by side in one model",
+    )
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
     make.add_argument(
         "--parameters",
@@ -39,13 +45,15 @@ def add(commands: Any) -> None:
 
 
 def _build(args: argparse.Namespace) -> int:
+    if args.name is not None and args.systems:
+        raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
     file = load(args.params) if args.params else None
     try:
         from jointfmu_fmu_src import building, ssp
 
         built = []
         if args.names or not args.systems:
-            built += building.build(args.names, args.flavour, file, args.out, args.parameters)
+            built += building.build(args.names, args.flavour, file, args.out, args.parameters, args.name)
         if args.systems:
             built += ssp.build_systems(args.out, None, file, variability=args.parameters)
     except ImportError as error:

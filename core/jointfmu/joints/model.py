@@ -68,13 +68,14 @@ class Model:
     dependencies : inputs that an output depends on, where not on all
     linear   : {output: {input: what the factor depends on}} where an output is linear in an input with a
         factor of parameters only ("parameters") or of none ("constant")
-    hidden   : prefixes of parameters that are baked in
+    hidden   : prefixes of parameters that no tool may change
     states   : continuous states, the first outputs; the rate of each is the output after it
     moves    : outputs change with time, while inputs rest
     events   : (spring) -> times [s] at which their course has a corner, numbers or symbols; None: at none
     rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
     evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
         memory given stays as it is
+    alias    : the name that a user gave it; "" for its own
     """
 
     name: str
@@ -95,10 +96,16 @@ class Model:
     events: Callable[[Any], Sequence[Number]] | None = None
     rest: Callable[[Any], Memory] | None = None
     evolve: Callable[[Any, Values, Memory], tuple[Mapping[str, Any], Memory]] | None = None
+    alias: str = ""
 
     def __post_init__(self) -> None:
         if (self.rest is None) != (self.evolve is None):
             raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
+
+    @property
+    def title(self) -> str:
+        """What it is called where it is used."""
+        return self.alias or self.name
 
     def parameter_fields(self) -> dict[str, Any]:
         """Structured names and fields of the parameters that the FMU exposes."""

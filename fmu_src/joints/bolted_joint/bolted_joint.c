@@ -14,7 +14,17 @@ _Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn an
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
-_Static_assert(N_MEMORY == FORCES + N_PATCHES * 2 * SLIDERS, "as the package has it");
+_Static_assert(N_MEMORY == FORCES + MOST_PATCHES * 2 * SLIDERS, "as the package has it");
+
+static inline int n_nodes(void)
+{
+    return (int)data.n_nodes;
+}
+
+static inline int n_patches(void)
+{
+    return (int)data.n_patches;
+}
 
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
@@ -43,18 +53,18 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->ratio = head[2];
     kind->area = head[3];
     energy_tabulate(&kind->energy, &joint->curve);
-    for (int i = 0; i < N_NODES; i++) {
-        const double share = NODES[i][SHARE], x = NODES[i][PLACE_X], y = NODES[i][PLACE_Y];
+    for (int i = 0; i < n_nodes(); i++) {
+        const double share = data.nodes[i][SHARE], x = data.nodes[i][PLACE_X], y = data.nodes[i][PLACE_Y];
         const double weight[6] = {share, share * x, share * y, share * y * y, share * x * x, share * x * y};
         memcpy(kind->weight[i], weight, sizeof weight);
     }
-    for (int j = 0; j < N_PATCHES; j++) {
+    for (int j = 0; j < n_patches(); j++) {
         Foundation *f = &kind->foundation[j];
         f->curve = &joint->curve;
         f->energy = &kind->energy;
         f->mu = kind->mu;
         f->ratio = kind->ratio;
-        f->offset = OFFSETS[j];
+        f->offset = data.offsets[j][0];
         lay(kind, j, 0.0);
     }
     return true;
@@ -80,14 +90,14 @@ static void tighten(Joint *joint, const double *inputs)
     int segment = 0;
     bolt_pressures(inputs + PRELOAD, joint->c, bolts);
     memset(kind->sums, 0, sizeof kind->sums);
-    for (int i = 0; i < N_NODES; i++) {
-        const double *node = NODES[i];
+    for (int i = 0; i < n_nodes(); i++) {
+        const double *node = data.nodes[i];
         kind->start[i] = tighten_point(joint, node, bolts, &segment, &kind->tightened[i]);
         for (int d = 0; d < 3; d++)
             kind->sums[d] += kind->weight[i][d] * kind->tightened[i];
     }
-    for (int j = 0; j < N_PATCHES; j++)
-        kind->patch_start[j] = tighten_point(joint, PATCHES[j], bolts, &segment, &carried);
+    for (int j = 0; j < n_patches(); j++)
+        kind->patch_start[j] = tighten_point(joint, data.patches[j], bolts, &segment, &carried);
     kind->preload = inputs[PRELOAD];
     kind->moment = inputs[MOMENT];
     kind->tight = true;
@@ -192,8 +202,8 @@ static void elastic_arguments(const Joint *joint, int i, const double *y, const 
 {
     x[E_LIMIT] = joint->kind.mu * joint->kind.tightened[i];
     memcpy(x + E_CURVE, y, 4 * sizeof *x);
-    x[E_SHIFT] = along_x(NODES[i], inputs);
-    x[E_SHIFT + 1] = along_y(NODES[i], inputs);
+    x[E_SHIFT] = along_x(data.nodes[i], inputs);
+    x[E_SHIFT + 1] = along_y(data.nodes[i], inputs);
 }
 
 /* Pressure, stiffness and works of first loading of a node inside the table. */
@@ -230,7 +240,7 @@ static inline bool look_up(const Joint *joint, const double *inputs, int first, 
 {
     const double begin = joint->curve.first.x, end = joint->curve.end.x;
     for (int i = 0; i < n; i++) {
-        const double approach = joint->kind.start[first + i] - apart_at(NODES[first + i], inputs);
+        const double approach = joint->kind.start[first + i] - apart_at(data.nodes[first + i], inputs);
         if (approach >= begin && approach < end)
             node_inside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i]);
         else if (!node_outside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i], why))
@@ -245,8 +255,8 @@ static bool sum_nodes(Joint *joint, const double *inputs, Text *why)
     Kind *kind = &joint->kind;
     double force[3] = {0.0}, stiffness[6] = {0.0}, work[N_LAW_STATE] = {0.0}, largest = 0.0, *x = kind->normal;
     Batch batch;
-    for (int first = 0; first < N_NODES; first += BATCH) {
-        const int n = N_NODES - first < BATCH ? N_NODES - first : BATCH;
+    for (int first = 0; first < n_nodes(); first += BATCH) {
+        const int n = n_nodes() - first < BATCH ? n_nodes() - first : BATCH;
         if (!look_up(joint, inputs, first, n, &batch, why))
             return false;
         for (int i = 0; i < n; i++) {
@@ -295,16 +305,16 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
     Kind *kind = &joint->kind;
     double works[N_LAW_STATE], slopes[N_LAW_STATE], y[4], at[N_E], e[N_ELASTIC];
     kind->p_max = 0.0;
-    for (int i = 0; i < N_NODES; i++) {
-        const double approach = kind->start[i] - apart_at(NODES[i], inputs);
+    for (int i = 0; i < n_nodes(); i++) {
+        const double approach = kind->start[i] - apart_at(data.nodes[i], inputs);
         if (!node_at(joint, approach, 3, y, works, slopes, why))
             return false;
         elastic_arguments(joint, i, y, inputs, at);
         elastic_shear(at, joint->c, e);
-        add_normal(x, NODES[i], 1.0, y[0], y[1], e[LIFTED], e[STIFFER]);
-        add_shear(x, NODES[i], e, e + 2);
+        add_normal(x, data.nodes[i], 1.0, y[0], y[1], e[LIFTED], e[STIFFER]);
+        add_shear(x, data.nodes[i], e, e + 2);
         for (int q = 0; q < N_LAW_STATE; q++)
-            x[SUM_PLASTIC + q] += NODES[i][SHARE] * works[q];
+            x[SUM_PLASTIC + q] += data.nodes[i][SHARE] * works[q];
         kind->p_max = y[0] > kind->p_max ? y[0] : kind->p_max;
     }
     return true;
@@ -317,10 +327,10 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    const bool begun = memory[MOVED] != UNKNOWN;
-    for (int j = 0; j < N_PATCHES; j++) {
+    const bool begun = (int)memory[MOVED] != UNKNOWN;
+    for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
-        const double end = kind->patch_start[j] - apart_at(PATCHES[j], inputs);
+        const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
         const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
         if (kind->foundation[j].reference != reference)
             lay(kind, j, reference);
@@ -334,7 +344,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const double *patch = PATCHES[j], *force = memory + FORCES + j * 2 * SLIDERS;
+    const double *patch = data.patches[j], *force = memory + FORCES + j * 2 * SLIDERS;
     const double turn = inputs[THETA + 2] - memory[RIGID + 2];
     const double u = inputs[S_REL] - memory[RIGID] - turn * patch[PLACE_Y];
     const double v = inputs[S_REL + 1] - memory[RIGID + 1] + turn * patch[PLACE_X];
@@ -379,15 +389,15 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
 {
     const double mu = joint->kind.mu, reach = mu / joint->kind.ratio, per_reach = joint->kind.ratio / mu;
     double works = 0.0, energies = 0.0;
-    for (int j = 0; j < N_PATCHES; j++) {
+    for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
-        const double u = along_x(PATCHES[j], inputs), v = along_y(PATCHES[j], inputs), size = sqrt(u * u + v * v);
+        const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
         double then;
         const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
         const double stored = 0.5 * mu * (at->y[0] - then) * size;
         const double work = 8.0 * (mu * (at->y[0] * size - reach * energy) - stored);
-        works += PATCHES[j][SHARE] * (work > 0.0 ? work : 0.0);
-        energies += PATCHES[j][SHARE] * stored;
+        works += data.patches[j][SHARE] * (work > 0.0 ? work : 0.0);
+        energies += data.patches[j][SHARE] * stored;
     }
     x[SUM_LOOP_WORK] = works;
     x[SUM_LOOP_ENERGY] = energies;
@@ -418,9 +428,9 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
 /* How it has moved after the way to inputs. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    if (memory[MOVED] == FREE || inputs[S_REL + 1] != memory[RIGID + 1] || inputs[THETA + 2] != memory[RIGID + 2])
+    if ((int)memory[MOVED] == FREE || inputs[S_REL + 1] != memory[RIGID + 1] || inputs[THETA + 2] != memory[RIGID + 2])
         return FREE;
-    return memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
+    return (int)memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
 }
 
 /* Sums over the patches. */
@@ -431,13 +441,13 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
-    for (int j = 0; j < N_PATCHES && kind->memory; j++) {
+    for (int j = 0; j < n_patches() && kind->memory; j++) {
         const PatchPath path = path_of(joint, j, inputs, memory);
         double *const moved[2] = {kind->force[j][0], kind->force[j][1]};
         Shear shear;
         foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
-        add_shear(x, PATCHES[j], shear.traction, shear.tangent);
-        heat += PATCHES[j][SHARE] * shear.loss;
+        add_shear(x, data.patches[j], shear.traction, shear.tangent);
+        heat += data.patches[j][SHARE] * shear.loss;
     }
     kind->loss = memory[LOSS] + kind->area * heat;
     x[SUM_LOSS] = kind->loss / kind->area;
@@ -462,7 +472,7 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
     after[RIGID] = inputs[S_REL];
     after[RIGID + 1] = inputs[S_REL + 1];
     after[RIGID + 2] = inputs[THETA + 2];
-    for (int j = 0; j < N_PATCHES; j++) {
+    for (int j = 0; j < n_patches(); j++) {
         const Point *from = &kind->from[j], *to = &kind->to[j];
         const int n = 2 * (from->touched > to->touched ? from->touched : to->touched);
         double *force = after + FORCES + 2 * j * SLIDERS;
@@ -531,8 +541,8 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
 {
     const Kind *kind = &joint->kind;
     double y[5], works[N_LAW_STATE], slopes[N_LAW_STATE], at[2 * N_E], e[N_ELASTIC] = {0.0}, largest = -1.0;
-    for (int i = 0; i < N_NODES; i++) {
-        const double *node = NODES[i];
+    for (int i = 0; i < n_nodes(); i++) {
+        const double *node = data.nodes[i];
         const double approach = kind->start[i] - apart_at(node, inputs);
         const double tightening = tightening_rate(joint, node, bolts, kind->start[i]);
         const double rate = tightening - apart_at(node, seed);
@@ -570,12 +580,12 @@ static void patch_rates(const Joint *joint, const double *inputs, const double *
                         const double *bolts, double *dx)
 {
     const Kind *kind = &joint->kind;
-    for (int j = 0; j < N_PATCHES; j++) {
-        const double *patch = PATCHES[j];
+    for (int j = 0; j < n_patches(); j++) {
+        const double *patch = data.patches[j];
         const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
         const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {memory[MOVED] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {(int)memory[MOVED] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
         add_loop_rate(joint, patch, path.to, inputs, loop, dx);
         if (!kind->memory)
             continue;

@@ -4,33 +4,34 @@
 #define JOINTFMU_BOLTED_JOINT_H
 
 #include "approach.h"
+#include "data.h"
 #include "energy.h"
 #include "friction.h"
 
 /* The memory: how it has moved; heat so far, shift x, y and turn; then references, approaches, forces. */
-enum { MOVED, LOSS, RIGID, REFERENCES = RIGID + 3, APPROACHES = REFERENCES + N_PATCHES, FORCES = APPROACHES + N_PATCHES };
+enum { MOVED, LOSS, RIGID, REFERENCES = RIGID + 3, APPROACHES = REFERENCES + MOST_PATCHES, FORCES = APPROACHES + MOST_PATCHES };
 enum { UNKNOWN, RESTING, ALONG, FREE }; /* how it has moved: not yet begun, not, along x alone, otherwise */
 
 typedef struct {
     Spots spots;
     Approach approach;
     Energy energy;
-    Foundation foundation[N_PATCHES];
+    Foundation foundation[MOST_PATCHES];
     bool memory;
     double mu, ratio, area;
-    double weight[N_NODES][6]; /* share of a node alone, times x, y, y^2, x^2, x y */
+    double weight[MOST_NODES][6]; /* share of a node alone, times x, y, y^2, x^2, x y */
     bool tight; /* the values at tightening are those of this preload and moment */
     double preload, moment;
-    double start[N_NODES];           /* approach of each node at tightening */
-    double tightened[N_NODES];       /* its pressure */
-    double patch_start[N_PATCHES];   /* approach of each patch */
+    double start[MOST_NODES];           /* approach of each node at tightening */
+    double tightened[MOST_NODES];       /* its pressure */
+    double patch_start[MOST_PATCHES];   /* approach of each patch */
     double sums[3];                  /* of the pressures at tightening: alone, times x, times y */
     bool pressed;                    /* the normal sums below are those at tightening and this displacement */
     double apart[3], normal[N_SUMS], p_max;
-    Point from[N_PATCHES], to[N_PATCHES]; /* of the last evaluation */
+    Point from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
     int moved;                       /* how it has moved up to the last evaluation */
     double loss;                     /* heat up to it [J] */
-    double force[N_PATCHES][2][SLIDERS];
+    double force[MOST_PATCHES][2][SLIDERS];
     Work work; /* of the patch at hand */
 } Kind;
 

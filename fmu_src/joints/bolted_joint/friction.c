@@ -22,12 +22,12 @@ static void lay_heights(Foundation *f, double reference)
     const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);
     *h++ = inverse(f, 0.0);
     for (int k = N_BELOW - 1; k >= 0; k--) {
-        const double part = (k + f->offset) / N_BELOW, rest = (1.0 - part) * (1.0 - part);
+        const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
         *h++ = inverse(f, load * rest / (part * part + rest));
     }
     *h++ = given ? reference : inverse(f, load);
     for (int k = 0; k < N_ABOVE; k++) {
-        const double part = (k + f->offset) / N_ABOVE;
+        const double part = (k + f->offset) / (double)N_ABOVE;
         *h++ = inverse(f, load * exp(over * (part * part)));
     }
     *h = inverse(f, end);

@@ -1,16 +1,13 @@
-"""The bolted joint in C: its functions, its nodes and patches."""
+"""The bolted joint in C: its functions and constants; its points are data."""
 
 import casadi as ca
-import numpy as np
 
 from jointfmu import sliders
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
 
-from ...native.c_text import number
 from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import ENERGY, Definitions, NativePart, column
+from ...native.part import ENERGY, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -60,17 +57,11 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
-    patches = spring.patches(g.joint.pattern)
-    points = _points("NODES", spring.points(g.joint.pattern)) | _points("PATCHES", patches)
-    offsets = column("OFFSETS", "N_OFFSETS", sliders.offsets(patches.share.size))
-    return Definitions(counts, numbers) | offsets | points
+    return Definitions(counts, numbers)
 
 
-def _points(name: str, shape: PressureShape) -> Definitions:
-    """Rows (n, 5) of share, x, y, equal, tilt."""
-    rows = np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
-    texts = ["{" + ", ".join(number(x) for x in row) + "}" for row in rows]
-    return Definitions({f"N_{name}": len(rows)}, {}, {f"{name}[N_{name}][5]": texts})
-
-
-PART = NativePart(_functions, ENERGY, _definitions)
+_SLIDERS = 2 * (sliders.BELOW + sliders.ABOVE + 2)
+_MEMORY = 5 + spring.PATCHES * (2 + 2 * _SLIDERS)
+"""That of as many patches as there is room for: how it moved, loss, rigid motion; of each patch reference,
+approach and forces."""
+PART = NativePart(_functions, ENERGY, _definitions, _MEMORY)

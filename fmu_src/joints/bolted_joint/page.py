@@ -1,17 +1,15 @@
 """What the page shows: the load ramp, and the friction of the joint."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.contact import loop_sums
 from jointfmu.plots import BLUE, GREY, RED
 
 from ...native.page import Panel
+from ...native.plot import Plot
 
 PANELS = {"BoltedJoint": (Panel("preload", ("K_zz", "K_xx")), Panel("preload", ("C_zz", "C_xx")))}
 
@@ -22,7 +20,7 @@ AMPLITUDES = (0.06, 0.12, 0.22, 0.4)
 _POINTS = 13
 
 
-def loops(spring: Any, end: float) -> Callable[[Figure], None]:
+def loops(spring: Any, end: float) -> list[Plot]:
     """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
     preload = PART * end
     approach = spring.tightened(preload, 0.0)
@@ -34,25 +32,20 @@ def loops(spring: Any, end: float) -> Callable[[Figure], None]:
         """Of first shear [N]."""
         return np.asarray(spring.joint.A_0 * (foundation.backbone(approach, shift[:, None]) @ share))
 
-    def draw(canvas: Figure) -> None:
-        left, right = canvas.subplots(1, 2)
-        for part in AMPLITUDES:
-            u = part * slips * np.linspace(-1.0, 1.0, 2 * _POINTS + 1)
-            top = force(u[-1:])
-            back = top - 2.0 * force(0.5 * (u[-1] - u))
-            both = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
-            left.plot(both[0] * 1e6, both[1] / 1e3, color=BLUE, lw=1)
-        u = AMPLITUDES[-1] * slips * np.linspace(0.0, 1.0, _POINTS)
-        left.plot(u * 1e6, force(u) / 1e3, color=GREY, ls="--")
-        left.set(xlabel=f"s_rel_x [um] at preload = {preload / 1e3:g} kN", ylabel="-f_x [kN]")
-        size = slips * np.geomspace(0.01, 2.0, _POINTS)
-        sums = [loop_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
-        right.loglog(size * 1e6, [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums], color=RED)
-        right.set(xlabel="amplitude of s_rel_x [um]", ylabel="eta_loop [1]")
-        for axis in (right.xaxis, right.yaxis):
-            axis.set_minor_locator(NullLocator())
-
-    return draw
+    left = Plot(f"s_rel_x [um] at preload = {preload / 1e3:g} kN", "-f_x [kN]")
+    for part in AMPLITUDES:
+        u = part * slips * np.linspace(-1.0, 1.0, 2 * _POINTS + 1)
+        top = force(u[-1:])
+        back = top - 2.0 * force(0.5 * (u[-1] - u))
+        both = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
+        left.add(both[0] * 1e6, both[1] / 1e3, BLUE)
+    u = AMPLITUDES[-1] * slips * np.linspace(0.0, 1.0, _POINTS)
+    left.add(u * 1e6, force(u) / 1e3, GREY, dashed=True)
+    right = Plot("amplitude of s_rel_x [um]", "eta_loop [1]", logarithmic=True)
+    size = slips * np.geomspace(0.01, 2.0, _POINTS)
+    sums = [loop_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
+    right.add(size * 1e6, [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums], RED)
+    return [left, right]
 
 
 DRAWINGS = {"BoltedJoint": {"loops": loops}}

@@ -3,16 +3,11 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Canvas
 
-from jointfmu.plots import published_mark
 from jointfmu.ramp import RampResult
-from jointfmu.reference import Point
 from jointfmu.validation import Row
 
-from ...drawing import BLUE, GREEN, GREY, RED, labels, svg
-from ...report.figure import Figure
+from ...report.figure import Figure, Panel, Series, published
 
 _FMU = "HarmonicDriveCompliance"
 
@@ -22,61 +17,49 @@ def figures(outcome: Any) -> list[Figure]:
     result = outcome.ramps[_FMU]
     return [
         Figure(
-            "Harmonic drive: stiffness over torque",
-            "Left: K_WTS and its parts on the drive's scale, as the FMU gives them. Right: the contact "
+            "Stiffness over torque",
+            "K_WTS and the contact pair's part of it on the drive's scale, as the FMU gives them; then the "
             "pair on the scale of the paper's figures.",
             stiffness(result, outcome.rows),
-            f"{_FMU}.csv",
+            data=f"{_FMU}.csv",
         ),
         Figure(
-            "Harmonic drive: torque over wind-up",
+            "Torque over wind-up",
             "The integral of dT/K_WTS, odd in the torque.",
-            torque_angle(result),
-            f"{_FMU}.csv",
+            [torque_angle(result)],
+            data=f"{_FMU}.csv",
         ),
     ]
 
 
-def stiffness(result: RampResult, rows: list[Row]) -> str:
-    """K_WTS and its parts over torque, with the published points on the curves."""
-
-    def draw(canvas: Canvas) -> None:
-        c = result.columns
-        drive, pair = canvas.subplots(1, 2)
-        for name, color in (("K_WTS", BLUE), ("K_TS", RED), ("K_FTS", GREEN)):
-            drive.plot(c["tau"], c[name] / 1e3, color=color, label=name)
-        pair.plot(c["tau"], c["K_TS_pair"], color=RED, label="K_TS on the paper's scale")
-        least = {row.point.where["torque"]: row for row in rows if row.point.quantity == "K_TS_least"}
-        most = [r for r in rows if r.point.quantity == "K_TS" and "deformation" in r.point.where]
-        x = [r.point.where["torque"] for r in most]
-        pair.plot(x, [r.computed for r in most], "_", color=GREY, ms=14, label="largest and least over w")
-        pair.plot(list(least), [r.computed for r in least.values()], "_", color=GREY, ms=14)
-        points = [row.point for row in rows]
-        _mark(drive, [p for p in points if p.quantity == "K_WTS"], 1e-3)
-        _mark(pair, [p for p in points if p.quantity in ("K_TS", "K_TS_least")], 1.0)
-        for axes in (drive, pair):
-            axes.legend(loc="best", fontsize=8)
-        labels(drive, "torque [N m]", "stiffness [kN m/rad]")
-        labels(pair, "torque [N m]", "K_TS [N m/rad]")
-
-    return svg(draw, (9.6, 4.2))
-
-
-def _mark(axes: Axes, points: list[Point], scale: float) -> None:
-    """Published stiffness over torque, in the marks of the points' roles."""
-    for role in dict.fromkeys(p.role for p in points):
-        some = [p for p in points if p.role == role]
-        axes.plot([p.where["torque"] for p in some], [scale * p.value for p in some], **published_mark(role))
+def stiffness(result: RampResult, rows: list[Row]) -> list[Panel]:
+    """K_WTS and the pair's part over torque, with the published points on the curves."""
+    c = result.columns
+    points = [row.point for row in rows]
+    drive = [Series(name, c["tau"], c[name]) for name in ("K_WTS", "K_TS")]
+    drive += published([p for p in points if p.quantity == "K_WTS"], "torque")
+    least = [row for row in rows if row.point.quantity == "K_TS_least"]
+    most = [r for r in rows if r.point.quantity == "K_TS" and "deformation" in r.point.where]
+    ends = [*most, *least]
+    pair = [
+        Series("K_TS on the paper's scale", c["tau"], c["K_TS_pair"]),
+        Series(
+            "computed: largest and least over w",
+            [r.point.where["torque"] for r in ends],
+            [float(r.computed) for r in ends],
+            "empty",
+            titles=[r.point.id for r in ends],
+        ),
+        *published([p for p in points if p.quantity in ("K_TS", "K_TS_least")], "torque"),
+    ]
+    return [
+        Panel("Stiffness of the drive", "torque [N m]", "K [N m/rad]", drive),
+        Panel("Stiffness of the contact pair", "torque [N m]", "K_TS [N m/rad]", pair),
+    ]
 
 
-def torque_angle(result: RampResult) -> str:
-    """Wind-up over torque, both signs."""
-
-    def draw(canvas: Canvas) -> None:
-        axes = canvas.subplots()
-        tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
-        axes.plot(np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau]), color=BLUE)
-        axes.set_xlabel("wind-up at the output [arcmin]")
-        axes.set_ylabel("torque [N m]")
-
-    return svg(draw)
+def torque_angle(result: RampResult) -> Panel:
+    """Torque over wind-up, both signs."""
+    tau, angle = result.columns["tau"], np.degrees(result.columns["phi_rel"]) * 60.0
+    both = np.concatenate([-angle[::-1], angle]), np.concatenate([-tau[::-1], tau])
+    return Panel("Torque over wind-up", "wind-up [arcmin]", "torque [N m]", [Series("torque", *both)])

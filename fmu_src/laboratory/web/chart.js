@@ -57,6 +57,9 @@ class Chart {
     this.note = element("p", { class: "note" }, text);
     this.figure = element("figure", {}, element("h3", { id }, title), this.legend, this.svg, this.reading, this.note, this.rows);
     this.at = -1;
+    this.svg.addEventListener("pointerdown", (event) => (this.from = this.place(event)));
+    this.svg.addEventListener("pointerup", (event) => this.zoomTo(this.from, this.place(event)));
+    this.svg.addEventListener("dblclick", () => this.zoomTo());
     this.svg.addEventListener("pointermove", (event) => this.point(event));
     this.svg.addEventListener("pointerleave", () => this.read(-1));
     this.svg.addEventListener("keydown", (event) => this.key(event));
@@ -67,6 +70,7 @@ class Chart {
   draw(series, x, y) {
     this.series = series.filter((s) => s.x.length);
     this.axes = [x, y];
+    if (this.zoom) [x, y] = [{ ...x, range: this.zoom }, { ...y, range: y.range || this.within(y) }];
     const width = widthOf(this);
     const height = Math.round(Math.min(340, Math.max(220, 0.62 * width)));
     this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -103,6 +107,27 @@ class Chart {
     this.tabulate();
   }
 
+  /** Where the pointer is, in the units of the x axis. */
+  place(event) {
+    const box = this.svg.getBoundingClientRect();
+    return this.scale.back(((event.clientX - box.left) * this.scale.width) / box.width, 0)[0];
+  }
+
+  /** Show a part of the x axis that is wide enough to be meant; without ends the whole. */
+  zoomTo(from, to) {
+    const [low, high] = extent(this.series.flatMap((s) => s.x), this.axes[0]);
+    const [left, right] = [Math.min(from, to), Math.max(from, to)];
+    if (from !== undefined && !(right - left > 0.001 * (high - low))) return;
+    this.zoom = from === undefined || this.axes[0].log ? null : [Math.max(left, low), Math.min(right, high)];
+    this.draw(this.series, ...this.axes);
+  }
+
+  /** Range of the y axis for what is seen of the x axis. */
+  within(y) {
+    const [low, high] = this.zoom;
+    return extent(this.series.flatMap((s) => s.y.filter((_, i) => s.x[i] >= low && s.x[i] <= high)), y);
+  }
+
   drawn(s, k) {
     const colour = s.colour || COLOURS[k % COLOURS.length];
     const places = s.x.map((v, i) => [this.scale.x(v), this.scale.y(s.y[i])]).filter((p) => p.every(Number.isFinite));
@@ -128,8 +153,13 @@ class Chart {
 
   key(event) {
     const line = this.series && this.series[0];
+    if (!line) return;
+    const [low, high] = this.zoom || extent(this.series.flatMap((s) => s.x), this.axes[0]);
+    const middle = this.at >= 0 ? line.x[this.at] : (low + high) / 2;
+    if (event.key === "+") return this.zoomTo(middle - (high - low) / 4, middle + (high - low) / 4);
+    if (event.key === "-" || event.key === "Escape") return this.zoomTo();
     const move = { ArrowRight: 1, ArrowLeft: -1, PageUp: 10, PageDown: -10, Home: -1e9, End: 1e9 }[event.key];
-    if (!line || !move) return;
+    if (!move) return;
     event.preventDefault();
     this.read(Math.min(line.x.length - 1, Math.max(0, Math.max(this.at, 0) + move)));
   }

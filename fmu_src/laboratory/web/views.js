@@ -92,7 +92,7 @@ class Path {
     this.pad = new Chart(places, `Draw here: ${this.inputs[0].name}${across}`, `Press and draw, or use the arrow keys; the joint follows from where it is. ${this.inputs.map((v) => `${v.name}: ${v.doc}`).join("; ")}.`);
     this.pad.svg.classList.add("pad");
     this.pad.svg.setAttribute("role", "application");
-    for (const type of ["point", "key"]) this.pad[type] = () => {};
+    for (const type of ["point", "key", "zoomTo"]) this.pad[type] = () => {};
     this.pad.svg.addEventListener("pointerdown", (event) => { this.pad.svg.setPointerCapture(event.pointerId); this.drawing = true; this.drag(event); });
     this.pad.svg.addEventListener("pointermove", (event) => this.drawing && this.drag(event));
     for (const end of ["pointerup", "pointercancel"]) this.pad.svg.addEventListener(end, () => (this.drawing = false));

@@ -9,7 +9,7 @@
 enum { N_KNOWNS = FIRST_OUTPUT + N_STATES };
 
 struct Joint {
-    double c[N_CONSTANTS]; /* the parameters, then what follows from them alone */
+    double c[N_CONSTANTS]; /* the parameters, those that are fixed, then what follows from them alone */
 };
 
 size_t joint_size(void)
@@ -21,7 +21,8 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
 {
     (void)why;
     memcpy(joint->c, parameters, N_PARAMETERS * sizeof(double));
-    law_constants(joint->c, 0, joint->c + N_PARAMETERS);
+    memcpy(joint->c + N_PARAMETERS, data.fixed, N_FIXED * sizeof(double));
+    law_constants(joint->c, 0, joint->c + N_PARAMETERS + N_FIXED);
     return true;
 }
 

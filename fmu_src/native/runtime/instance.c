@@ -156,10 +156,13 @@ static bool refused_name_or_token(Text *text, const char *name, const char *toke
     text_clear(text);
     if (!name || !name[0])
         text_add(text, "the instance name is empty; expected a name");
-    else if (!token || strcmp(token, MODEL_TOKEN) != 0) {
+    else if (!token || strcmp(token, data.token) != 0) {
         text_add(text, "the token is ");
         text_quote(text, token);
-        text_add(text, "; expected '" MODEL_TOKEN "', that of " MODEL_NAME);
+        text_add(text, "; expected '");
+        text_add(text, data.token);
+        text_add(text, "', that of ");
+        text_add(text, data.name);
     }
     return text->length > 0;
 }
@@ -202,7 +205,7 @@ void instance_reset(Instance *m)
 {
     State *now = &m->now;
     for (size_t i = 0; i < N_VALUES; i++)
-        now->values[i] = variables[i].start;
+        now->values[i] = data.start[i];
     memset(now->slopes, 0, sizeof now->slopes);
     memset(now->last_inputs, 0, sizeof now->last_inputs);
     now->last_rate = now->last_size = 0.0;

@@ -73,21 +73,20 @@ static void pass_text(Cursor *c, char text[], size_t n)
     }
 }
 
-static const char token[] = MODEL_TOKEN;
-
 /* What stands before a state; false if it was read and is not ours. */
 static bool pass_head(Cursor *c, unsigned version)
 {
-    char first[sizeof magic] = {0}, owner[sizeof token] = {0};
-    unsigned stated = version, length = sizeof token - 1;
+    char first[sizeof magic] = {0}, owner[sizeof data.token] = {0};
+    const unsigned size = (unsigned)strlen(data.token);
+    unsigned stated = version, length = size;
     memcpy(first, magic, sizeof magic);
-    memcpy(owner, token, sizeof token);
+    memcpy(owner, data.token, sizeof data.token);
     pass_text(c, first, sizeof magic - 1);
     pass_word(c, &stated);
     pass_word(c, &length);
-    pass_text(c, owner, sizeof token - 1);
-    return strcmp(first, magic) == 0 && stated == version && length == sizeof token - 1 &&
-           strcmp(owner, token) == 0;
+    pass_text(c, owner, size);
+    return strcmp(first, magic) == 0 && stated == version && length == size &&
+           strcmp(owner, data.token) == 0;
 }
 
 static void pass(Cursor *c, State *s)
@@ -143,7 +142,12 @@ static bool is_saved(const Instance *m, const char *function, const SavedState *
         return false;
     if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version)
         return true;
-    instance_refuse(m, function, "this is no FMU state of " MODEL_NAME "; expected one that it gave");
+    Text text;
+    text_clear(&text);
+    text_add(&text, "this is no FMU state of ");
+    text_add(&text, data.name);
+    text_add(&text, "; expected one that it gave");
+    instance_refuse(m, function, text.line);
     return false;
 }
 
@@ -153,7 +157,11 @@ static Status refuse_bytes(const Instance *m, const char *function, const char *
     text_clear(&text);
     text_add(&text, "the bytes are ");
     text_add(&text, what);
-    text_add(&text, "; expected a state that " MODEL_NAME " with the token " MODEL_TOKEN " serialized");
+    text_add(&text, "; expected a state that ");
+    text_add(&text, data.name);
+    text_add(&text, " with the token ");
+    text_add(&text, data.token);
+    text_add(&text, " serialized");
     return instance_refuse(m, function, text.line);
 }
 

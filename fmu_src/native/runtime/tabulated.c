@@ -55,7 +55,8 @@ static bool check_limits(const Joint *joint, Text *why)
 bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
 {
     memcpy(joint->c, parameters, N_PARAMETERS * sizeof(double));
-    law_constants(joint->c, 0, joint->c + N_PARAMETERS);
+    memcpy(joint->c + N_PARAMETERS, data.fixed, N_FIXED * sizeof(double));
+    law_constants(joint->c, 0, joint->c + N_PARAMETERS + N_FIXED);
     return check_limits(joint, why) && kind_tabulate(joint, why);
 }
 

@@ -9,7 +9,7 @@
 #include "variables.h"
 
 struct Joint {
-    double c[N_CONSTANTS]; /* the parameters, then what the laws need of them */
+    double c[N_CONSTANTS]; /* the parameters, those that are fixed, then what the laws need of them */
     Curve curve;
     Kind kind;
 };

@@ -4,7 +4,8 @@
 #ifndef JOINTFMU_VARIABLES_H
 #define JOINTFMU_VARIABLES_H
 
-#include "model.h" /* generated: MODEL_NAME, MODEL_TOKEN, MODEL_VERSION, N_INPUTS, N_OUTPUTS, N_PARAMETERS */
+#include "data.h"  /* generated: what an FMU is beside its code */
+#include "model.h" /* generated: N_INPUTS, N_OUTPUTS, N_PARAMETERS */
 
 /* Systems define these two in model.h. */
 #ifndef N_STATES
@@ -29,7 +30,6 @@ typedef struct {
     const char *unit; /* SI; "" for a number without unit */
     const char *doc;
     const char *interval; /* allowed values as text, "(0, 1]" */
-    double start;
     double low, high;                /* allowed interval */
     unsigned char low_open, high_open; /* 1: the end itself is not allowed */
     unsigned char whole;             /* 1: whole numbers only */

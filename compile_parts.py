@@ -1,0 +1,24 @@
+"""Compile what a wheel carries, so that FMUs are built without a compiler: run this, then `pip wheel .`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+try:
+    from jointfmu_fmu_src.native.ahead import compile_ahead
+    from jointfmu_fmu_src.native.kept import SHIPPED
+except ImportError as error:
+    sys.exit(f"compile_parts.py: {error}; install what building needs with: pip install -e '.[build]'")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="FMUs (default: all)")
+    parser.add_argument("--out", type=Path, default=SHIPPED, metavar="DIR", help="default: in the package")
+    arguments = parser.parse_args()
+    try:
+        made = compile_ahead(arguments.names, arguments.out)
+    except (ImportError, RuntimeError, ValueError) as error:
+        sys.exit(f"compile_parts.py: {error}")
+    size = sum(file.stat().st_size for file in made)
+    print(f"{len(made)} parts, {size / 1e6:.1f} MB in {arguments.out}")

@@ -1,0 +1,42 @@
+"""The bolted joint's points as data: whatever gives the pressure, its C has a field of points."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from jointfmu.footprint.shape import PressureShape
+from jointfmu.joints.bolted_joint import spring
+from jointfmu.joints.bolted_joint.law import Bolted
+from jointfmu.quantity import flatten
+from jointfmu.sliders import offsets
+
+from ...native.data import DataPart, Table
+
+_SECTIONS = ("pattern.", "plate.", "field.")
+_ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
+"""A field of one point."""
+
+
+def _stands(joint: Bolted) -> Mapping[str, Any]:
+    """The joint with one point, as its C is generated, and the place of its bolts."""
+    own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
+    spread = dict(zip(("bolt_x2", "bolt_y2"), joint.pattern.bolt_spread, strict=True))
+    return own | {f"field.{name}": value for name, value in (_ONE | spread).items()}
+
+
+def _tables(joint: Bolted) -> Mapping[str, Table]:
+    patches = spring.patches(joint.pattern)
+    return {
+        "nodes": Table(_rows(spring.points(joint.pattern)), spring.POINTS),
+        "patches": Table(_rows(patches), spring.PATCHES),
+        "offsets": Table(offsets(patches.share.size)[:, None], spring.PATCHES),
+    }
+
+
+def _rows(shape: PressureShape) -> Any:
+    """Share, x, y, equal, tilt (n, 5)."""
+    return np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
+
+
+DATA = DataPart(_stands, _tables)

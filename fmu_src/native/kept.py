@@ -1,0 +1,175 @@
+"""Compiled parts of FMUs, which all parameter files of one structure share: shipped, kept or compiled now.
+
+A part is found by what went into it: the structure, and the content of every source that it is made of.
+Wheels carry parts beside this file; what is compiled here is kept in the user's cache.
+"""
+
+import io
+import lzma
+import os
+import sys
+import tarfile
+import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from pathlib import Path
+from typing import NamedTuple
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile
+
+from ..folders import own_folder
+from .compiler import exported, libraries
+from .data import PLACEHOLDER, Split, placeholder
+from .interrupt import interrupt_after
+
+SHIPPED = Path(__file__).with_name("parts")
+"""Where wheels have theirs."""
+VERSIONS = ("2", "3")
+CACHE = "JOINTFMU_CACHE"
+"""Environment variable with the folder of the parts that are kept."""
+MOST_KEPT = 200
+"""Parts that are kept [1]; older ones go."""
+_SUFFIX = ".tar.xz"
+_COMPILERS = ("casadi", "ziglang")
+_SOURCES = (".py", ".c", ".h")
+
+
+class Part(NamedTuple):
+    """What is the same for all FMUs of a structure.
+
+    sources   : {file name: text} of all C files but the data
+    libraries : {FMI version: {platform: library}} with placeholders of data and name
+    """
+
+    sources: dict[str, str]
+    libraries: dict[str, dict[str, bytes]]
+
+
+def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
+    """The part of an FMU.
+
+    Raises ImportError if it has to be compiled and a package is missing, ValueError and RuntimeError as
+    `compiler.libraries`.
+    """
+    for file in _places(model, given):
+        with suppress(OSError, lzma.LZMAError, tarfile.TarError, ValueError):
+            return read(file.read_bytes())
+    made = compiled(model, parameters, given)
+    with suppress(OSError):  # nothing is lost but time
+        _keep(_places(model, given)[-1], written(made))
+    return made
+
+
+def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
+    """The same, compiled now."""
+    from .generate import code
+
+    with interrupt_after():
+        sources = code(model, parameters, given)
+    every = sources | {"data.c": placeholder(model, given).source()}
+    built = {v: libraries(model.name, every, exported(every, v), stem=PLACEHOLDER) for v in VERSIONS}
+    return Part(sources, built)
+
+
+def shipped_name(model: Model, given: Split) -> str:
+    """File name of a part in a wheel."""
+    law = model.parameters
+    text = f"{model.name} {law.__module__}.{law.__qualname__} {given.structure} {_sources_of(model)}"
+    return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
+
+
+def _places(model: Model, given: Split) -> tuple[Path, Path]:
+    """Where a part may lie: in the wheel, and in the cache, there for each version of the compilers."""
+    name, used = shipped_name(model, given), []
+    for package in _COMPILERS:
+        with suppress(PackageNotFoundError):
+            used.append(f"{package}-{version(package)}")
+    return SHIPPED / name, cache_folder() / "_".join(used or ["none"]) / name
+
+
+def cache_folder() -> Path:
+    """The folder of the parts that are kept: JOINTFMU_CACHE, or in the user's cache."""
+    if own := os.environ.get(CACHE):
+        return Path(own)
+    home = {
+        "win32": os.environ.get("LOCALAPPDATA") or "~/AppData/Local",
+        "darwin": "~/Library/Caches",
+    }.get(sys.platform, os.environ.get("XDG_CACHE_HOME") or "~/.cache")
+    return Path(home).expanduser() / "jointfmu"
+
+
+def _sources_of(model: Model) -> str:
+    """Digest of every file that code is generated of: the package, this builder, the joint's folders."""
+    own = KINDS.get(model.joint)
+    packages = {"jointfmu", own.package if own else "jointfmu"}
+    roots = [Path(str(files(package))) for package in sorted(packages)]
+    return _digest((*roots, Path(__file__).parent, own_folder(model)))
+
+
+@cache
+def _digest(folders: tuple[Path, ...]) -> str:
+    digest = sha256()
+    for folder in folders:
+        for name, content in _files(folder):
+            digest.update(f"{name}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()
+
+
+def _files(folder: Path) -> Iterator[tuple[str, bytes]]:
+    found = {
+        path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.suffix in _SOURCES
+    }
+    for name in sorted(found):
+        yield name, found[name].read_bytes()
+
+
+def written(made: Part) -> bytes:
+    """A part as a file; equal parts give equal bytes."""
+    members = {f"sources/{name}": text.encode() for name, text in made.sources.items()}
+    for platform in made.libraries[VERSIONS[0]]:  # what is alike lies side by side
+        members |= {f"{v}/{platform}": made.libraries[v][platform] for v in VERSIONS}
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w:xz", preset=9) as archive:
+        for name, content in members.items():
+            info = tarfile.TarInfo(name)
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return buffer.getvalue()
+
+
+def read(content: bytes) -> Part:
+    """A part of a file.
+
+    Raises ValueError, LZMAError or TarError if it is none.
+    """
+    sources: dict[str, str] = {}
+    built: dict[str, dict[str, bytes]] = {v: {} for v in VERSIONS}
+    with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
+        for info in archive:
+            folder, _, name = info.name.partition("/")
+            stream = archive.extractfile(info)
+            member = stream.read() if stream else b""
+            if folder == "sources":
+                sources[name] = member.decode()
+            else:
+                built[folder][name] = member
+    if not sources or not all(built.values()):
+        raise ValueError("no part")
+    return Part(sources, built)
+
+
+def _keep(file: Path, content: bytes) -> None:
+    """Put a file in place in one go, and remove the oldest beside it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
+        new.write(content)
+    Path(new.name).replace(file)
+    kept = sorted(file.parent.glob(f"*{_SUFFIX}"), key=lambda path: path.stat().st_mtime)
+    for old in kept[:-MOST_KEPT]:
+        old.unlink(missing_ok=True)

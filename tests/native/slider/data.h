@@ -1,0 +1,20 @@
+/* What an FMU is beside its code: name, token, start values, numbers that no tool may set. */
+#ifndef JOINTFMU_DATA_H
+#define JOINTFMU_DATA_H
+
+#include <stdint.h>
+
+enum { N_FIXED = 0 };
+
+typedef struct {
+    char magic[16];
+    char name[64];
+    char token[40];
+    double start[8];
+    double fixed[1];
+} Data;
+_Static_assert(sizeof(Data) == 192, "the same bytes on every platform");
+
+extern const Data data;
+
+#endif
