@@ -474,11 +474,11 @@ def edges_of(load: Any) -> list[float]:
 
 
 def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveSpring):
-    v = {**system("robot_joint").values, "torque.pulse_start": 0.02}  # and the ramp afterwards
+    v = {**system("robot_joint").values, "load.pulse_start": 0.02}  # and the ramp afterwards
     text = top("extends JointStiffness.Examples.RobotJoint(load(pulse_start=0.02));")
     found = simulate(rumoca, text, 0.15, 1e-3, rtol=1e-7)
-    slides = HarmonicDriveSpring.of(changed(drive.joint, system("robot_joint").joint_parameters)).hysteresis
-    load = TorqueProfile(**{k.removeprefix("torque."): x for k, x in v.items() if k.startswith("torque.")})
+    slides = HarmonicDriveSpring.of(system("robot_joint").joints["drive"].file.values).hysteresis
+    load = TorqueProfile(**{k.removeprefix("load."): x for k, x in v.items() if k.startswith("load.")})
     ramp = [load.ramp_start, load.ramp_start + load.ramp_duration]
 
     def right(t: float, x: np.ndarray) -> list[float]:
@@ -505,13 +505,13 @@ def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveS
 
 def test_bolted_column_runs_as_the_package_says(rumoca: Any, bolted: BoltedJointSpring):
     v = system("bolted_column").values
-    stop = 0.15 * v["experiment.stop_time"]
+    stop = 0.15 * system("bolted_column").stop_time
     text = top("extends JointStiffness.Examples.BoltedColumn;")
     found = simulate(rumoca, text, stop, 1e-5, rtol=1e-7)
-    pulse = {f"pulse_{k.removeprefix('pulse.')}": x for k, x in v.items() if k.startswith("pulse.")}
+    pulse = {k.removeprefix("load."): x for k, x in v.items() if k.startswith("load.")}
     load = ForceProfile(ramp_height=0.0, ramp_start=0.0, ramp_duration=1.0, **pulse)
 
-    stiffness, limit = column_sliders(bolted, v["joint_state.preload"])
+    stiffness, limit = column_sliders(bolted, v["joint.preload"])
 
     def right(t: float, x: np.ndarray) -> list[float]:
         pushed = float(load.outputs({"time": t, "f_in": 0.0})["f"])
