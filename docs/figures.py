@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmu_src import ringing, ssp
+from jointfmu_fmu_src import cosimulation, ringing, ssp
 from jointfmu_fmu_src.checks import default_ramp
 from jointfmu_fmu_src.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_fmu_src.joints.harmonic_drive import figures
 from jointfmu_fmu_src.python.build import runtime_sources
+from jointfmu_fmu_src.report import motion
 from jointfmu_fmu_src.report.systems import SIZE, draw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,6 +25,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.fit import lines
 from jointfmu.joints.harmonic_drive.fit.row import Row
 from jointfmu.parameters import write_text
+from jointfmu.systems import system
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
@@ -43,6 +45,17 @@ def main() -> None:
     picture = figures.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
+    robot(IMAGES / "six_axis_robot.png")
+
+
+def robot(path: Path) -> None:
+    """Draw what the robot of the systems does."""
+    found = system("six_axis_robot")
+    with TemporaryDirectory() as folder:
+        ssp.build_systems(Path(folder), [found])
+        run = cosimulation.simulate(found, Path(folder) / "fmi2")
+    with plots.drawing(path, motion.SIZE) as canvas:
+        motion.draw(canvas, found, run)
 
 
 def resonance(path: Path) -> None:
@@ -50,10 +63,11 @@ def resonance(path: Path) -> None:
     row = Row(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
     drive = lines.fit(row, ratio=100.0).parameters
     with TemporaryDirectory() as folder:
-        ssp.build_systems(Path(folder), drive)
-        points = ringing.ring("robot_joint", Path(folder) / "fmi2")
+        ssp.build_systems(Path(folder), parameters=drive)
+        one = ringing.rung(system("robot_joint"))
+        points = ringing.ring(one, Path(folder) / "fmi2")
     with plots.drawing(path, SIZE) as canvas:
-        draw(canvas, points, ringing.body_on(drive.joint))
+        draw(canvas, points, one.body)
 
 
 def house() -> str:

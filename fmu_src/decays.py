@@ -12,11 +12,10 @@ from jointfmu import loops
 from jointfmu.fitting import decay
 from jointfmu.fitting.hysteresis import Hysteresis
 from jointfmu.progress import track
-from jointfmu.systems import system
 
 from .master import Array, Slave, motion
 from .partners import PARTNERS
-from .ringing import PER_PERIOD, Body, Rest, body_on, rings
+from .ringing import PER_PERIOD, Body, Rest, Rung, rings
 
 PERIODS, SETTLED = 60, 10
 """Periods of a decay, and the last ones, whose mean is where the joint settles: friction holds it off its
@@ -56,13 +55,16 @@ class Decay:
 
 
 def examples(folder: Path) -> dict[str, list[Decay]]:
-    """The systems whose joint says how it rings, pulled so that it slips; `folder` has the FMUs (FMI 2.0)."""
-    pulls = {name: body_on(example.joint).pull for name, example in rings()}
-    return {name: decays(name, folder, pull.deflection, [pull.load]) for name, pull in pulls.items()}
+    """The systems of one joint that says how it rings, pulled so that it slips.
+
+    folder : of the FMUs (FMI 2.0)
+    """
+    pulls = [(name, one, one.body.pull) for name, one in rings().items()]
+    return {name: decays(one, folder, pull.deflection, [pull.load]) for name, one, pull in pulls}
 
 
 def decays(
-    name: str,
+    one: Rung,
     folder: Path,
     first: float,
     loads: Sequence[float] | None = None,
@@ -78,14 +80,12 @@ def decays(
 
     Raises ValueError for an FMU that is missing or refuses, and where too few periods stand out.
     """
-    example = system(name)
-    body = body_on(example.joint)
-    loads = [max(body.loads(folder))] if loads is None else loads
-    inertia = example.inertia if inertia is None else inertia
-    key = example.body.rpartition(".")[2]
-    joint = {**example.joint_parameters, **(settings or {})}
+    body, own = one.body, one.joint.parameters
+    loads = [max(body.loads(folder, own))] if loads is None else loads
+    inertia = one.inertia if inertia is None else inertia
+    joint = {**own, **(settings or {})}
     return [
-        _decay_at(body, folder, load, joint, {key: inertia}, first)
+        _decay_at(body, folder, load, joint, {one.key: inertia}, first)
         for load in track(loads, "ring", len(loads))
     ]
 

@@ -10,12 +10,14 @@ from jointfmu import ramp, validation
 from jointfmu.joints import MODELS
 from jointfmu.parameters import write_text
 from jointfmu.progress import track
+from jointfmu.systems import System
 
-from . import decays
+from . import cosimulation, decays
 from .building import FLAVOURS, build
 from .checks import Check, check, check_decays, check_ringing, default_ramp, published_through_fmus, same
 from .decays import Decay
 from .laboratory import write_laboratory
+from .master import Array
 from .report import write_report
 from .ringing import Ringing, examples
 from .ssp import build_systems
@@ -34,6 +36,7 @@ class Outcome:
     fmu_rows: list[validation.Row] = field(default_factory=list)
     ringing: dict[str, list[Ringing]] = field(default_factory=dict)
     decays: dict[str, list[Decay]] = field(default_factory=dict)
+    arms: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
 
     @property
     def misses(self) -> list[str]:
@@ -62,7 +65,7 @@ def run(out: Path) -> Outcome:
     """
     outcome = Outcome()
     outcome.built = build([], list(FLAVOURS), None, out)
-    outcome.systems = build_systems(out, None, joints=False)
+    outcome.systems = build_systems(out, joints=False)
     folder = out / "fmi2"
     for name in track(MODELS, "validate and ramp", len(MODELS)):
         for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
@@ -84,6 +87,7 @@ def run(out: Path) -> Outcome:
         elif step == "systems":
             outcome.ringing = examples(folder)
             outcome.decays = decays.examples(folder)
+            outcome.arms = cosimulation.arms(folder)
             outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
         else:
             write_report(out / "report" / "index.html", outcome)

@@ -3,17 +3,20 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track
-from jointfmu.systems import System, system, systems
+from jointfmu.quantity import flat_fields
+from jointfmu.systems import Component, System, systems
 
 from .joints import part
 from .master import Array, Slave, damping_ratio, motion, peak
 from .partners import PARTNERS
+from .partners import parameters as partner_parameters
+from .wiring import wires
 
 PER_PERIOD, PERIODS = 100, 25
 RESONANCE_TOLERANCE = 5e-3
@@ -106,7 +109,8 @@ class Body:
     motion  : its inputs, position and speed of the body
     force   : its output, the force or torque on the body
     partner : FMU of the body
-    loads   : folder of the FMUs -> the loads that show the joint, SI
+    over    : the variable that loads it
+    loads   : (folder of the FMUs, parameters of the joint) -> the loads that show the joint, SI
     start   : load -> {input: value} of the joint's FMU under it
     rest    : (folder of the FMUs, load, parameters of the joint's FMU) -> working point; ValueError where
               nothing rings
@@ -122,7 +126,8 @@ class Body:
     motion: tuple[str, str]
     force: str
     partner: str
-    loads: Callable[[Path], Sequence[float]]
+    over: str
+    loads: Callable[[Path, Mapping[str, Any]], Sequence[float]]
     start: Callable[[float], Mapping[str, float]]
     rest: Callable[[Path, float, Mapping[str, float]], Rest]
     release: float
@@ -144,18 +149,76 @@ def body_on(joint: str) -> Body:
     return body
 
 
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """A joint of a system, and the body on it that rings while all others are held.
+
+    key : the parameter of the body that is its inertia
+    """
+
+    body: Body
+    joint: Component
+    moving: Component
+    key: str
+
+    @property
+    def inertia(self) -> float:
+        """Of the body [kg or kg.m2]."""
+        given = self.moving.values.get(self.key)
+        return float(partner_parameters(self.moving.model).flat[self.key] if given is None else given)
+
+    @property
+    def inertia_unit(self) -> str:
+        """Its unit."""
+        fields = dict(flat_fields(PARTNERS[self.moving.model].parameters))
+        return str(fields[self.key].metadata["unit"])
+
+    @property
+    def motion_unit(self) -> str:
+        """Unit of the deflection."""
+        return KINDS[self.joint.kind].variables[self.body.motion[0]].unit
+
+    @property
+    def load_unit(self) -> str:
+        """Unit of what loads the joint."""
+        return KINDS[self.joint.kind].variables[self.body.over].unit
+
+
+def rung(system: System, joint: str | None = None) -> Rung:
+    """What rings in a system.
+
+    joint : name of one of its joints; None: the only one
+
+    Raises ValueError if there is none of that name, several, or one that says nothing of how it rings.
+    """
+    joints = system.joints
+    if joint is None and len(joints) > 1:
+        raise ValueError(f"{system.name} has several joints, one must be named: {', '.join(joints)}")
+    name = next(iter(joints)) if joint is None else joint
+    if name not in joints:
+        raise ValueError(f"joint {name!r} is not in {system.name}, allowed are {', '.join(joints)}")
+    body = body_on(joints[name].kind)
+    ends = [w.source for w in wires(system) if (w.target, w.input) == (name, body.motion[0])]
+    moving = system.components[ends[0]] if ends else None
+    if joints[name].model != body.fmu or moving is None or moving.model != body.partner:
+        raise ValueError(f"{name}: expected a {body.fmu} that takes {body.motion[0]} from a {body.partner}")
+    return Rung(body, joints[name], moving, next(iter(dict(flat_fields(PARTNERS[body.partner].parameters)))))
+
+
 def examples(folder: Path) -> dict[str, list[Ringing]]:
-    """The systems whose joint says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
-    return {name: ring(name, folder) for name, _ in rings()}
+    """The systems of one joint that says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
+    return {name: ring(one, folder) for name, one in rings().items()}
 
 
-def rings() -> list[tuple[str, System]]:
-    """The systems whose joint says how it rings, with their names."""
-    return [item for item in systems().items() if part(KINDS[item[1].joint], "ringing")]
+def rings() -> dict[str, Rung]:
+    """What rings in the shipped systems of one joint that says how, by the system's name."""
+    alone = {n: s for n, s in systems().items() if len(s.joints) == 1}
+    kinds = {n: next(iter(s.joints.values())).kind for n, s in alone.items()}
+    return {n: rung(s) for n, s in alone.items() if part(KINDS[kinds[n]], "ringing")}
 
 
 def ring(
-    name: str, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
+    one: Rung, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
     """The body of a system on its joint without friction, about working points under a load.
 
@@ -165,15 +228,14 @@ def ring(
 
     Raises ValueError for an FMU that is missing or refuses, and where nothing rings.
     """
-    example = system(name)
-    body = body_on(example.joint)
+    body, joint = one.body, {**one.joint.parameters, **one.body.elastic}
     if loads is None:
-        loads = body.loads(folder)
+        loads = body.loads(folder, one.joint.parameters)
     if inertia is None:
-        inertia = example.inertia
-    key = example.body.rpartition(".")[2]
-    joint = {**example.joint_parameters, **body.elastic}
-    return [_ring_at(body, folder, load, joint, key, inertia) for load in track(loads, "ring", len(loads))]
+        inertia = one.inertia
+    return [
+        _ring_at(body, folder, load, joint, one.key, inertia) for load in track(loads, "ring", len(loads))
+    ]
 
 
 def _ring_at(

@@ -1,131 +1,128 @@
-"""`jointfmu build --systems`: the partners' FMUs, and `models/ssp/*.ssd` packed with all that they need."""
+"""Systems as SSP archives: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with FMUs of FMI 3.0."""
 
-from collections.abc import Mapping
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-from xml.etree.ElementTree import Element, SubElement, fromstring
 
-from jointfmu.joints import MODELS
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import ParameterFile
 from jointfmu.progress import track
-from jointfmu.systems import System, system, systems
-from jointfmu.units import UNITS
+from jointfmu.systems import Component, System, systems
 
 from .archive import pack, workshop
 from .native.build import build
-from .partners import PARTNERS
 from .partners import parameters as partner_parameters
-from .xml_parts import VARIABILITIES, serialized
+from .structure import MASTERS, Master, Value, parameter_set, structure
+from .wiring import lags, model_of, wires
+from .xml_parts import VARIABILITIES
 
-_SSD = "{http://ssp-standard.org/SSP1/SystemStructureDescription}"
-_NAMESPACES = {
-    "xmlns:ssc": "http://ssp-standard.org/SSP1/SystemStructureCommon",
-    "xmlns:ssv": "http://ssp-standard.org/SSP1/SystemStructureParameterValues",
-}
-_LOADS = ("torque", "pulse")
-"""Groups of a system's file that describe its load."""
+FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}
+"""{version of SSP: (folder of the archives, folder of their FMUs)}."""
 
 
 def build_systems(
-    out: Path, parameters: ParameterFile | None, joints: bool = True, variability: str = VARIABILITIES[0]
+    out: Path,
+    wanted: Sequence[System] | None = None,
+    parameters: ParameterFile | None = None,
+    joints: bool = True,
+    variability: str = VARIABILITIES[0],
 ) -> list[Path]:
-    """Write `out/ssp/SYSTEM.ssp`, and its partners as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
+    """Write the archives of systems, and their components as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
-    parameters : of a joint, instead of its defaults: then only its systems are packed
-    joints     : build the systems' joints beside the partners; else they are in `out/fmi2`
+    wanted      : None: all that are shipped
+    parameters  : of a joint, instead of that of the systems: then only systems with the joint are packed
+    joints      : build the systems' joints beside the partners; else they are there
     variability : of the parameters, one of VARIABILITIES
 
-    The archives hold FMUs of FMI 2.0. Raises what `native.build.build` raises, and ValueError if no
-    system has the joint.
+    Raises what `native.build.build` and `pack_system` raise, and ValueError if no system has the joint, or
+    two joints of one FMU differ in what is baked into it.
     """
-    joint_of = {name: system.joint for name, system in systems().items()}
-    names = [name for name, kind in joint_of.items() if parameters is None or kind == parameters.joint]
-    if parameters and not names:
-        allowed = ", ".join(sorted(set(joint_of.values())))
-        raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
-    used: dict[str, ParameterFile] = {}
-    for name in names:
-        for fmu in components(structure(name)).values():
-            if fmu in PARTNERS:
-                used[fmu] = partner_parameters(fmu)
-            elif joints:
-                used[fmu] = parameters or default(joint_of[name])
-    jobs = [(fmu, version) for version in "23" for fmu in used]
+    chosen = list(systems().values()) if wanted is None else list(wanted)
+    if parameters:
+        kinds = {kind for system in chosen for kind in system.kinds}
+        if parameters.joint not in kinds:
+            allowed = ", ".join(sorted(kinds))
+            raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
+        chosen = [system.with_joint(parameters) for system in chosen if parameters.joint in system.kinds]
+    used: dict[str, Component] = {}
+    for system in chosen:
+        wires(system)
+        for name, fmu in fmu_names(system).items():
+            used.setdefault(fmu, system.components[name])
+    wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
+    jobs = [(fmu, one, version) for version in "23" for fmu, one in wanted_fmus.items()]
     built = []
-    for fmu, version in track(jobs, "build FMUs of systems", len(jobs)):
-        built.append(build(fmu, used[fmu], out / f"fmi{version}", version, variability))
-    return built + [pack_system(name, out, parameters or default(joint_of[name])) for name in names]
+    for fmu, one, version in track(jobs, "build FMUs of systems", len(jobs)):
+        file = one.file or partner_parameters(one.model)
+        alias = "" if fmu == one.model else fmu
+        built.append(build(one.model, file, out / f"fmi{version}", version, variability, alias))
+    return built + [path for system in chosen for path in pack_system(system, out)]
 
 
-def pack_system(name: str, out: Path, joint: ParameterFile) -> Path:
-    """Write `out/ssp/name.ssp` of FMUs in `out/fmi2`, with the parameters of its joint."""
-    ssd = structure(name)
-    example = system(name)
-    members = {"SystemStructure.ssd": ssd}
-    every: dict[str, tuple[Any, str]] = {}
-    for component, fmu in components(ssd).items():
-        own = values(example, component, fmu, joint)
-        every |= {f"{component}.{variable}": value for variable, value in own.items()}
-        members[f"resources/{fmu}.fmu"] = (out / "fmi2" / f"{fmu}.fmu").read_bytes()
-        members[f"parameters/{component}.ssv"] = parameter_set(name, own)
-    members[f"parameters/{name}.ssv"] = parameter_set(name, every)
-    target = out / "ssp" / f"{name}.ssp"
+def pack_system(system: System, out: Path) -> list[Path]:
+    """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for every one of MASTERS.
+
+    They hold FMUs of `out/fmi2` and `out/fmi3`, and the system's numbers.
+
+    Raises ValueError for flanges that do not fit, see `wiring.ends`, and folders that cannot be written.
+    """
+    return [_pack(system, out, version, master) for version in FOLDERS for master in MASTERS]
+
+
+def _pack(system: System, out: Path, version: str, master: Master) -> Path:
+    folder, fmus = FOLDERS[version]
+    late, names = lags(system), fmu_names(system)
+    members = {"SystemStructure.ssd": structure(system, names, version, master)}
+    every: dict[str, Value] = {}
+    for name, component in system.components.items():
+        own = values(component) | {lag: Value(master.lag, "1", master.doc) for lag in late.get(name, ())}
+        every |= {f"{name}.{variable}": value for variable, value in own.items()}
+        members[f"resources/{names[name]}.fmu"] = (out / fmus / f"{names[name]}.fmu").read_bytes()
+        members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version)
+    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version)
+    target = out / folder / f"{system.name}{master.suffix}.ssp"
     with workshop(target) as work:
         pack(members, work / target.name)
     return target
 
 
-def structure(name: str) -> bytes:
-    """The system structure description of a system."""
-    return (files("jointfmu_models") / "ssp" / f"{name}.ssd").read_bytes()
+def values(component: Component) -> dict[str, Value]:
+    """{variable: value} of a component: of the joint's file, and of the system's.
 
-
-def components(ssd: bytes) -> dict[str, str]:
-    """{component: FMU} of a system structure description."""
-    nodes = fromstring(ssd).iter(f"{_SSD}Component")
-    return {node.get("name", ""): Path(node.get("source", "")).stem for node in nodes}
-
-
-def values(example: System, component: str, fmu: str, joint: ParameterFile) -> dict[str, tuple[Any, str]]:
-    """{variable: (value, unit)} of a component: of the joint's file, and of the system's.
-
-    In a system the loads of joints come late, as in every master that steps its FMUs side by side. Booleans
-    of the joint's file are the start values of its FMU: fmpy takes every Boolean of a parameter set for true.
+    Booleans of the joint's file are the start values of its FMU: fmpy takes every Boolean of a parameter set
+    for true.
     """
-    if fmu in MODELS:
-        model = MODELS[fmu].of(joint.joint, joint.values)
-        fields = model.parameter_fields()
-        file = {n: v for n, v in joint.flat.items() if not isinstance(v, bool)}
-        given = {n: v for n, v in {**file, **example.joint_parameters}.items() if n in fields}
-        own = {n: (v, fields[n].metadata.get("unit", "")) for n, v in given.items()}
-        inputs = {v.name: v.unit for v in model.inputs}
-        return own | {n: (v, inputs[n]) for n, v in example.joint_state.items()}
-    fields = PARTNERS[fmu].parameter_fields()
-    named: dict[str, float] = {}
-    for name, value in example.values.items():
-        group, _, variable = name.partition(".")
-        if group == component:
-            named[variable] = value
-        elif component == "load" and group in _LOADS:
-            named[variable if variable in fields else f"pulse_{variable}"] = value
-    if "lag_b" in fields:
-        named["lag_b"] = 1.0
-    return {n: (v, fields[n].metadata["unit"]) for n, v in named.items()}
+    found: dict[str, Value] = {}
+    if component.file:
+        for name, item in model_of(component).parameter_fields().items():
+            value = component.file.flat[name]
+            if not isinstance(value, bool):
+                found[name] = Value(
+                    value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
+                )
+    return found | {
+        name: Value(value, component.units[name], component.sources[name])
+        for name, value in component.values.items()
+        if name in component.parameters or name in component.state
+    }
 
 
-def parameter_set(name: str, entries: Mapping[str, tuple[Any, str]]) -> bytes:
-    """An SSV file of {variable: (value, unit)}."""
-    root = Element("ssv:ParameterSet", {**_NAMESPACES, "version": "1.0", "name": name})
-    parameters = SubElement(root, "ssv:Parameters")
-    for variable, (value, unit) in entries.items():
-        node = SubElement(parameters, "ssv:Parameter", name=variable)
-        if isinstance(value, bool):
-            SubElement(node, "ssv:Boolean", value=str(value).lower())
-        else:
-            SubElement(node, "ssv:Real", value=repr(float(value)), unit=unit)
-    units = SubElement(root, "ssv:Units")
-    for unit in sorted({unit for _, unit in entries.values() if unit}):
-        node = SubElement(units, "ssc:Unit", name=unit)
-        SubElement(node, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[unit].base.items()})
-    return serialized(root)
+def fmu_names(system: System) -> dict[str, str]:
+    """{component: its FMU}: the model's name; where it is another, SYSTEM_COMPONENT of the first one with the
+    same baked values."""
+    found: dict[str, str] = {}
+    variants: list[tuple[str, Mapping[str, Any], str]] = []
+    for name, component in system.components.items():
+        if not (component.file and component.own):
+            found[name] = component.model
+            continue
+        exposed = model_of(component).parameter_fields()
+        baked = {
+            key: value
+            for key, value in component.file.flat.items()
+            if key not in exposed or isinstance(value, bool)
+        } | {"law": component.file.law}
+        same = [fmu for model, values, fmu in variants if (model, values) == (component.model, baked)]
+        found[name] = same[0] if same else f"{system.name}_{name}"
+        if not same:
+            variants.append((component.model, baked, found[name]))
+    return found

@@ -25,6 +25,8 @@ from natives import VERSIONS
 from proofs import copy, other_manifest, proved, replaced
 
 from jointfmu import cli
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default
 from jointfmu.proof.importers import VERSIONS as KNOWN
 from jointfmu.proof.manifest import FOLDER
 
@@ -83,6 +85,19 @@ def test_partners_prove_themselves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, version: str
 ) -> None:
     fmu = native_build(name, partner_parameters(name), tmp_path, version[-1])
+    all_pass(proved(capsys, fmu))
+
+
+@pytest.mark.parametrize(
+    ("joint", "law"), [(name, law) for name, kind in KINDS.items() for law in list(kind.laws)[1:]]
+)
+def test_fmus_of_other_laws_prove_themselves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], joint: str, law: str
+) -> None:
+    """Under a name of the user's own, too."""
+    name = KINDS[joint].models[-1].name
+    fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
+    assert fmu.name == "own_joint.fmu"
     all_pass(proved(capsys, fmu))
 
 

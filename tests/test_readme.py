@@ -82,6 +82,7 @@ def test_every_kind_of_command_is_shown():
         "footprint",
         "modes",
         "ring",
+        "system",
     }
 
 

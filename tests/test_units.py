@@ -202,7 +202,8 @@ def declared():
             if "unit" in item.metadata:
                 yield f"{name}.{field}", item.metadata["unit"]
     for name, example in systems().items():
-        yield from ((f"{name}.{key}", unit) for key, unit in example.units.items())
+        for part in example.components.values():
+            yield from ((f"{name}.{part.name}.{key}", unit) for key, unit in part.units.items() if unit)
     for spec in (preload.COLUMNS, torque_angle.COLUMNS, PAIRS, FIELD, {"height": LENGTHS}):
         yield from ((name, next(iter(units))) for name, units in spec.items())
     yield from (*columns.LABEL_HEADS, *columns.SPRING_HEADS)

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from math import comb
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, write_text
+from jointfmu.partners import POINTS
 from jointfmu.quantity import flat_fields
 from jointfmu.systems import System, systems
 
@@ -21,11 +24,12 @@ from ..joints import part
 from ..templates import law_terms, template
 from .blocks import interface, wrapper
 from .records import Component, Record, WorkingPoint
+from .systems import model_name, system_model
 from .tables import TOLERANCE
-from .text import environment, number, text
+from .text import environment, text
 
 NAME = "JointStiffness"
-_PARTNERS = ("LinkWeight", "Load")
+_PARTNERS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
 """Components that the systems need beside joints."""
 _FUNCTIONS = (
     "load",
@@ -80,8 +84,8 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
     shared = environment()
     block, model = (shared.get_template(name) for name in ("Interfaces/block.mo", "Wrappers/wrapper.mo"))
     packages = {
-        "Examples": _examples(joints),
-        "Components": _components(joints) | _plain(shared, "Components", _PARTNERS),
+        "Examples": _examples(joints, shared),
+        "Components": _components(joints) | _plain(shared, "Components", _PARTNERS, points=POINTS, comb=comb),
         "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
         "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
         "Data": _data(joints),
@@ -114,9 +118,9 @@ def _order(names: Mapping[str, Any]) -> str:
     return "\n".join(names) + "\n"
 
 
-def _plain(shared: Environment, package: str, names: Sequence[str]) -> dict[str, str]:
-    """{class: text} of classes that nothing is filled in."""
-    return {name: shared.get_template(f"{package}/{name}.mo").render() for name in names}
+def _plain(shared: Environment, package: str, names: Sequence[str], **terms: Any) -> dict[str, str]:
+    """{class: text} of classes that nothing of a joint is filled in."""
+    return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
 
 
 def _components(joints: Sequence[_Joint]) -> dict[str, str]:
@@ -146,22 +150,32 @@ def _data(joints: Sequence[_Joint]) -> dict[str, str]:
     return bases | tables
 
 
-def _examples(joints: Sequence[_Joint]) -> dict[str, str]:
-    """The systems that a template of their joint shows."""
-    classes = {}
+def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
+    """The systems that are shipped."""
     by_kind = {joint.kind.name: joint for joint in joints}
-    for system_name, system in systems().items():
-        joint = by_kind.get(system.joint)
-        name = system_name.title().replace("_", "")
-        if joint and f"Examples/{name}.mo" in joint.templates.list_templates():
-            state = tuple(system.joint_state.get(label, 0.0) for label in joint.kind.working_point)
-            classes[name] = joint.templates.get_template(f"Examples/{name}.mo").render(
-                v={label: number(value) for label, value in system.values.items()},
-                own=joint.component.of_system(joint.file, system),
-                sources=_sources(system),
-                record=joint.records.get(state, joint.record).name,
-            )
+    classes = {}
+    for system in systems().values():
+        for joint in joints:
+            system = system.with_joint(joint.file)
+        classes[model_name(system)] = system_model(
+            system, shared, partial(_known, by_kind), f"{NAME}.Examples"
+        )
     return classes
+
+
+def system_text(system: System) -> str:
+    """A system as a model of its own, with the library's components."""
+    return system_model(system, environment(), lambda kind, file, point: None)
+
+
+def _known(
+    joints: Mapping[str, _Joint], kind: str, file: ParameterFile, point: WorkingPoint
+) -> Record | None:
+    """The record of the library for a joint's parameters, if they are those of the library."""
+    joint = joints[kind]
+    special = joint.component.special
+    same = all(joint.file.flat.get(name) == value for name, value in file.flat.items() if name not in special)
+    return joint.records.get(point, joint.record if not point else None) if same else None
 
 
 def _meanings(kind: Kind) -> dict[str, str]:
@@ -181,12 +195,3 @@ def _documentation(model: Model, file: ParameterFile) -> dict[str, str]:
     names = ("what", "law", "trust", "paper")
     terms = {"model": model, "fmu": False, **law_terms(file)}
     return {name: text(page.render(terms, part=name).strip()) for name in names}
-
-
-def _sources(system: System) -> str:
-    rows = "".join(
-        f"<tr><td><code>{name}</code></td><td>{number(value)} {system.units[name].replace('.', ' ')}</td>"
-        f"<td>{text(system.sources[name])}</td></tr>\n"
-        for name, value in system.values.items()
-    )
-    return f"<table>\n<tr><th>number</th><th>value</th><th>source</th></tr>\n{rows}</table>"

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from jointfmu.parameters import ParameterFile
-from jointfmu.systems import System
 
 from .tables import TOLERANCE, Table
 from .text import matrix, number, text
@@ -53,16 +52,18 @@ class Record:
 class Component:
     """COMPONENT in the folder `modelica` of a joint.
 
-    The templates lie beside it as in the library: Components/NAME.mo, Data/BASE.mo, and in Examples the
-    systems with the joint. The component's gets the meanings of parameters `meta` and of outputs `docs`, the
-    FMU's page `html`, the name of its first record `record`, and `texts`.
+    The templates lie beside it as in the library: Components/NAME.mo and Data/BASE.mo. The component's gets
+    the meanings of parameters `meta` and of outputs `docs`, the FMU's page `html`, the name of its first
+    record `record`, and `texts`.
 
     name    : of the component, and of the FMU that it stands for
     base    : of its records
     points  : working points of the records unless others are asked for
     records : (parameters, working points) -> a record for each, the first the component's own
     texts   : first record -> {name: text}
-    of_system : (parameters, system) -> {name: text} that an example's template gets as `own`
+    flanges : names of its flanges
+    of_system : parameters -> {parameter of the component: text} that a system sets beside the record
+    special : parameters of the joint that only these decide, not the record's table
     note    : HTML for the description of all components
     """
 
@@ -72,7 +73,9 @@ class Component:
     records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[Record]]
     texts: Callable[[Record], Mapping[str, str]]
     note: str = ""
-    of_system: Callable[[ParameterFile, System], Mapping[str, str]] = lambda file, system: {}
+    flanges: Sequence[str] = ("flange_a", "flange_b")
+    of_system: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}
+    special: Sequence[str] = ()
 
 
 def numbers(values: Mapping[str, float]) -> dict[str, str]:

@@ -107,9 +107,11 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
         return (*common, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
     # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
     # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
+    # Without sin and cos as built-in functions the compiler makes no sincos of both, which only mingw has.
     headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
     return (
-        *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-D_UCRT", "-isystem", str(headers),
+        *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-fno-builtin-sin", "-fno-builtin-cos",
+        "-D_UCRT", "-isystem", str(headers),
         *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
     )  # fmt: skip
 

@@ -7,7 +7,14 @@ from typing import Any
 
 from jointfmu.joints.model import Model, Ramp, Variable
 from jointfmu.parameters import ParameterFile, entries, read_document
-from jointfmu.partners import ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
+from jointfmu.partners import (
+    AngleProfile,
+    ForceProfile,
+    RotationalInertia,
+    TorqueCurve,
+    TorqueProfile,
+    TranslationalMass,
+)
 from jointfmu.quantity import build, flat_fields
 
 
@@ -87,6 +94,25 @@ PARTNERS: dict[str, Model] = {
             (Variable("f", "N", "force", 1e3),),
             0,
             Ramp("f_in", 1e3, 1.0, 1e-3),
+        ),
+        _model(
+            AngleProfile,
+            "Angle over time: a turn from rest to rest, without corners",
+            (
+                Variable("phi_in", "rad", "angle that is added"),
+                Variable("w_in", "rad/s", "speed that is added"),
+            ),
+            (Variable("phi", "rad", "angle"), Variable("w", "rad/s", "speed")),
+            0,
+            Ramp("phi_in", 1.0, 1e-3, 1e-3),
+        ),
+        _model(
+            TorqueCurve,
+            "Torque over time: a Bernstein polynomial, held before and after it",
+            (Variable("tau_in", "N.m", "torque that is added"),),
+            (Variable("tau", "N.m", "torque"),),
+            0,
+            Ramp("tau_in", 1.0, 1e-3, 1e-3),
         ),
     )
 }

@@ -11,7 +11,7 @@ from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.reference import PROVES_NOTHING, ROLES, Point
 
 Values: TypeAlias = Sequence[float] | NDArray[np.float64]
-_COLOURS = (BLUE, RED, GREEN, GREY)
+_COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Series(NamedTuple):

@@ -20,6 +20,7 @@ from ..joints import part
 from ..laboratory import web_file
 from ..templates import template
 from .figure import Figure
+from .motion import motions
 from .systems import resonances, ring_downs
 
 _DIGITS = 7
@@ -55,8 +56,11 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     module = part(kind, "figures")
     figures = module.figures(outcome) if module else []
     figures += [*resonances(outcome.ringing, kind.name), *ring_downs(outcome.decays, kind.name)]
+    figures += motions(outcome.arms, kind.name)
     names = [model.name for model in kind.models]
-    names += [name for name, system in systems().items() if system.joint == kind.name]
+    names += [
+        name for name, system in systems().items() if kind.name in {j.kind for j in system.joints.values()}
+    ]
     return {
         "name": kind.name,
         "title": kind.title,

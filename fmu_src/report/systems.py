@@ -5,24 +5,22 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
-from jointfmu.systems import System, system
-
 from ..decays import Decay
-from ..ringing import Body, Ringing, body_on
+from ..ringing import Body, Ringing, Rung, rings
 from .figure import Figure, Panel, Series, drawn
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
 _WAYS = ((1.0, "above"), (-1.0, "below"))
 
 
-def resonances(rings: Mapping[str, Sequence[Ringing]], joint: str) -> list[Figure]:
+def resonances(found: Mapping[str, Sequence[Ringing]], joint: str) -> list[Figure]:
     """A figure per system of a joint that rings."""
-    return [_resonance(name, system(name), p) for name, p in rings.items() if system(name).joint == joint]
+    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    return [_resonance(name, bodies[name], points) for name, points in found.items() if name in bodies]
 
 
-def _resonance(name: str, example: System, points: Sequence[Ringing]) -> Figure:
-    body = body_on(example.joint)
-    moving = example.body.partition(".")[0]
+def _resonance(name: str, one: Rung, points: Sequence[Ringing]) -> Figure:
+    body, moving = one.body, one.moving.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load.name}",
         f"The {moving} rings about a working point, {body.doc}. Circles: peak of the simulated signal's "
@@ -34,12 +32,12 @@ def _resonance(name: str, example: System, points: Sequence[Ringing]) -> Figure:
 
 def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
     """A figure per system of a joint that slips."""
-    return [_ring_down(name, system(name), p) for name, p in decays.items() if system(name).joint == joint]
+    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    return [_ring_down(name, bodies[name], points) for name, points in decays.items() if name in bodies]
 
 
-def _ring_down(name: str, example: System, points: Sequence[Decay]) -> Figure:
-    body = body_on(example.joint)
-    moving, (point, *_) = example.body.partition(".")[0], points
+def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
+    body, moving, (point, *_) = one.body, one.moving.name, points
     said = point.law is not None
     pulled = f"{body.deflection.factor * body.pull.deflection:g} {body.deflection.unit}"
     return Figure(

@@ -55,7 +55,7 @@ def _build(args: argparse.Namespace) -> int:
         if args.names or not args.systems:
             built += building.build(args.names, args.flavour, file, args.out, args.parameters, args.name)
         if args.systems:
-            built += ssp.build_systems(args.out, file, variability=args.parameters)
+            built += ssp.build_systems(args.out, None, file, variability=args.parameters)
     except ImportError as error:
         raise without_package(error, "build") from None
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)

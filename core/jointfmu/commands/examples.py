@@ -19,6 +19,7 @@ EXAMPLES = {
     "ramp": "ramp dist/fmi2/GearContact.fmu --input f --to 1000 --step 10 --csv ramp.csv",
     "prove": "prove dist/fmi2/GearContact.fmu",
     "ring": "ring robot_joint --fmus dist/fmi2 --load 0 2.5 --csv ring.csv",
+    "system": "system six_axis_robot --plot tip.png",
     "surface": "surface scan.csv --side both --joint harmonic_drive --out my_drive.toml",
     "surface identify": "surface identify scan.csv --side both --joint harmonic_drive --out my_drive.toml",
     "surface synthesize": "surface synthesize --size 1e-3 --points 400 --D 2.53 --G 2.4e-7 --out scan.csv",

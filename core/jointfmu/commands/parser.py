@@ -20,6 +20,7 @@ from . import (
     ring,
     surface,
     sweep,
+    system,
     uncertainty,
     validate,
 )
@@ -38,6 +39,7 @@ COMMANDS = (
     ramp,
     prove,
     ring,
+    system,
     surface,
     fit,
     uncertainty,

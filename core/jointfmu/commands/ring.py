@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from .. import columns, plots
-from ..joints import KINDS
 from ..parameters import check_writable, write_text
-from ..systems import System, system, systems
+from ..systems import names, system
 from .common import command, settings, without_package
 
 
@@ -20,8 +19,8 @@ def add(commands: Any) -> None:
     """Declare the command."""
     text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
-    examples = systems()
-    ring.add_argument("system", choices=list(examples), metavar="SYSTEM", help=" or ".join(examples))
+    ring.add_argument("system", metavar="SYSTEM", help=f"{', '.join(names())}, or a system's file (TOML)")
+    ring.add_argument("--joint", metavar="NAME", help="the joint, where the system has several")
     ring.add_argument(
         "--fmus",
         type=Path,
@@ -34,12 +33,11 @@ def add(commands: Any) -> None:
         type=float,
         nargs="+",
         metavar="VALUE",
-        help="; ".join(f"{name}: {_load(example)}" for name, example in examples.items())
-        + " (default: several that show the joint)",
+        help="what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
+        "that show the joint)",
     )
-    units = " or ".join(dict.fromkeys(example.inertia_unit for example in examples.values()))
     ring.add_argument(
-        "--inertia", type=float, metavar="VALUE", help=f"of the body [{units}] (default: of the example)"
+        "--inertia", type=float, metavar="VALUE", help="of the body [kg or kg.m2] (default: of the system)"
     )
     ring.add_argument(
         "--amplitude",
@@ -53,23 +51,18 @@ def add(commands: Any) -> None:
     ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
 
 
-def _load(example: System) -> str:
-    """What loads the joint of a system, with its unit."""
-    return f"{KINDS[example.joint].variables[example.load].doc} [{example.load_unit}]"
-
-
 def _ring(args: argparse.Namespace) -> int:
-    example = system(args.system)
-    _check(args, example.inertia_unit)
     try:
         from jointfmu_fmu_src import ringing
     except ImportError as error:
         raise without_package(error, "run a system") from None
+    example = ringing.rung(system(args.system), args.joint)
+    _check(args, example.inertia_unit)
     if args.amplitude is not None:
         return _decays(args, example)
     if args.settings:
         raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
-    points = ringing.ring(args.system, args.fmus, args.load, args.inertia)
+    points = ringing.ring(example, args.fmus, args.load, args.inertia)
     rows = [_row(point) for point in points]
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
@@ -80,7 +73,7 @@ def _ring(args: argparse.Namespace) -> int:
         from jointfmu_fmu_src.report.systems import SIZE, draw
 
         with plots.drawing(args.plot, SIZE) as figure:
-            draw(figure, points, ringing.body_on(example.joint))
+            draw(figure, points, example.body)
     misses = [line for point in points for line in point.misses]
     if args.json:
         print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
@@ -93,19 +86,17 @@ def _ring(args: argparse.Namespace) -> int:
     return int(bool(misses))
 
 
-def _decays(args: argparse.Namespace, example: System) -> int:
+def _decays(args: argparse.Namespace, example: Any) -> int:
     """Frequency and damping over the amplitude."""
-    from jointfmu_fmu_src import decays, ringing
+    from jointfmu_fmu_src import decays
 
-    points = decays.decays(
-        args.system, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings)
-    )
-    body = ringing.body_on(example.joint)
+    points = decays.decays(example, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings))
+    body = example.body
     for message in dict.fromkeys(text for point in points for text in point.messages):
         print(message, file=sys.stderr)
     heads = {
         "load": example.load_unit,
-        "amplitude": KINDS[example.joint].variables[body.motion[0]].unit,
+        "amplitude": example.motion_unit,
         "frequency": "Hz",
         "loop_frequency": "Hz",
         "damping_ratio": "1",

@@ -13,9 +13,9 @@ LOADING = (0.0, 0.1, 0.2, 0.4, 0.7, 1.0)
 _FMU = "HarmonicDriveSpring"
 
 
-def _torques(folder: Path) -> list[float]:
+def _torques(folder: Path, parameters: Mapping[str, float]) -> list[float]:
     """From zero to the drive's rated torque [N.m]."""
-    with Slave(folder / f"{_FMU}.fmu", {}, (), ("rated_torque",)) as drive:
+    with Slave(folder / f"{_FMU}.fmu", parameters, (), ("rated_torque",)) as drive:
         (rated,) = drive.get()
     return [share * rated for share in LOADING]
 
@@ -50,6 +50,7 @@ RINGING = Body(
     motion=("phi2", "w2"),
     force="tau2",
     partner="RotationalInertia",
+    over="tau",
     loads=_torques,
     start=lambda torque: {},
     rest=_rest,

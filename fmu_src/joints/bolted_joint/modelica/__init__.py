@@ -49,6 +49,7 @@ COMPONENT = Component(
     base="BoltedJoint",
     points=TIGHTENED,
     records=_records,
+    flanges=("flange_x", "flange_y", "flange_z"),
     texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{STRONGEST:g}",

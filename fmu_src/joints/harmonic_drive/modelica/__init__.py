@@ -5,20 +5,21 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
+from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import changed
-from jointfmu.systems import System
 
 from ....modelica.records import Component, Record, WorkingPoint, numbers
 from ....modelica.tables import thinned
 from ....modelica.text import identifier, matrix
 
+_ERROR = [f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")]
+
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
-    own = {"ratio": drive.ratio, "d": drive.d, "K_FTS0": drive.K_FTS}
+    own = {name: getattr(drive, name) for name in ("ratio", "d", *_ERROR)} | {"K_FTS0": drive.K_FTS}
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
         Record(
@@ -36,9 +37,9 @@ def _hysteresis(spring: HarmonicDriveSpring) -> dict[str, float]:
     return {"friction": float(np.sum(found.limit)), "stick": float(np.sum(found.stiffness))}
 
 
-def _of_system(file: ParameterFile, system: System) -> dict[str, str]:
-    drive = changed(file.values, system.joint_parameters)
-    return numbers(_hysteresis(HarmonicDriveSpring.of(drive)))
+def _of_system(file: ParameterFile) -> dict[str, str]:
+    own = numbers(_hysteresis(HarmonicDriveSpring.of(file.values)))
+    return own | {"stateSelect": "StateSelect.default"}
 
 
 COMPONENT = Component(
@@ -46,6 +47,7 @@ COMPONENT = Component(
     base="HarmonicDrive",
     records=_records,
     of_system=_of_system,
+    special=("hysteresis_loss", "hysteresis_stiffness"),
     texts=lambda drive: {"end": f"{drive.end:g} N m"},
     note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
     '<code>flange_a</code> of <a href="modelica://JointStiffness.Components.HarmonicDriveSpring">'
