@@ -125,12 +125,13 @@ def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
         return max(low, -most), most
     if start == 0.0:
         return 0.0, high if math.isfinite(high) else 1.0
-    if abs(low) > 1e-300 and high - low <= 1.0 + abs(low):
+    if math.isfinite(low) and abs(low) > 1e-300 and high - low <= 1.0 + abs(low):
         margin = 0.02 * (high - low)
         return max(low + margin, 0.0), high - margin
     if row["whole"]:
         return low, 4.0 * start
-    return max(start / _DECADE, low), min(start * _DECADE, high)
+    near, far = sorted((start / _DECADE, start * _DECADE))
+    return max(near, low), min(far, high)
 
 
 def _bound(file: ParameterFile) -> Iterator[str]:
