@@ -188,7 +188,7 @@ def test_study_file(tmp_path, capsys):
             ["harmonic_drive"],
             "no parameter has a distribution; expected NAME=LOW..HIGH or a study file",
         ),
-        (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are mu, "),
+        (["harmonic_drive", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are ratio, "),
         (["harmonic_drive", "--set", "surface.D=2.4..3.1"], "surface.D = 3.1 is outside (2, 3)"),
         (["harmonic_drive", "--set", "surface.D=normal(3.5, 1)"], "surface.D = 3.5 is outside (2, 3)"),
         (["harmonic_drive", "--set", "traction=1..2"], "traction = 1..2: is a named choice"),
