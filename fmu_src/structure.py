@@ -9,9 +9,9 @@ from jointfmu.stamp import fixed_time
 from jointfmu.systems import System
 from jointfmu.units import UNITS
 
-from .native.description import serialized
 from .native.licence import copyright_line
 from .wiring import model_of, wires
+from .xml_parts import serialized
 
 NUMBER = {"1.0": "Real", "2.0": "Float64"}
 """Type of real numbers in a version of SSP."""

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
-from xml.etree.ElementTree import Element, SubElement
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
@@ -141,6 +141,12 @@ def fmi2_structure(model: Model, variability: str) -> Element:
             for unknown, knowns in rows:
                 SubElement(group, "Unknown", {"index": str(unknown.reference)} | dependencies(knowns))
     return structure
+
+
+def serialized(root: Element) -> bytes:
+    """An XML file, indented, the same bytes for the same content."""
+    indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
 
 
 def _shown(unit: str, typical: float) -> dict[str, str]:

@@ -53,6 +53,13 @@ def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
     assert (tmp_path / "ring.csv").exists()
 
 
+@pytest.mark.slow
+def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> None:
+    done = bare(tmp_path, "prove", str(native / "fmi2" / "GearContact.fmu"))
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith(" passed, 0 missed\n")
+
+
 @pytest.mark.parametrize(
     ("words", "package"),
     [

@@ -192,7 +192,7 @@ for i in range(60):
     instance.refused(instance.set, {"ratio": 50.0})
     if i % 3 == 0:
         instance.reset()
-        instance.refused(instance.start, {"ratio": -1.0})
+        instance.refused(instance.start, {"ratio": 0.0})
         instance.reset()
         instance.start({"phi2": 6e-4})
     instance.set({"w1": 0.0})

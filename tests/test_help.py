@@ -39,7 +39,7 @@ def example(parser: argparse.ArgumentParser) -> str:
 
 
 HELPS = {sub.prog: example(sub) for sub in parsers(parser())}
-NEED = ("build", "modelica", "ramp", "ring", "system", "sweep", "footprint", "modes")
+NEED = ("build", "modelica", "prove", "ramp", "ring", "system", "sweep", "footprint", "modes")
 """Commands whose examples take long: they build FMUs or need them, solve finite elements or thin tables."""
 
 

@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -252,7 +253,7 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
         assert read is not None, path
         root.extend(read)
     # variables and equations of the flat model; an if-equation counts as one
-    expected = {"Examples.RobotJoint": (62, 33), "Examples.BoltedColumn": (81, 37)}
+    expected = {"Examples.RobotJoint": (76, 36), "Examples.BoltedColumn": (81, 37)}
     for path in sorted(COMMITTED.rglob("*.mo")):
         folder, name = path.parent.name, path.stem
         if folder in ("Components", "Wrappers", "Examples") and name != "package":
@@ -294,6 +295,25 @@ def test_drive_component_gives_the_torque_of_the_package(rumoca: Any, drive: Har
         relative = np.abs(found[f"drive.{mine}"] / np.where(inside, exact[name], 1.0) - 1.0)[inside]
         assert relative.max() <= factor * EXACT, name
     assert np.array_equal(found["drive.flange_a.tau"], -found["drive.tau"] / drive.joint.ratio)
+
+
+def test_drive_component_errs_as_the_package(rumoca: Any, drive: HarmonicDriveSpring):
+    error = {"error_1": 3e-5, "error_1_phase": 0.7, "error_2": 2e-4, "error_4": 5e-5, "error_4_phase": 2.0}
+    given = "".join(f", {name}={value!r}" for name, value in error.items())
+    text = top(
+        f"JointStiffness.Components.HarmonicDriveSpring drive(ratio=-100{given}, "
+        "stateSelect=StateSelect.default);\n"
+        "  Move motor(at=0, rate=9);\n  Move load(at=0, rate=-0.09);",
+        "connect(motor.flange, drive.flange_a);\n  connect(drive.flange_b, load.flange);",
+        move("Rotational", "phi"),
+    )
+    found = simulate(rumoca, text, 1.0, 1e-3)
+    turned = replace(drive, joint=replace(drive.joint, ratio=-100.0, **error))
+    exact = turned.motion(9.0 * found.time, 9.0, -0.09 * found.time, -0.09)
+    for name, mine in (("phi_error", "phi_error"), ("tau", "tau"), ("tau1", "flange_a.tau")):
+        sign = -1.0 if name == "tau1" else 1.0
+        wrong = np.abs(sign * found[f"drive.{mine}"] - exact[name]).max()
+        assert wrong <= 1e-6 * np.abs(exact[name]).max(), name  # as the table errs
 
 
 def test_drive_without_damping_and_inertia_is_its_own_inverse(rumoca: Any, drive: HarmonicDriveSpring):
@@ -514,7 +534,7 @@ equation
     + data.d*(w2 - w1/data.ratio);
   tau1 = tau/data.ratio;
   tau2 = -tau;
-  K_WTS = 0; K_TS = 0; K_FTS = 0; K_TS_pair = 0; p_max = 0; E_loss = 0;
+  K_WTS = 0; K_TS = 0; K_FTS = 0; K_TS_pair = 0; p_max = 0; E_loss = 0; tau_friction = 0; phi_error = 0;
 end StandIn;
 """
 

@@ -601,7 +601,7 @@ def test_the_page_is_well_formed_small_and_complete_in_itself(name: str) -> None
     assert len(text.encode()) < 64e3
     page = Page(text)
     assert len(set(page.ids)) == len(page.ids)
-    local = {"../terminalsAndIcons/icon.svg", "licenses/license.txt"}
+    local = {"../terminalsAndIcons/icon.svg", "licenses/license.txt", "fmi-ls-ref.txt"}
     assert local <= set(page.links)
     assert all(link.startswith("https://doi.org/") for link in set(page.links) - local)
     assert "licenses/license.txt" in pages(name)

@@ -71,6 +71,7 @@ def test_every_kind_of_command_is_shown():
         "parameters",
         "build",
         "ramp",
+        "prove",
         "validate",
         "surface",
         "fit",

@@ -24,15 +24,18 @@ class Fmi2:
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
         self.fmu.instantiate(callbacks=callbacks, loggingOn=True)
 
-    def begin(self) -> None:
-        """Enter initialization at time zero."""
-        self.fmu.setupExperiment(startTime=0.0)
+    def begin(self, start: float = 0.0) -> None:
+        """Enter initialization at a time [s]."""
+        self.fmu.setupExperiment(startTime=start)
         self.fmu.enterInitializationMode()
 
     def set(self, variable: Any, value: Any) -> None:
-        """Set a Real or Boolean variable."""
-        setter = self.fmu.setBoolean if variable.type == "Boolean" else self.fmu.setReal
-        setter([variable.valueReference], [value])
+        """Set a variable."""
+        getattr(self.fmu, f"set{_plain(variable)}")([variable.valueReference], [value])
+
+    def read(self, variable: Any) -> Any:
+        """Value of a variable."""
+        return getattr(self.fmu, f"get{_plain(variable)}")([variable.valueReference])[0]
 
     def get(self, references: Sequence[int]) -> list[float]:
         """Values of Real variables."""
@@ -51,15 +54,23 @@ class Fmi3:
             logMessage=lambda env, status, category, message: log(message) if status else None
         )
 
-    def begin(self) -> None:
-        """Enter initialization at time zero."""
-        self.fmu.enterInitializationMode(startTime=0.0)
+    def begin(self, start: float = 0.0) -> None:
+        """Enter initialization at a time [s]."""
+        self.fmu.enterInitializationMode(startTime=start)
 
     def set(self, variable: Any, value: Any) -> None:
-        """Set a Float64 or Boolean variable."""
-        setter = self.fmu.setBoolean if variable.type == "Boolean" else self.fmu.setFloat64
-        setter([variable.valueReference], [value])
+        """Set a variable."""
+        getattr(self.fmu, f"set{_plain(variable, 'Int64')}")([variable.valueReference], [value])
+
+    def read(self, variable: Any) -> Any:
+        """Value of a variable."""
+        return getattr(self.fmu, f"get{_plain(variable, 'Int64')}")([variable.valueReference])[0]
 
     def get(self, references: Sequence[int]) -> list[float]:
         """Values of Float64 variables."""
         return list(self.fmu.getFloat64(references))
+
+
+def _plain(variable: Any, whole: str = "Integer") -> str:
+    """The type by which a variable is set; values of an enumeration are whole numbers."""
+    return whole if variable.type == "Enumeration" else str(variable.type)

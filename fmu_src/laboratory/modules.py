@@ -1,6 +1,6 @@
 """The WebAssembly modules of the page: one for each model and what is baked into its C."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,18 +30,24 @@ class Module:
         """C that shows the contact; need not be there."""
         return folder(KINDS[self.model.joint]) / "laboratory" / _MAP
 
-    def compiled(self) -> bytes:
-        """The module, a reactor without imports; its functions are those of laboratory.c.
-
-        Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
-        """
+    def sources(self) -> dict[str, str]:
+        """{file name: text} of all C sources: those of the FMU, and what the page calls."""
         files = sources(self.model.name, self.files[0])
-        units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
         if self.map.is_file():
             added[_MAP] = self.map.read_text(encoding="utf-8")
-        known = {"token.h": f'#define TOKEN "{token(files)}"\n'}
-        return webassembly(self.model.name, files | added | known, [*units, *added])
+        return files | added | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+
+    def compiled(self, given: Mapping[str, str] | None = None) -> bytes:
+        """The module, a reactor without imports; its functions are those of laboratory.c.
+
+        given : its sources, where they are known
+
+        Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
+        """
+        files = self.sources() if given is None else given
+        units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
+        return webassembly(self.model.name, files, units)
 
 
 def modules() -> list[Module]:
@@ -50,9 +56,10 @@ def modules() -> list[Module]:
 
 
 def compiled(some: Sequence[Module]) -> list[bytes]:
-    """The modules in binary form."""
+    """The modules in binary form. Sources are made one after the other: casadi knows no threads."""
+    given = [module.sources() for module in some]
     with ThreadPoolExecutor() as pool:
-        return list(pool.map(Module.compiled, some))
+        return list(pool.map(Module.compiled, some, given))
 
 
 def _of(kind: Kind, model: Model) -> Iterator[Module]:

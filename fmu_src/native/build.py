@@ -10,6 +10,7 @@ from jointfmu.parameters import ParameterFile
 
 from ..archive import pack, workshop
 from ..partners import PARTNERS
+from ..proof import proof
 from ..xml_parts import VARIABILITIES
 from .binary import finished
 from .compiler import exported, file_name, universal
@@ -84,6 +85,7 @@ def _members(model: Model, parameters: ParameterFile, version: str, variability:
         | _below("sources", {path: text.encode() for path, text in own.items()})
         | _below("documentation", documentation(model, parameters))
         | _below("terminalsAndIcons", icons)
+        | proof(model, parameters)
     )
 
 

@@ -64,6 +64,12 @@ def libraries(
         return dict(zip(platforms, pool.map(library, platforms), strict=True))
 
 
+def exported(files: Iterable[str], version: str) -> list[str]:
+    """C files of one FMI version."""
+    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
+    return [name for name in files if name.endswith(".c") and name != other]
+
+
 def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
     """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
     folder = _folder({**_headers(), **sources})
@@ -71,12 +77,6 @@ def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> 
         file = Path(out) / f"{name}.wasm"
         _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
         return file.read_bytes()
-
-
-def exported(files: Iterable[str], version: str) -> list[str]:
-    """C files of one FMI version."""
-    other = {"2": "fmi3.c", "3": "fmi2.c"}[version]
-    return [name for name in files if name.endswith(".c") and name != other]
 
 
 def file_name(name: str, platform: str) -> str:
@@ -107,9 +107,11 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
         return (*common, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
     # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
     # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
+    # Without sin and cos as built-in functions the compiler makes no sincos of both, which only mingw has.
     headers = Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"
     return (
-        *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-D_UCRT", "-isystem", str(headers),
+        *common, "windows.c", "-nostdlib", "-Wl,--no-entry", "-fno-builtin-sin", "-fno-builtin-cos",
+        "-D_UCRT", "-isystem", str(headers),
         *(f"-lapi-ms-win-crt-{part}-l1-1-0" for part in _UCRT),
     )  # fmt: skip
 

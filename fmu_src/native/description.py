@@ -4,7 +4,7 @@ Value references: 0 is the time, which FMI 2.0 does not list; then inputs, outpu
 """
 
 from collections.abc import Sequence
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
@@ -17,6 +17,7 @@ from ..xml_parts import (
     dependencies,
     fmi2_structure,
     listed,
+    serialized,
     stop_time,
     text,
     unit_definitions,
@@ -148,12 +149,6 @@ def build_description(model: Model, sources: Sequence[str]) -> bytes:
             build.set("platform", platform)
             SubElement(build, "Library", name="m", external="true", description="mathematical functions of C")
     return serialized(root)
-
-
-def serialized(root: Element) -> bytes:
-    """An XML file, indented, the same bytes for the same content."""
-    indent(root)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
 
 
 def _root(model: Model, version: str, token_name: str, token: str) -> Element:

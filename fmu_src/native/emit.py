@@ -42,6 +42,7 @@ _UNARY = {
     ca.OP_ASIN: "asin({0})",
     ca.OP_ACOS: "acos({0})",
     ca.OP_ATAN: "atan({0})",
+    ca.OP_TANH: "tanh({0})",
     ca.OP_ERF: "erf({0})",
     ca.OP_FABS: "fabs({0})",
     ca.OP_FLOOR: "floor({0})",

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 from jointfmu.joints.model import Model
 
 from ..folders import asset, part
-from .description import serialized
+from ..xml_parts import serialized
 
 ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
 TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"

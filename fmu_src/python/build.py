@@ -9,6 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.python.imports import imported
 
 from jointfmu.joints import KINDS, MODELS
@@ -93,7 +94,8 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
     from pythonfmu import FmuBuilder
 
     kind = KINDS[MODELS[name].joint]
-    title = replace(MODELS[name].of(parameters.joint, parameters.values), alias=alias).title
+    model = MODELS[name].of(parameters.joint, parameters.values)
+    title = replace(model, alias=alias).title
     sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
@@ -108,7 +110,7 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
         built = _pythonfmu(FmuBuilder, script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
-        pack(members, work / target.name)
+        pack(members | proof(model, parameters, page=False), work / target.name)
     return target
 
 

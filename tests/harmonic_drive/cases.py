@@ -11,12 +11,35 @@ PARAMETERS = {
     "flexspline.E": "Pa", "flexspline.nu": "1", "flexspline.sigma_y": "Pa",
     "bearing.E": "Pa", "bearing.nu": "1", "bearing.sigma_y": "Pa",
     "mu": "1", "radial_deformation": "m", "eccentricity": "m", "ratio": "1", "K_FTS0": "N.m/rad",
-    "d": "N.m.s/rad", "hysteresis_loss": "rad", "hysteresis_stiffness": "N.m/rad",
+    "d": "N.m.s/rad", "hysteresis_loss": "rad", "hysteresis_stiffness": "N.m/rad", "lost_motion": "rad",
 }  # fmt: skip
 STIFFNESS = {"K_WTS": "N.m/rad", "K_TS": "N.m/rad", "K_FTS": "N.m/rad", "E_loss": "J"}
 CALIBRATED = frozenset({"K_FTS0", "zero_torque_pressure", "rated_pressure"})
-BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
-"""With an eccentricity and hysteresis, so that what they cost matters."""
+FRICTION = {
+    "friction_coulomb": 0.02,
+    "friction_stribeck": 0.01,
+    "stribeck_speed": 2.0,
+    "friction_viscous": 1e-3,
+    "load_loss": 0.1,
+    "presliding": 0.02,
+    "temperature_factor": 1.2,
+}
+UNITS = {
+    "friction_coulomb": "N.m",
+    "friction_stribeck": "N.m",
+    "friction_viscous": "N.m.s/rad",
+    "load_loss": "1",
+}
+ERROR = {
+    "error_1": 2e-5,
+    "error_1_phase": 0.7,
+    "error_2": 1e-4,
+    "error_2_phase": -0.4,
+    "error_4": 3e-5,
+    "error_4_phase": 2.0,
+}
+BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
+"""With all that is off by default, so that what it costs matters."""
 MOVED = {"bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
 """The softer body counts."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
@@ -27,13 +50,21 @@ SPRING = Case(
     name="HarmonicDriveSpring",
     outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
     inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
-    results={"tau1": "N.m", "tau2": "N.m", "phi_rel": "rad", "tau": "N.m", **STIFFNESS},
-    parameters=PARAMETERS,
+    results={
+        "tau1": "N.m",
+        "tau2": "N.m",
+        "phi_rel": "rad",
+        "tau": "N.m",
+        **STIFFNESS,
+        "phi_error": "rad",
+        "tau_friction": "N.m",
+    },
+    parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
     ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5)},
     span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5)},
     state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02},
     good={"phi2": 6e-4},
-    base=BASE,
+    base=BASE | ERROR | FRICTION,
     moved=MOVED,
     without_effect=ELASTIC,
     tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},

@@ -1,10 +1,12 @@
 """The laws `catalogue` and `table`: lines of the maker and measured points against the exported midline."""
 
 import csv
+from dataclasses import replace
 from importlib.resources import files
 
 import numpy as np
 import pytest
+from conftest import refused_line
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
@@ -84,7 +86,7 @@ def test_stiffness_is_the_derivative_and_has_no_kink():
     assert curve.bend_start[0] == 0.0  # the odd continuation has none either
     K = curve.derivatives(x, 1)[1]
     assert np.all(np.diff(K) >= -1e-6)
-    assert (K[0], K[-1]) == (1e4, pytest.approx(1.6e4))
+    assert (K[0], K[-1]) == pytest.approx((1e4, 1.6e4), rel=1e-12)
 
 
 def test_a_drive_that_softens_and_lines_without_a_corner():
@@ -224,6 +226,13 @@ def test_files_are_read_and_written(law, tmp_path):
     assert judge_file(file).level is None  # there is no interface to judge
 
 
+@pytest.mark.parametrize("law", ["catalogue", "table"])
+def test_a_file_without_an_interface_says_so(law, capsys):
+    path = KINDS["harmonic_drive"].default_file(law)
+    line = refused_line(capsys, "law", "hu2023", "--pressure", "1e6", "--params", path)
+    assert f"law = {law!r} is of no interface" in line
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "given"),
@@ -260,3 +269,22 @@ def test_tuned_parameters_are_those_of_the_law():
 
 def test_names_stand_for_the_rows():
     assert {name_of(row) for row in ROWS} <= {item.name for item in catalogue.items()}
+
+
+def test_lost_motion_adds_to_the_lines_and_a_measured_curve_has_it_already():
+    plain, loose = (HarmonicDriveSpring.of(drive(lost_motion=x)) for x in (0.0, 2e-4))
+    rated = plain.joint.rated_torque
+    T = rated * np.array([0.002, 0.005, 0.013, 0.04, 0.08, 0.3, 1.0])
+    play = 1e-4 * np.tanh(T / (0.01 * rated))
+    found = loose.windup(T)
+    before = plain.windup(T)
+    # the spline between nodes of the play, as `PLAY_NODES` says
+    assert found["phi_rel"] - before["phi_rel"] == pytest.approx(play, abs=1e-8 * rated / 1e4)
+    slope = 1e-4 * (1.0 - np.tanh(T / (0.01 * rated)) ** 2) / (0.01 * rated)
+    assert 1.0 / found["K_WTS"] == pytest.approx(1.0 / before["K_WTS"] + slope, rel=1e-5)
+    with pytest.raises(
+        ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: a measured midline"
+    ):
+        replace(default("harmonic_drive", "table").values, lost_motion=2e-4)
+    with pytest.raises(ValueError, match=r"^lost_motion = 0.0002 rad is outside \[0, 0\]: the first line"):
+        drive(lost_motion=2e-4, rated_torque=1e3)

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from jointfmu.joints.harmonic_drive import hysteresis
+from jointfmu.joints.harmonic_drive.hysteresis import SLIDERS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
@@ -28,7 +29,7 @@ def spring(law=None, loss=ARCMIN, **changes):
 
 def along(law, path, memory=None):
     """Torque, loss and memory along a path of wind-ups [rad]."""
-    memory, torque, loss = law.hysteresis.rest() if memory is None else memory, [], []
+    memory, torque, loss = law.rest() if memory is None else memory, [], []
     for phi in path:
         out, memory = law.driven((0.0, 0.0, phi, 0.0), memory)
         torque.append(float(out["tau"]))
@@ -38,8 +39,8 @@ def along(law, path, memory=None):
 
 def stored(law, memory):
     """Energy [J] of the midline and of the sliders."""
-    springs = memory[:-2] ** 2 / (2.0 * law.hysteresis.stiffness)
-    return float(law.curve.energy(abs(memory[-2]))) + float(np.sum(springs))
+    springs = memory[:SLIDERS] ** 2 / (2.0 * law.hysteresis.stiffness)
+    return float(law.curve.energy(abs(memory[SLIDERS]))) + float(np.sum(springs))
 
 
 # The friction of the theorem
@@ -159,7 +160,7 @@ def test_without_hysteresis_it_is_the_spring_of_the_midline():
     torque, loss, memory = along(law, phi)
     assert np.array_equal(torque, found["tau"])
     assert not np.any(loss)
-    assert not np.any(memory[:-2])
+    assert not np.any(memory[:SLIDERS])
     tau = np.linspace(-25.0, 25.0, 41)
     assert np.array_equal(law.windup(tau)["phi_rel"], np.copysign(law.curve.inverse(np.abs(tau)), tau))
 
@@ -180,7 +181,7 @@ def test_masings_rule_and_memory_wiped_out_by_the_larger_loop():
     after, _, memory = along(law, [-a], minor)
     assert after == pytest.approx(plain, abs=ROUND_OFF)
     untouched = along(law, [-a], turned)[2]
-    assert memory[:-2] == pytest.approx(untouched[:-2], abs=ROUND_OFF)
+    assert memory[:SLIDERS] == pytest.approx(untouched[:SLIDERS], abs=ROUND_OFF)
 
 
 def test_ten_times_larger_steps_agree():
@@ -196,14 +197,14 @@ def test_ten_times_larger_steps_agree():
 def test_work_is_stored_or_lost_along_random_paths():
     """Work of a step: the midline's energy, and trapezia between places where a slider begins to slip."""
     law, rng = spring(), np.random.default_rng(3)
-    memory, work, previous = law.hysteresis.rest(), 0.0, 0.0
+    memory, work, previous = law.rest(), 0.0, 0.0
     for end in np.cumsum(rng.normal(0.0, 4e-4, 400)):
-        start = memory[-2]
+        start = memory[SLIDERS]
         k, limit, way = law.hysteresis.stiffness, law.hysteresis.limit, end - start
-        slips = start + (np.copysign(limit, way) - memory[:-2]) / k
+        slips = start + (np.copysign(limit, way) - memory[:SLIDERS]) / k
         inside = slips[(slips - start) * (slips - end) < 0.0]
         corners = np.sort(np.array([start, *inside, end]))[:: 1 if way > 0.0 else -1]
-        friction = law.hysteresis.moved(memory, corners).torque
+        friction = law.hysteresis.moved(memory[: SLIDERS + 2], corners).torque
         work += float(np.sum(0.5 * (friction[1:] + friction[:-1]) * np.diff(corners)))
         work += float(law.curve.energy(abs(end)) - law.curve.energy(abs(start)))
         out, memory = law.driven((0.0, 0.0, end, 0.0), memory)
@@ -215,7 +216,7 @@ def test_work_is_stored_or_lost_along_random_paths():
 
 def test_compliance_is_the_inverse_of_the_spring():
     law, rng = spring("roughness"), np.random.default_rng(5)
-    memory = other = law.hysteresis.rest()
+    memory = other = law.rest()
     for tau in rng.normal(0.0, 4.0, 200):
         wound, memory = law.loaded(tau, memory)
         turned, other = law.driven((0.0, 0.0, wound["phi_rel"], 0.0), other)

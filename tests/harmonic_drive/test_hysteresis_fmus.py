@@ -1,4 +1,4 @@
-"""The hysteresis in the FMUs: the package's numbers, memory and derivatives, in every flavour."""
+"""Hysteresis and friction in the FMUs: the package's numbers, memory and derivatives, in every flavour."""
 
 import struct
 from collections.abc import Iterator, Mapping
@@ -13,12 +13,23 @@ from conftest import Fmu, run_host
 from natives import Host, close, jacobian, slope
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.harmonic_drive.friction import BRAKES
 from jointfmu.joints.harmonic_drive.hysteresis import SLIDERS
 from jointfmu.parameters import default
 
 SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
 LOOP = {"hysteresis_loss": 3e-4}
-MEMORY = SLIDERS + 2
+ALL = LOOP | {
+    "lost_motion": 1e-4, "error_2": 1e-4, "error_2_phase": 0.3, "error_4": 2e-5, "ratio": -80.0,
+    "load_loss": 0.2,
+    "friction_coulomb": 0.03, "friction_stribeck": 0.02, "stribeck_speed": 0.3, "friction_viscous": 1e-3,
+}  # fmt: skip
+SETS = pytest.mark.parametrize(
+    ("name", "given"),
+    [(SPRING, LOOP), (COMPLIANCE, LOOP), (SPRING, ALL)],
+    ids=["spring", "compliance", "all"],
+)
+MEMORY = SLIDERS + 2 + BRAKES + 3
 TINY = 1e-15
 """Sums of sliders in another order, where what is left is zero: [N.m], [rad], [J]."""
 TURNS = (7e-4, 2e-4, 6e-4, -9e-4, -9e-4, 1e-4, 12e-4, 0.0)
@@ -40,12 +51,15 @@ def instance(native: Path, fmus: Path) -> Iterator[Any]:
         one.free()
 
 
-def path(name: str) -> list[dict[str, float]]:
+def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]:
     """Inputs along a path: both flanges turn, with speeds; or the torque of the same wind-ups."""
     if name == COMPLIANCE:
         return [{"tau": 4e3 * phi} for phi in TURNS]
+    far = 30.0 if "friction_coulomb" in given else 3.0
+    motor, output = far, 1.0 + far / given.get("ratio", 100.0)
     return [
-        {"phi1": 3.0 * phi, "w1": 0.1 * k, "phi2": 1.03 * phi, "w2": -0.01 * k} for k, phi in enumerate(TURNS)
+        {"phi1": motor * phi, "w1": 0.1 * k, "phi2": output * phi, "w2": -0.01 * k}
+        for k, phi in enumerate(TURNS)
     ]
 
 
@@ -66,11 +80,11 @@ def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
 
 
 def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
-    """Send inputs; get outputs and memory after the way to them, step by step."""
+    """Send inputs; get outputs and memory after the way to them, step by step, from inputs that are zero."""
     model, file = MODELS[name], default("harmonic_drive").with_values(changes, "user", "test")
     spring = model.spring(file.values)
-    memory = model.rest(spring)
     inputs = dict.fromkeys((v.name for v in model.inputs), 0.0)
+    memory = model.evolve(spring, inputs, model.rest(spring))[1]
     found = None
     while True:
         inputs |= yield found
@@ -98,11 +112,13 @@ def memory_of(instance: Fmu) -> np.ndarray:
 # The package's numbers
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_outputs_and_memory_are_the_packages(host: Host, name: str, version: str, exchange: bool) -> None:
-    found, expected = begin(host(name, version, exchange=exchange), LOOP), package(name)
+@SETS
+def test_outputs_and_memory_are_the_packages(
+    host: Host, name: str, given: dict[str, float], version: str, exchange: bool
+) -> None:
+    found, expected = begin(host(name, version, exchange=exchange), given), package(name, given)
     next(expected)
-    for inputs in path(name):
+    for inputs in path(name, given):
         outputs, memory = expected.send(inputs)
         assert found.at(inputs) == close(outputs)
         accept(found)
@@ -110,11 +126,11 @@ def test_outputs_and_memory_are_the_packages(host: Host, name: str, version: str
         assert memory_of(found) == pytest.approx(memory, rel=1e-9, abs=TINY)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_the_python_flavour_is_the_package(instance: Any, name: str) -> None:
-    found, expected = begin(instance(name, "python"), LOOP), package(name)
+@SETS
+def test_the_python_flavour_is_the_package(instance: Any, name: str, given: dict[str, float]) -> None:
+    found, expected = begin(instance(name, "python"), given), package(name, given)
     next(expected)
-    for inputs in path(name):
+    for inputs in path(name, given):
         outputs, _ = expected.send(inputs)
         assert found.at(inputs) == outputs
         found.step()
@@ -131,12 +147,14 @@ def test_the_loop_opens_as_stated(instance: Any, flavour: str) -> None:
     assert zero[1] - zero[3] == close(3e-4)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_derivatives_are_those_at_the_accepted_state(host: Host, name: str, version: str) -> None:
+@SETS
+def test_derivatives_are_those_at_the_accepted_state(
+    host: Host, name: str, given: dict[str, float], version: str
+) -> None:
     """Against central differences of trials, away from the point where the motion turns."""
-    found, driven = begin(host(name, version), LOOP), "tau" if name == COMPLIANCE else "phi2"
+    found, driven = begin(host(name, version), given), "tau" if name == COMPLIANCE else "phi2"
     size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01}
-    for inputs in path(name)[:-1]:
+    for inputs in path(name, given)[:-1]:
         found.set(inputs)
         found.step()
         for part in (0.4, -0.7):
@@ -155,8 +173,8 @@ def test_derivatives_are_those_at_the_accepted_state(host: Host, name: str, vers
 # States
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_trials_leave_no_trace(instance: Any, name: str) -> None:
+@SETS
+def test_trials_leave_no_trace(instance: Any, name: str, given: dict[str, float]) -> None:
     for flavour, exchange in (
         ("fmi2", False),
         ("fmi2", True),
@@ -164,24 +182,24 @@ def test_trials_leave_no_trace(instance: Any, name: str) -> None:
         ("fmi3", True),
         ("python", False),
     ):
-        plain, tried = (begin(instance(name, flavour, exchange), LOOP) for _ in range(2))
-        for inputs in path(name):
-            for other in reversed(path(name)):
+        plain, tried = (begin(instance(name, flavour, exchange), given) for _ in range(2))
+        for inputs in path(name, given):
+            for other in reversed(path(name, given)):
                 tried.at(other)
             assert tried.at(inputs) == plain.at(inputs)
             accept(tried), accept(plain)
-            for other in path(name):
+            for other in path(name, given):
                 tried.at(other)
             assert tried.at(inputs) == plain.get()
 
 
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3", "python"])
-@pytest.mark.parametrize("name", NAMES)
+@SETS
 def test_no_step_changes_an_output_whose_inputs_did_not_change(
-    instance: Any, name: str, flavour: str
+    instance: Any, name: str, given: dict[str, float], flavour: str
 ) -> None:
-    found = begin(instance(name, flavour), LOOP)
-    for inputs in path(name):
+    found = begin(instance(name, flavour), given)
+    for inputs in path(name, given):
         before = found.at(inputs)
         slopes = None if flavour == "python" else jacobian(found)
         for _ in range(3):

@@ -17,6 +17,7 @@ EXAMPLES = {
     "footprint compute": "footprint compute models/assemblies/box_specimen.toml --refinement 0.35",
     "modes": "modes models/assemblies/box_specimen.toml --refinement 0.35",
     "ramp": "ramp dist/fmi2/GearContact.fmu --input f --to 1000 --step 10 --csv ramp.csv",
+    "prove": "prove dist/fmi2/GearContact.fmu",
     "ring": "ring robot_joint --fmus dist/fmi2 --load 0 2.5 --csv ring.csv",
     "system": "system six_axis_robot --plot tip.png",
     "surface": "surface scan.csv --side both --joint harmonic_drive --out my_drive.toml",
@@ -36,6 +37,7 @@ EXAMPLES = {
 
 BEFORE = {
     "ramp": "after jointfmu build GearContact",
+    "prove": "after jointfmu build GearContact",
     "sweep": "after jointfmu build GearContact",
     "ring": "after jointfmu build --systems",
 }

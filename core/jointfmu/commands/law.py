@@ -100,6 +100,10 @@ def law_file(path: Path, law: str) -> ParameterFile:
     if law not in KINDS[file.joint].laws:
         expected = " or ".join(repr(name) for name in _joints(law))
         raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {expected}")
+    if KINDS[file.joint].law_of(file.values) is None:
+        raise ValueError(
+            f"{path}: law = {file.law!r} is of no interface; expected a file with an interface law"
+        )
     return file
 
 

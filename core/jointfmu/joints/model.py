@@ -44,6 +44,18 @@ class Ramp:
 
 
 @dataclass(frozen=True, slots=True)
+class Loop:
+    """A loop that shows a joint's memory: an input to and fro about its start value, from rest.
+
+    settings : of parameters and inputs with which it has an area
+    """
+
+    input: str
+    amplitude: float
+    settings: Mapping[str, float | bool]
+
+
+@dataclass(frozen=True, slots=True)
 class Outside:
     """A way to leave the tables, worth a warning: a variable outside its interval.
 
@@ -75,6 +87,7 @@ class Model:
     rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
     evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
         memory given stays as it is
+    loop     : that shows its memory
     alias    : the name that a user gave it; "" for its own
     """
 
@@ -96,11 +109,14 @@ class Model:
     events: Callable[[Any], Sequence[Number]] | None = None
     rest: Callable[[Any], Memory] | None = None
     evolve: Callable[[Any, Values, Memory], tuple[Mapping[str, Any], Memory]] | None = None
+    loop: Loop | None = None
     alias: str = ""
 
     def __post_init__(self) -> None:
         if (self.rest is None) != (self.evolve is None):
             raise ValueError(f"{self.name}: one of rest, evolve is given, expected both or none")
+        if self.loop and self.evolve is None:
+            raise ValueError(f"{self.name}: a loop is given without a memory, expected one with evolve")
 
     @property
     def title(self) -> str:

@@ -5,7 +5,6 @@ The derivations are in docs/surfaces.md.
 """
 
 import numpy as np
-from scipy.special import gammaln
 
 from ..quantity import Number
 
@@ -25,6 +24,8 @@ def structure_constant(H: Number) -> Number:
 
     C = (2 pi)^(2H) integral_0^inf u^(-1-2H) (1 - cos u) du = (2 pi)^(2H) pi/(2 Gamma(1+2H) sin(pi H)).
     """
+    from scipy.special import gammaln  # slow to import, and every command imports this module
+
     log = 2.0 * H * np.log(2.0 * np.pi) - gammaln(1.0 + 2.0 * H)
     return 0.5 * np.pi * np.exp(log) / np.sin(np.pi * H)
 
@@ -40,6 +41,8 @@ def profile_share(H: Number) -> Number:
     kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)), since
     waves that meet the line at an angle are stretched along it.
     """
+    from scipy.special import gammaln  # slow to import, and every command imports this module
+
     return np.exp(gammaln(H + 0.5) - gammaln(H + 1.0)) / np.sqrt(np.pi)
 
 

@@ -16,7 +16,7 @@ static double inverse(const Foundation *f, double load)
 static void lay_heights(Foundation *f, double reference)
 {
     const double end = f->curve->end.y;
-    double y[1], *h = f->height;
+    double y[2], *h = f->height;
     curve_at(f->curve, reference, 0, y);
     const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
     const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);

@@ -1,5 +1,6 @@
-"""Figures of the report: stiffness over torque, torque over wind-up."""
+"""Figures of the report: stiffness over torque, torque over wind-up, what friction costs."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from jointfmu.ramp import RampResult
 from jointfmu.validation import Row
 
 from ...report.figure import Figure, Panel, Series, published
+from . import efficiency
 
 _FMU = "HarmonicDriveCompliance"
 
@@ -29,7 +31,43 @@ def figures(outcome: Any) -> list[Figure]:
             [torque_angle(result)],
             data=f"{_FMU}.csv",
         ),
+        Figure(
+            "What friction costs",
+            "By the FMU with the friction of catalogue drives: efficiency over load, whose speed dependence "
+            "follows from an estimated running torque, and no catalogue's curve is compared; and the torque "
+            "at the output that moves a drive without motor. The starting torque fixes friction_coulomb, the "
+            "back-driving torque load_loss where that is not below 0.",
+            friction(_spring(outcome)),
+        ),
     ]
+
+
+def _spring(outcome: Any) -> Path:
+    """The FMU between two flanges, FMI 2.0."""
+    paths: list[Path] = outcome.built
+    return next(p for p in paths if (p.parent.name, p.stem) == ("fmi2", "HarmonicDriveSpring"))
+
+
+def friction(fmu: Path) -> list[Panel]:
+    """Efficiency over load at some speeds, and the torques that move the catalogue's drives backwards."""
+    panels, published_torques, found_torques = [], [], []
+    drives, share = efficiency.catalogue(), np.linspace(0.02, 1.0, 25)
+    for drive in drives:
+        with efficiency.bench(fmu, drive.parameters) as bench:
+            loads = drive.rated_torque * share
+            rows = {
+                rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in loads]
+                for rpm in (500, 2000, 3500)
+            }
+            found_torques.append(bench.back_driving_torque(10.0 * drive.back_driving_torque))
+        published_torques.append(drive.back_driving_torque)
+        series = [Series(f"{rpm} rpm", loads, row) for rpm, row in rows.items()]
+        panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
+    ends = [0.0, max(published_torques)]
+    names = [drive.name for drive in drives]
+    marks = Series("FMU", published_torques, found_torques, "full", titles=names)
+    both = [marks, Series("equal", ends, ends, dashed=True)]
+    return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", both)]
 
 
 def stiffness(result: RampResult, rows: list[Row]) -> list[Panel]:

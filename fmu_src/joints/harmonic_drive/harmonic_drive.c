@@ -3,6 +3,7 @@
 #include "harmonic_drive.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "tabulated.h"
 
@@ -85,18 +86,37 @@ static bool midline_of(Joint *joint, Text *why)
 
 bool kind_tabulate(Joint *joint, Text *why)
 {
-    double head[3], share[2 * SLIDERS];
+    Kind *kind = &joint->kind;
+    double head[3], share[2 * SLIDERS], amplitudes[N_HARMONICS], stiffness;
+    *kind = (Kind){.errs = false};
+    error_amplitudes(0, joint->c, amplitudes);
+    for (int i = 0; i < N_HARMONICS; i++)
+        kind->errs |= amplitudes[i] != 0.0;
+    brake(0, joint->c, &stiffness);
+    friction_of(&kind->friction, stiffness);
     hysteresis_head(0, joint->c, head);
     slider_shares(0, joint->c, share);
     return midline_of(joint, why) &&
-        hysteresis_of(&joint->kind.hysteresis, head, share, &joint->curve, why);
+        hysteresis_of(&kind->hysteresis, head, share, &joint->curve, why);
+}
+
+enum { N_ERROR = 3 }; /* kinematic error, its first and its second derivative in phi1 */
+
+static void error_at(const Joint *joint, const double *inputs, double *error)
+{
+    if (joint->kind.errs)
+        kinematic_error(inputs, joint->c, error);
+    else
+        error[0] = error[1] = error[2] = 0.0;
 }
 
 /* Wind-up at inputs, coming from a memory; they are motion or torque. */
-static double wind_up(const Joint *joint, const double *inputs, const double *memory)
+static double wind_up(const Joint *joint, const double *inputs, double error, const double *memory)
 {
-    double at;
-    argument(inputs, joint->c, &at);
+    double x[N_INPUTS + 1], at;
+    memcpy(x, inputs, N_INPUTS * sizeof(double));
+    x[N_INPUTS] = error;
+    argument(x, joint->c, &at);
     if (!ARGUMENT_IS_LOAD)
         return at;
     if (joint->kind.hysteresis.acts)
@@ -113,20 +133,46 @@ static Slid slide(const Joint *joint, const double *memory)
     return (Slid){0.0, memory[AT_LOSS], 0.0, 0.0};
 }
 
-enum { N_GIVEN = N_INPUTS + 5 }; /* inputs, wind-up, midline's torque and stiffness, friction, loss */
+/* What the outputs are made of: inputs, and what a motion finds in the spring. */
+enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
+/* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
+enum { TURN_LOAD = N_INPUTS, TURN_SLID, TURN_SLOPE, N_TURN };
+enum { BRAKED = AT_LOSS + 1 }; /* where the memory of the friction begins */
+_Static_assert(N_MEMORY == BRAKED + N_BRAKES, "hysteresis, then friction");
+
+/* The inputs of `turn` out of those of `outputs`. */
+static void to_turn(const double *x, double *y)
+{
+    memcpy(y, x, N_INPUTS * sizeof(double));
+    y[TURN_LOAD] = x[LOAD];
+    y[TURN_SLID] = x[SLID];
+    y[TURN_SLOPE] = x[SLOPE];
+}
 
 bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
 {
-    double x[N_GIVEN];
+    double x[N_GIVEN], error[N_ERROR];
     (void)why;
-    joint->kind.phi = wind_up(joint, inputs, memory);
+    error_at(joint, inputs, error);
+    joint->kind.phi = wind_up(joint, inputs, error[0], memory);
     const Slid slid = slide(joint, memory);
-    for (int i = 0; i < N_INPUTS; i++)
-        x[i] = inputs[i];
-    x[N_INPUTS] = joint->kind.phi;
-    midline(&joint->curve, joint->kind.phi, 1, &x[N_INPUTS + 1]);
-    x[N_INPUTS + 3] = slid.torque;
-    x[N_INPUTS + 4] = slid.loss;
+    memcpy(x, inputs, N_INPUTS * sizeof(double));
+    x[PHI] = joint->kind.phi;
+    midline(&joint->curve, joint->kind.phi, 1, &x[LOAD]);
+    x[SLID] = slid.torque;
+    x[LOSS] = slid.loss;
+    x[ERROR] = error[0];
+    x[SLOPE] = error[1];
+    x[DRY] = 0.0;
+    if (joint->kind.friction.acts) {
+        double given[N_TURN], y[3];
+        to_turn(x, given);
+        turn(given, joint->c, y);
+        joint->kind.turn = (Turn){y[0], y[1], y[2]};
+        const Braked braked = friction_at(&joint->kind.friction, memory + BRAKED, joint->kind.turn);
+        x[DRY] = braked.torque;
+        x[LOSS] += braked.loss;
+    }
     outputs(x, joint->c, out);
     return true;
 }
@@ -134,21 +180,34 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
                       double *result)
 {
-    double x[2 * N_GIVEN], y[3], at[2 * N_INPUTS], rate;
+    double x[2 * N_GIVEN], y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
     const Slid slid = slide(joint, memory);
+    error_at(joint, inputs, error);
     for (int i = 0; i < N_INPUTS; i++) {
         x[i] = at[i] = inputs[i];
-        x[N_GIVEN + i] = at[N_INPUTS + i] = seed[i];
+        x[N_GIVEN + i] = at[N_INPUTS + 1 + i] = seed[i];
     }
+    at[N_INPUTS] = error[0];
+    at[2 * N_INPUTS + 1] = error[1] * seed[0];
     argument_seed(at, joint->c, &rate);
     midline(&joint->curve, joint->kind.phi, 2, y);
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + slid.tangent;
-    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss};
-    const double slopes[] = {1.0, y[1], y[2], slid.tangent, slid.heat};
-    for (int i = 0; i < 5; i++) {
-        x[N_INPUTS + i] = given[i];
-        x[N_GIVEN + N_INPUTS + i] = slopes[i] * rate;
+    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss, error[0], error[1], 0.0};
+    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid.tangent * rate, slid.heat * rate,
+                             error[1] * seed[0], error[2] * seed[0], 0.0};
+    memcpy(x + PHI, given, sizeof given);
+    memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
+    if (joint->kind.friction.acts) {
+        double turning[2 * N_TURN], drift[3];
+        to_turn(x, turning);
+        to_turn(x + N_GIVEN, turning + N_TURN);
+        turn_seed(turning, joint->c, drift);
+        const Turn moves = {drift[0], drift[1], drift[2]};
+        const Braked braked =
+            friction_rate(&joint->kind.friction, memory + BRAKED, joint->kind.turn, moves);
+        x[N_GIVEN + DRY] = braked.torque;
+        x[N_GIVEN + LOSS] += braked.loss;
     }
     outputs_seed(x, joint->c, result);
 }
@@ -161,5 +220,10 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
         hysteresis_move(&kind->hysteresis, before, kind->phi, after);
     else
         hysteresis_rest(before, kind->phi, after);
+    if (kind->friction.acts) {
+        after[AT_LOSS] += friction_at(&kind->friction, before + BRAKED, kind->turn).loss;
+        friction_move(&kind->friction, before + BRAKED, kind->turn, after + BRAKED);
+    } else {
+        friction_rest(after + BRAKED);
+    }
 }
-_Static_assert(N_MEMORY == AT_LOSS + 1, "sliders, wind-up and loss");

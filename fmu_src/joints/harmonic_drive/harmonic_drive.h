@@ -2,11 +2,15 @@
 #ifndef JOINTFMU_HARMONIC_DRIVE_H
 #define JOINTFMU_HARMONIC_DRIVE_H
 
+#include "friction.h"
 #include "hysteresis.h"
 
 typedef struct {
     Hysteresis hysteresis;
-    double phi; /* wind-up of the last evaluation */
+    Friction friction;
+    bool errs;  /* there is a kinematic error */
+    double phi; /* of the last evaluation: wind-up */
+    Turn turn;  /* and what moves the friction */
 } Kind;
 
 #endif

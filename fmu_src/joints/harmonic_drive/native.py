@@ -2,12 +2,12 @@
 
 import casadi as ca
 
-from jointfmu.joints.harmonic_drive import hysteresis, law, spring
+from jointfmu.joints.harmonic_drive import friction, hysteresis, kinematic_error, lost_motion, spring
 from jointfmu.joints.harmonic_drive.given import Given, Node
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, symbols
-from ...native.part import CURVE, Definitions, Named, NativePart, named, quadrature
+from ...native.graph import Graph, Symbols, symbols
+from ...native.part import CURVE, Definitions, Named, NativePart, column, named, quadrature
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -18,25 +18,47 @@ def _functions(g: Graph, model: Model) -> None:
     else:
         (torque,) = symbols("x", 1)
         doc = "torque -> K_WTS, its slope"
-        g.add("stiffness", doc, [torque], law.drive_stiffness(drive, torque))
+        g.add("stiffness", doc, [torque], lost_motion.stiffness_with_play(drive, torque))
         head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
         g.add("pair_head", "-> T_s, largest torque, K_FTS0", [], head)
     head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
     g.add("hysteresis_head", "-> loss, stiffness, rated torque", [], head)
-    springs, friction = hysteresis.shares(hysteresis.exponent(drive))
-    g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *friction])
-    v = {i.name: ca.SX.sym(i.name) for i in model.inputs}
-    x, load, stiffness, slid, loss = symbols("found", 5)
-    if "tau" in v:
-        argument, out = v["tau"], {"phi_rel": x, **spring.parts(drive, load, stiffness)}
+    springs, limits = hysteresis.shares(hysteresis.exponent(drive))
+    g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *limits])
+    inputs = [ca.SX.sym(i.name) for i in model.inputs]
+    locked = _given_torque(model)
+    waves = [0.0] * 3 if locked else kinematic_error.kinematic_error(drive, inputs[0])
+    g.add("kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves)
+    amplitudes = [0.0 * a if locked else a for a in kinematic_error.amplitudes(drive)]
+    g.add("error_amplitudes", "-> of the kinematic error", [], amplitudes)
+    x, load, stiffness, slid, loss, error, slope, dry = symbols("found", 8)
+    turn: Symbols
+    if locked:
+        argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0]
+        out = {"phi_rel": x, **spring.parts(drive, load, stiffness)}
     else:
-        argument = spring.wind_up(drive, list(v.values()))
-        out = spring.torques(drive, list(v.values()), load, stiffness, slid)
-    g.add_with_seed("argument", "inputs -> argument of the curve", [*v.values()], [argument])
+        state = spring.State(x, load, stiffness, slid, error, slope)
+        argument, brake = spring.wind_up(drive, inputs, error), friction.stiffness(drive)
+        most = friction.limit(drive, inputs[1], spring.transmitted(drive, inputs, state))
+        turn = [*inputs[:2], most]
+        out = spring.exported(drive, inputs, state, dry)
+    doc = "inputs, kinematic error -> argument of the curve"
+    g.add_with_seed("argument", doc, [*inputs, error], [argument])
+    g.add("brake", "-> stiffness of the friction while all stick", [], [brake])
+    doc = "inputs, torques of curve and hysteresis, slope of the error -> phi1, w1, limit of the friction"
+    g.add_with_seed("turn", doc, [*inputs, load, slid, slope], turn)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]
-    doc = "inputs, wind-up, torque and stiffness of the curve, torque and loss of the friction -> outputs"
-    g.add_with_seed("outputs", doc, [*v.values(), x, load, stiffness, slid, loss], y)
+    doc = (
+        "inputs, wind-up, torque and stiffness of the curve, torque of the hysteresis, loss, kinematic "
+        "error and its slope, dry friction -> outputs"
+    )
+    g.add_with_seed("outputs", doc, [*inputs, x, load, stiffness, slid, loss, error, slope, dry], y)
+
+
+def _given_torque(model: Model) -> bool:
+    """Whether the wave generator is locked, and the torque given."""
+    return model.inputs[0].name == "tau"
 
 
 NUMBERS: Named = (
@@ -45,14 +67,19 @@ NUMBERS: Named = (
     (hysteresis, "NEAREST"),
     (hysteresis, "REVERSAL"),
     (hysteresis, "SETTLED"),
+    (friction, "TURNED"),
 )
-COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"))
+COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"), (friction, "BRAKES"))
 """Numbers of the package that the C has under the same name."""
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
-    counts = {"ARGUMENT_IS_LOAD": int(model.inputs[0].name == "tau"), "DRIVE_STEPS": spring.STEPS}
-    every = named(NUMBERS, COUNTS) | Definitions(counts) | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
+    counts["N_HARMONICS"] = len(kinematic_error.HARMONICS)
+    sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.SPRINGS)
+    sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
+    given = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
+    every = given | quadrature("DRIVE_GAUSS", spring.GAUSS)
     nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
     return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 

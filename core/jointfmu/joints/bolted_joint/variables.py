@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...quantity import Number, where
-from ..model import BEYOND, Model, Outside, Ramp, Values, Variable
+from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .contact import Place
 from .law import BoltedJoint
 from .spring import BoltedJointSpring
@@ -108,6 +108,7 @@ MODELS = (
             ),
         ),
         ramp=Ramp("preload", 30e3, 100.0),
+        loop=Loop("s_rel_x", 5e-6, {"preload": 9e3}),
         dependencies={
             "f_x": (*_PLACE, "v_rel_x", "omega_z"),
             "f_y": (*_PLACE, "v_rel_y", "omega_z"),

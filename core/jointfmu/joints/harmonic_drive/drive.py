@@ -4,14 +4,18 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from ...quantity import Limit, Number, check, check_limits, quantity
+import numpy as np
+
+from ...quantity import Interval, Limit, Number, check, check_limits, quantity
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drive(ABC):
     """Parameters of a harmonic drive but for the law of its midline, the torque over the wind-up."""
 
-    ratio: float = quantity("1", "speed ratio of wave generator and output", gt=0.0)
+    ratio: float = quantity(
+        "1", "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0"
+    )
     d: float = quantity("N.m.s/rad", "viscous damping at the output", ge=0.0)
     rated_torque: float = quantity("N.m", "rated torque", gt=0.0)
     hysteresis_loss: float = quantity(
@@ -23,6 +27,42 @@ class Drive(ABC):
         ge=0.0,
         default=0.0,
     )
+
+    lost_motion: float = quantity(
+        "rad", "play of the output at next to no torque, between its ends; 0: none", ge=0.0, default=0.0
+    )
+    friction_coulomb: float = quantity("N.m", "dry friction at the wave generator", ge=0.0, default=0.0)
+    friction_stribeck: float = quantity(
+        "N.m", "further dry friction at rest, which speed takes away", ge=0.0, default=0.0
+    )
+    stribeck_speed: float = quantity(
+        "rad/s", "speed of the wave generator that leaves 1/e of friction_stribeck", gt=0.0, default=10.0
+    )
+    friction_viscous: float = quantity(
+        "N.m.s/rad", "friction at the wave generator over its speed", ge=0.0, default=0.0
+    )
+    load_loss: float = quantity(
+        "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
+    )
+    presliding: float = quantity(
+        "rad",
+        "angle of the wave generator over which dry friction builds up to 1 - 1/e",
+        gt=0.0,
+        default=0.01,
+    )
+    temperature_factor: float = quantity(
+        "1", "friction over that of the reference temperature", ge=0.0, default=1.0
+    )
+    error_1: float = quantity(
+        "rad",
+        "kinematic error at the output, amplitude, one period per turn of the wave generator",
+        default=0.0,
+    )
+    error_1_phase: float = quantity("rad", "phase of error_1 at phi1 = 0", default=0.0)
+    error_2: float = quantity("rad", "the same with two periods per turn", default=0.0)
+    error_2_phase: float = quantity("rad", "phase of error_2 at phi1 = 0", default=0.0)
+    error_4: float = quantity("rad", "the same with four periods per turn", default=0.0)
+    error_4_phase: float = quantity("rad", "phase of error_4 at phi1 = 0", default=0.0)
 
     def __post_init__(self) -> None:
         check(self)
@@ -54,7 +94,8 @@ class Drive(ABC):
 
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
-        return []
+        any_sign = Interval.of(gt=np.minimum(2.0 * self.ratio, 0.0))
+        return [Limit("ratio", any_sign, "it may be negative, not zero")]
 
     def table_limits(self) -> list[Limit]:
         """Intervals that the tabulated law needs beside."""

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...quantity import Interval, Limit, Number, check, group, quantity, series
+from ...quantity import Interval, Limit, Number, check, group, quantity, series, where
 from .drive import Drive
+from .lost_motion import WIDTH, play
 
 Array = NDArray[np.float64]
 
@@ -26,6 +27,10 @@ LEAST_SLOPE, LARGEST_SLOPE = 1.0 / 3.0, 3.0
 """Stiffness at the last point over that from the point before [1]."""
 SOFTEST = 0.5
 """Least stiffness [1] of a segment that bends as its neighbours do, over its mean or that at an end."""
+PLAY_NODES = 60
+"""Nodes of the play on a catalogue's first line: torque within 1e-8 of the rated one."""
+SPENT = 8.0
+"""Torque over that of the play [1] where nothing is left of it: 2e-7."""
 _INNER = np.linspace(0.0, 1.0, 33)
 
 
@@ -94,6 +99,11 @@ class CatalogueDrive(Given):
                 Interval.of(ge=1e-3, lt=(second - first) / (second + first)),
                 "corners must not meet",
             ),
+            Limit(
+                "lost_motion",
+                Interval.of(ge=0.0, le=where(self._straight > SPENT * WIDTH * self.rated_torque, 1.0, 0.0)),
+                f"the first line must reach beyond {SPENT * WIDTH:g} rated_torque, where play ends",
+            ),
         ]
 
     @property
@@ -112,18 +122,36 @@ class CatalogueDrive(Given):
         """Twice the largest of K1, K2 and K3."""
         return 2.0 * np.maximum(np.maximum(self.K1, self.K2), self.K3)
 
+    @property
+    def _straight(self) -> Number:
+        """Torque [N.m] at the end of the first line, where its corner begins."""
+        return self.T1 - self.K1 * self.corner * self.corners[0]
+
     def nodes(self) -> list[Node]:
-        """Six: the ends, and those of the corners, where the stiffness does not bend."""
+        """Those of the play on the first line, then five: of the corners, where the stiffness does not bend,
+        and of the end."""
         (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
         one, two, end = self.corner * first, self.corner * second, self.reach
+        far = play(self, self._straight)[0]
         return [
-            Node(0.0, 0.0, K1),
-            Node(first - one, self.T1 - K1 * one, K1),
-            Node(first + one, self.T1 + K2 * one, K2),
-            Node(second - two, self.T2 - K2 * two, K2),
-            Node(second + two, self.T2 + K3 * two, K3),
-            Node(second + (end - self.T2) / K3, end, K3),
+            *self._with_play(),
+            Node(first - one + far, self._straight, K1),
+            Node(first + one + far, self.T1 + K2 * one, K2),
+            Node(second - two + far, self.T2 - K2 * two, K2),
+            Node(second + two + far, self.T2 + K3 * two, K3),
+            Node(second + (end - self.T2) / K3 + far, end, K3),
         ]
+
+    def _with_play(self) -> list[Node]:
+        """On the first line, closer where the torque is small."""
+        most, nodes = np.minimum(SPENT * WIDTH * self.rated_torque, self._straight), []
+        for part in np.arange(PLAY_NODES) / PLAY_NODES:
+            torque = most * float(part) ** 2
+            angle, compliance, change = play(self, torque)
+            softer = 1.0 + self.K1 * compliance
+            bend = -(self.K1**3) * change / softer**3
+            nodes.append(Node(torque / self.K1 + angle, torque, self.K1 / softer, bend, bend))
+        return nodes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +187,11 @@ class TableDrive(Given):
     """
 
     table: TorqueAngle = group("measured midline: the point without load is left out")
+
+    def limits(self) -> list[Limit]:
+        """Intervals that other parameters decide."""
+        none = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
+        return [*super().limits(), none]
 
     @property
     def reach(self) -> float:

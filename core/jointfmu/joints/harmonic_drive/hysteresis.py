@@ -10,6 +10,7 @@ M_i. Here each stands for all whose s lies between two of the places LEFT, with 
 of their friction, so that torque and stiffness from rest are exact at these places and at full slip.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -55,10 +56,10 @@ def exponent(drive: Drive) -> Number:
     return spots.slope("normal", u) / (spots.total("normal", u) * power)
 
 
-def shares(m: Number) -> tuple[list[Number], list[Number]]:
-    """Springs over K_h and friction over M_f of the sliders [1]; the sum of each is 1."""
-    rate = [left**m if left else 0.0 for left in LEFT]
-    used = [1.0 - left - _travel(left, m) * r if left else 1.0 for left, r in zip(LEFT, rate, strict=True)]
+def shares(m: Number, places: Sequence[float] = LEFT) -> tuple[list[Number], list[Number]]:
+    """Springs over K_h and friction over M_f of the sliders [1] between places; the sum of each is 1."""
+    rate = [left**m if left else 0.0 for left in places]
+    used = [1.0 - left - _travel(left, m) * r if left else 1.0 for left, r in zip(places, rate, strict=True)]
     return [a - b for a, b in pairwise(rate)], [b - a for a, b in pairwise(used)]
 
 

@@ -14,6 +14,7 @@ from . import KIND
 from .drive import Drive
 from .given import CatalogueDrive, TableDrive
 from .law import PairDrive, drive_stiffness
+from .lost_motion import play
 from .spring import HarmonicDriveSpring, torque_curve
 
 Array = NDArray[np.float64]
@@ -36,7 +37,9 @@ def evaluate(
         return _pair(drive, loads, factor)
     torque = factor * loads
     K, phi = _lines(drive, torque) if isinstance(drive, CatalogueDrive) else _table(drive, torque)
-    return {"K_WTS": np.broadcast_to(K, torque.shape), "phi_rel": np.broadcast_to(phi, torque.shape)}
+    angle, compliance, _ = play(drive, torque)
+    found = {"K_WTS": K / (1.0 + K * compliance), "phi_rel": phi + angle}
+    return {name: np.broadcast_to(value, torque.shape) for name, value in found.items()}
 
 
 def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
@@ -47,10 +50,10 @@ def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
     rate = smoothing * xi[-1] * np.cosh(span)
     K = drive_stiffness(drive, factor * smoothing * np.sinh(span))[0]
     K = np.broadcast_to(K, (factor.size, RAMP))
-    return {
-        "K_WTS": K @ chebyshev.interpolation(RAMP, xi / xi[-1]),
-        "phi_rel": factor * ((rate / K) @ chebyshev.integration(RAMP, xi / xi[-1])),
-    }
+    angle, compliance, _ = play(drive, factor * loads)
+    tangent = K @ chebyshev.interpolation(RAMP, xi / xi[-1])
+    wound_up = factor * ((rate / K) @ chebyshev.integration(RAMP, xi / xi[-1]))
+    return {"K_WTS": tangent / (1.0 + tangent * compliance), "phi_rel": wound_up + angle}
 
 
 def _table(drive: TableDrive, torque: Array) -> tuple[Array, Array]:

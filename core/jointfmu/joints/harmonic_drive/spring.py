@@ -9,9 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 from ...curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
 from .drive import Drive
+from .friction import Friction, limit, viscous
 from .given import Given
 from .hysteresis import Hysteresis, Slid
-from .law import PairDrive, drive_stiffness
+from .kinematic_error import kinematic_error
+from .law import PairDrive
+from .lost_motion import stiffness_with_play
 
 Array = NDArray[np.float64]
 
@@ -45,14 +48,14 @@ def _windup(drive: PairDrive, steps: int) -> Curve:
     xi = np.linspace(0.0, np.arcsinh(drive.max_torque / smoothing), steps + 1)
     T, half = smoothing * np.sinh(xi), 0.5 * xi[1]
     with np.errstate(all="ignore"):
-        K, growth = drive_stiffness(drive, T)
+        K, growth = stiffness_with_play(drive, T)
     if not np.all((K > SOFTEST) & (K < (1.0 - STIFFEST) * drive.K_FTS0)):
         raise ValueError(
             f"K_FTS0 = {drive.K_FTS0:g} N.m/rad and the contact pair give K_WTS = {K[-1]:g} N.m/rad, allowed "
             f"is ({SOFTEST:g}, {drive.K_FTS0:g}) N.m/rad with K_TS at most {1.0 / STIFFEST:g} times K_FTS0"
         )
     inner = xi[:-1, None] + half * (1.0 + GAUSS[0])
-    rate = smoothing * np.cosh(inner) / drive_stiffness(drive, smoothing * np.sinh(inner))[0]
+    rate = smoothing * np.cosh(inner) / stiffness_with_play(drive, smoothing * np.sinh(inner))[0]
     phi = np.concatenate([[0.0], np.cumsum(half * rate @ GAUSS[1])])
     return assemble([(phi, T, K, K * growth)])
 
@@ -64,6 +67,7 @@ class HarmonicDriveSpring:
     joint: Drive
     curve: Curve
     hysteresis: Hysteresis
+    friction: Friction
 
     @classmethod
     def of(cls, drive: Drive) -> "HarmonicDriveSpring":
@@ -72,34 +76,54 @@ class HarmonicDriveSpring:
         Raises ValueError as `torque_curve` and `Hysteresis.of`.
         """
         curve = torque_curve(drive)
-        return cls(drive, curve, Hysteresis.of(drive, curve))
+        return cls(drive, curve, Hysteresis.of(drive, curve), Friction.of(drive))
 
     def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
         """Torques and stiffnesses at flange angles [rad] and speeds [rad/s] (...), on the way from rest."""
-        return self.driven((phi1, w1, phi2, w2), self.hysteresis.rest())[0]
+        return self.driven((phi1, w1, phi2, w2), self.rest())[0]
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m], wave generator locked, on the way from rest."""
-        return self.loaded(tau, self.hysteresis.rest())[0]
+        return self.loaded(tau, self.rest())[0]
+
+    def rest(self) -> Array:
+        """Memory (n) of a spring that has not moved: of the hysteresis, then of the friction."""
+        return np.concatenate([self.hysteresis.rest(), self.friction.rest()])
 
     def driven(self, motion: Sequence[ArrayLike], memory: Array) -> tuple[dict[str, Array], Array]:
-        """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n + 2) on, and the new one."""
+        """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n) on, and the new one."""
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
-        phi = wind_up(self.joint, motion)
+        wound, brakes = self._parts(memory)
+        error, slope, _ = kinematic_error(self.joint, motion[0])
+        phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid, loss, new = self._slid(phi, memory)
+        slid, loss, new = self._slid(phi, wound)
         load = np.copysign(load, phi)
-        return torques(self.joint, motion, load, stiffness, slid.torque) | {"E_loss": loss}, new
+        state = State(phi, load, stiffness, slid.torque, error, slope)
+        most = limit(self.joint, motion[1], transmitted(self.joint, motion, state))
+        braked = self.friction.moved(brakes, motion[0], motion[1], most)
+        new[..., -1] += braked.loss
+        after = self.friction.after(braked, motion[0], most)
+        out = exported(self.joint, motion, state, braked.torque) | {"E_loss": loss + braked.loss}
+        return out, np.concatenate([new, after], axis=-1)
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
-        """Wind-up and stiffnesses at torques (...), from a memory (n + 2) on, and the new one."""
+        """Wind-up and stiffnesses at torques (...), from a memory (n) on, and the new one."""
+        wound, brakes = self._parts(memory)
         if self.hysteresis.acts:
-            phi = self.hysteresis.wind_up(self.curve, memory, tau)
+            phi = self.hysteresis.wind_up(self.curve, wound, tau)
         else:
             phi = np.copysign(self.curve.inverse(np.abs(tau)), tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        _, loss, new = self._slid(phi, memory)
-        return {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}, new
+        _, loss, new = self._slid(phi, wound)
+        locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
+        out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
+        return out, np.concatenate([new, locked], axis=-1)
+
+    def _parts(self, memory: Array) -> tuple[Array, Array]:
+        """Memory of the hysteresis and of the friction."""
+        size = self.hysteresis.limit.size + 2
+        return memory[..., :size], memory[..., size:]
 
     def _slid(self, phi: Array, memory: Array) -> tuple[Slid, Array, Array]:
         """The sliders at wind-ups (...), the loss so far, the memory (..., n + 2)."""
@@ -108,29 +132,56 @@ class HarmonicDriveSpring:
         return slid, loss, np.concatenate([slid.force, phi[..., None], loss[..., None]], axis=-1)
 
 
-def wind_up(drive: Drive, motion: Sequence[Number]) -> Number:
-    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2."""
-    phi1, _, phi2, _ = motion
-    return phi2 - phi1 / drive.ratio
+@dataclass(frozen=True, slots=True)
+class State:
+    """What a motion finds in the spring: numbers, arrays or symbols.
 
-
-def torques(
-    drive: Drive, motion: Sequence[Number], load: Number, stiffness: Number, friction: Number
-) -> dict[str, Number]:
-    """What the spring exports at a motion phi1, w1, phi2, w2, but for the loss.
-
-    Given are torque [N.m] and stiffness [N.m/rad] of the curve there, and the torque [N.m] of friction.
+    phi_rel   : [rad] wind-up
+    load      : [N.m] torque of the curve
+    stiffness : [N.m/rad] of the curve
+    friction  : [N.m] torque of the hysteresis
+    error     : [rad] kinematic error
+    slope     : [1] its derivative in phi1
     """
+
+    phi_rel: Number
+    load: Number
+    stiffness: Number
+    friction: Number
+    error: Number
+    slope: Number
+
+
+def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
+    """phi_rel [rad], the wind-up at the output, for phi1, w1, phi2, w2 and the kinematic error [rad]."""
+    phi1, _, phi2, _ = motion
+    return phi2 - phi1 / drive.ratio - error
+
+
+def exported(drive: Drive, motion: Sequence[Number], state: State, dry: Number) -> dict[str, Number]:
+    """What the spring exports at a motion phi1, w1, phi2, w2 with a dry friction [N.m], but for the loss."""
+    tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1])
+    return {
+        "tau1": tau / drive.ratio + state.slope * tau - friction,
+        "tau2": -tau,
+        "phi_rel": state.phi_rel,
+        "tau": tau,
+        **parts(drive, state.load, state.stiffness),
+        "tau_friction": friction,
+        "phi_error": state.error,
+    }
+
+
+def transmitted(drive: Drive, motion: Sequence[Number], state: State) -> Number:
+    """tau [N.m] at the output: of the curve, of the hysteresis and of the damper."""
     _, w1, _, w2 = motion
-    tau = load + friction + drive.d * (w2 - w1 / drive.ratio)
-    ends = {"tau1": tau / drive.ratio, "tau2": -tau, "phi_rel": wind_up(drive, motion), "tau": tau}
-    return {**ends, **parts(drive, load, stiffness)}
+    return state.load + state.friction + drive.d * (w2 - w1 / drive.ratio - state.slope * w1)
 
 
 def parts(drive: Drive, load: Number, stiffness: Number) -> dict[str, Number]:
     """K_WTS and its parts at an elastic torque, and the peak contact pressure.
 
-    K_TS_pair is K_TS on the scale of the paper's Fig. 11.
+    K_TS has the lost motion along; K_TS_pair is K_TS on the scale of the paper's Fig. 11.
     """
     K_TS = stiffness * drive.K_FTS / (drive.K_FTS - stiffness)
     return {

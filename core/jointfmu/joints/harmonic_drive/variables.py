@@ -1,6 +1,7 @@
 """Inputs and outputs of the harmonic drive's models."""
 
-from ..model import BEYOND, Model, Outside, Ramp, Variable
+from ..model import BEYOND, Loop, Model, Outside, Ramp, Variable
+from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 
@@ -10,12 +11,19 @@ _CONTACT = (
     Variable("K_FTS", "N.m/rad", "its part of circular spline and flexspline", 2e4),
     Variable("K_TS_pair", "N.m/rad", "K_TS over drive_scale, if any: scale of Hu 2023, Fig. 11", 1e3),
     Variable("p_max", "Pa", "peak contact pressure, at the major axis and the cup's opening", 1e8),
-    Variable("E_loss", "J", "work turned into heat by hysteresis since initialization", 1e-3),
+    Variable(
+        "E_loss", "J", "work turned into heat by hysteresis and dry friction since initialization", 1e-3
+    ),
 )
 
 _MOTION = ("phi1", "phi2")
 _HIDDEN = ("max_torque", "shear_traction", "table")
-_SPEEDS = {"w1": "parameters", "w2": "parameters"}
+_LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
+"""One arcmin of hysteresis: the default drive has none."""
+_DAMPED = {"w2": "parameters"}
+_ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
+_FRICTION = ("friction_coulomb", "friction_stribeck", "stribeck_speed", "friction_viscous", "load_loss")
+_SPRING_ONLY = (*_FRICTION, "presliding", "temperature_factor", *_ERROR)
 
 MODELS = (
     Model(
@@ -31,19 +39,26 @@ MODELS = (
             Variable("w2", "rad/s", "speed of the output flange"),
         ),
         outputs=(
-            Variable("tau1", "N.m", "torque of the element on flange 1, tau/ratio", 0.1),
+            Variable(
+                "tau1", "N.m", "torque on flange 1, tau (1/ratio + dphi_error/dphi1) - tau_friction", 0.1
+            ),
             Variable("tau2", "N.m", "torque of the element on flange 2, -tau", 5.0),
-            Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio", 1e-3),
+            Variable("phi_rel", "rad", "wind-up at the output, phi2 - phi1/ratio - phi_error", 1e-3),
             Variable(
                 "tau", "N.m", "T(phi_rel) + T_h + d der(phi_rel), T_h the friction of the hysteresis", 5.0
             ),
             *_CONTACT,
+            Variable(
+                "tau_friction", "N.m", "friction of the wave generator, positive where it turns so", 0.01
+            ),
+            Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
-        rest=lambda s: s.hysteresis.rest(),
+        rest=lambda s: s.rest(),
         evolve=lambda s, v, memory: s.driven((v["phi1"], v["w1"], v["phi2"], v["w2"]), memory),
         outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
+        loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={
             "phi_rel": _MOTION,
             "K_WTS": _MOTION,
@@ -51,13 +66,12 @@ MODELS = (
             "K_FTS": (),
             "K_TS_pair": _MOTION,
             "p_max": _MOTION,
-            "E_loss": _MOTION,
+            "phi_error": ("phi1",),
         },
         linear={
-            "phi_rel": {"phi1": "parameters", "phi2": "constant"},
-            "tau1": _SPEEDS,
-            "tau2": _SPEEDS,
-            "tau": _SPEEDS,
+            "phi_rel": {"phi2": "constant"},
+            "tau2": _DAMPED,
+            "tau": _DAMPED,
         },
         hidden=_HIDDEN,
     ),
@@ -70,11 +84,12 @@ MODELS = (
         inputs=(Variable("tau", "N.m", "torque at the output flange", 5.0),),
         outputs=(Variable("phi_rel", "rad", "wind-up at the output, phi(tau - T_h)", 1e-3), *_CONTACT),
         evaluate=lambda s, v: s.windup(v["tau"]),
-        rest=lambda s: s.hysteresis.rest(),
+        rest=lambda s: s.rest(),
         evolve=lambda s, v, memory: s.loaded(v["tau"], memory),
         outside=(Outside("tau", lambda j, end, v: (-end[1], end[1]), BEYOND),),
         ramp=Ramp("tau", 5.0, 0.01),
+        loop=Loop("tau", 5.0, _LOSSY),
         dependencies={"K_FTS": ()},
-        hidden=_HIDDEN,
+        hidden=(*_HIDDEN, *_SPRING_ONLY),
     ),
 )

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
+from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 
@@ -12,11 +13,13 @@ from ....modelica.records import Component, Record, WorkingPoint, numbers
 from ....modelica.tables import thinned
 from ....modelica.text import identifier, matrix
 
+_ERROR = [f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")]
+
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
-    own = {"ratio": drive.ratio, "d": drive.d, "K_FTS0": drive.K_FTS}
+    own = {name: getattr(drive, name) for name in ("ratio", "d", *_ERROR)} | {"K_FTS0": drive.K_FTS}
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
         Record(

@@ -2,10 +2,22 @@ within JointStiffness.Components;
 model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive between two flanges"
   parameter JointStiffness.Data.HarmonicDrive data = JointStiffness.Data.CD_14_100_of_Hu_2023() "The drive"
     annotation (choicesAllMatching=true);
-  parameter Real ratio(min=Modelica.Constants.small) = data.ratio "speed ratio of wave generator and output";
+  parameter Real ratio = data.ratio "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0";
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "viscous damping at the output";
   parameter Modelica.Units.SI.Torque friction(min=0) = data.friction "Friction of its hysteresis; 0: none";
   parameter Modelica.Units.SI.RotationalSpringConstant stick(min=0) = data.stick "Stiffness of its sliders while all of them stick";
+  parameter Modelica.Units.SI.Angle error_1 = data.error_1 "kinematic error at the output, amplitude, one period per turn of the wave generator"
+    annotation (Dialog(tab="Kinematic error"));
+  parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "phase of error_1 at phi1 = 0"
+    annotation (Dialog(tab="Kinematic error"));
+  parameter Modelica.Units.SI.Angle error_2 = data.error_2 "the same with two periods per turn"
+    annotation (Dialog(tab="Kinematic error"));
+  parameter Modelica.Units.SI.Angle error_2_phase = data.error_2_phase "phase of error_2 at phi1 = 0"
+    annotation (Dialog(tab="Kinematic error"));
+  parameter Modelica.Units.SI.Angle error_4 = data.error_4 "the same with four periods per turn"
+    annotation (Dialog(tab="Kinematic error"));
+  parameter Modelica.Units.SI.Angle error_4_phase = data.error_4_phase "phase of error_4 at phi1 = 0"
+    annotation (Dialog(tab="Kinematic error"));
   parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia and damping"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
   parameter StateSelect stateSelect=StateSelect.prefer "Priority to use phi_rel and w_rel as states"
@@ -15,7 +27,8 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Output"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
   Modelica.Units.SI.Angle phi_rel(start=0, nominal=1e-3, stateSelect=stateSelect)
-    "wind-up at the output, phi2 - phi1/ratio (= flange_b.phi - flange_a.phi/ratio)";
+    "wind-up at the output, phi2 - phi1/ratio - phi_error (= flange_b.phi - flange_a.phi/ratio - phi_error)";
+  Modelica.Units.SI.Angle phi_error(nominal=1e-4) "kinematic error at the output, a function of phi1";
   Modelica.Units.SI.AngularVelocity w_rel(start=0, nominal=1, stateSelect=stateSelect) "Rate of the wind-up; 0 with use_damping=false";
   Modelica.Units.SI.Torque tau_c(nominal=5) "Torque of the spring";
   Modelica.Units.SI.Torque tau_h(nominal=0.1) "Torque of the hysteresis";
@@ -30,9 +43,13 @@ protected
   parameter Real M_h[n]=friction*data.sliders[:, 2] "Their friction [N.m]";
   Real q[n](each start=0, each fixed=true, each nominal=0.01) "Their torques [N.m]";
   Real rate[n] "Their rates [N.m/s]";
+  Real errorSlope "Derivative of phi_error in flange_a.phi";
   Real windUp "Absolute value of the wind-up";
 equation
-  phi_rel = flange_b.phi - flange_a.phi/ratio;
+  assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
+  phi_error = error_1*sin(flange_a.phi + error_1_phase) + error_2*sin(2*flange_a.phi + error_2_phase) + error_4*sin(4*flange_a.phi + error_4_phase);
+  errorSlope = error_1*cos(flange_a.phi + error_1_phase) + 2*error_2*cos(2*flange_a.phi + error_2_phase) + 4*error_4*cos(4*flange_a.phi + error_4_phase);
+  phi_rel = flange_b.phi - flange_a.phi/ratio - phi_error;
   if use_damping then
     w_rel = der(phi_rel);
     tau = tau_c + tau_h + d*w_rel;
@@ -51,7 +68,7 @@ equation
   K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
-  flange_a.tau = -tau/ratio;
+  flange_a.tau = -(tau/ratio + errorSlope*tau);
   lossPower = d*w_rel^2 + sum(q[i]*(w_rel - rate[i]/max(K_h[i], Modelica.Constants.small)) for i in 1:n);
   annotation (
     defaultComponentName="harmonicDrive",
@@ -70,7 +87,10 @@ equation
 <h4>Flanges</h4>
 <p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange. With a flange held, the other at a given torque and no inertia, the damper decides the speed, which is a division by zero if <code>d</code> is 0: set <code>use_damping=false</code> then, and the wind-up follows the torque at once.</p>
 <h4>Law</h4>
-<p>τ = T(φ<sub>rel</sub>) + d (w<sub>2</sub> − w<sub>1</sub>/ratio), &emsp; T the inverse of φ(T)</p>
+<p>τ = T(φ<sub>rel</sub>) + d dφ<sub>rel</sub>/dt, &emsp; T the inverse of φ(T)</p>
+<p>φ<sub>rel</sub> = φ<sub>2</sub> − φ<sub>1</sub>/ratio − φ<sub>e</sub>(φ<sub>1</sub>), &emsp; τ<sub>1</sub> = τ (1/ratio + dφ<sub>e</sub>/dφ<sub>1</sub>), &emsp; τ<sub>2</sub> = −τ</p>
+<p>φ<sub>e</sub> = Σ error_n sin(n φ<sub>1</sub> + error_n_phase), &emsp; n = 1, 2, 4</p>
+<p>φ<sub>e</sub>, the output <code>phi_error</code>, is the kinematic error at the output. φ<sub>1</sub> counts from the housing: both lobes of the wave generator pass every tooth once per turn, so two periods per turn come first, <code>error_2</code>. The torque on the wave generator follows by virtual work. At a steady speed the output ripples, most at that speed of the wave generator which is half the natural frequency.</p>
 <p>φ(T) = ∫<sub>0</sub><sup>T</sup> dT′ / K<sub>WTS</sub>(T′), &emsp; odd in T</p>
 <p>1/K<sub>WTS</sub> = 1/K<sub>FTS</sub> + 1/K<sub>TS</sub> (Hu 2023, Eq. 46)</p>
 <p>K<sub>TS</sub> = drive_scale · (A<sub>0</sub>/node_area) · K<sub>T</sub>(p) · 2 radius, &emsp; p = mean_over_peak · P(T) (Eq. 45 as printed)</p>
@@ -81,8 +101,9 @@ equation
 <p>K<sub>N</sub> and K<sub>T</sub> of a node are sums over its contact spots up to the largest one, s<sub>l</sub>, all elastic:</p>
 <p>p = F<sub>r</sub>/S<sub>r</sub> = (3−D)/(4−D) · 4E/(3π<sup>3/2</sup>R) · s<sub>l</sub><sup>1/2</sup> (Eqs. 17, 28)</p>
 <p>K<sub>N</sub> = (D−1)/(D/2−1) · E π<sup>−1/2</sup> ψ<sup>(3−D)/2</sup> s<sub>l</sub><sup>1/2</sup>, &emsp; K<sub>T</sub>/K<sub>N</sub> = (4G′/E) (1 − x)<sup>1/3</sup> (Eqs. 30, 39)</p>
+<p><code>lost_motion</code> adds <code>lost_motion</code>/2 · tanh(T/(0.01 T<sub>r</sub>)) to φ(T): smooth, in series, counted to K<sub>TS</sub>. Catalogues state as lost motion the angle between ± 4 % of the rated torque T<sub>r</sub>, midway between the branches of the loop; the parameter is what of it is beyond the wind-up 2 φ(0.04 T<sub>r</sub>) without it.</p>
 <h4>Not in this table</h4>
-<p>The parameters of the law are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
+<p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 <ul>
 <li><b>Validated</b> with the default parameters (CD-14-100): K_TS of the paper at 1 and 3 N m within 2.0 %, its change by eccentricity within 0.7 percentage points. The other published points fixed the calibration parameters.</li>
@@ -90,7 +111,7 @@ equation
 <li><b>Estimates.</b> Base radius, mean over peak pressure, yield strengths and damping are not published. All spots are taken as elastic; parameters for which some would yield are refused.</li>
 <li><b>Beyond rated torque</b> the stiffness settles at that of twice the rated torque, as that of catalogue drives does: an extrapolation.</li>
 <li><b>Range.</b> The table ends at <code>max_torque</code>. Parameters for which the pair loses contact without torque are refused.</li>
-<li><b>Not inside:</b> hysteresis, backlash, friction, kinematic error, temperature. Dissipation is the viscous <code>d</code> alone.</li>
+<li><b>Not inside:</b> friction at the wave generator, temperature. Other than in the FMU.</li>
 </ul>
 <p>Q. Hu, H. Li, G. Wang, L. Li: <em>Research on torsional stiffness of flexspline-flexible bearing contact pair in harmonic drive based on macro-micro scale modeling.</em> Frontiers in Materials 10, 2023. <a href=\"https://doi.org/10.3389/fmats.2023.1211019\">doi:10.3389/fmats.2023.1211019</a></p>
 </html>"));

@@ -3,6 +3,12 @@ record CD_14_100_of_Hu_2023 "CD-14-100 of Hu 2023"
   extends HarmonicDrive(
     final ratio=100,
     final d=0.5,
+    final error_1=0,
+    final error_1_phase=0,
+    final error_2=0,
+    final error_2_phase=0,
+    final error_4=0,
+    final error_4_phase=0,
     final K_FTS0=19393.5069827343,
     final friction=0,
     final stick=1862.06202003334,

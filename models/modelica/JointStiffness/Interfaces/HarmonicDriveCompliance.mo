@@ -15,7 +15,7 @@ partial block HarmonicDriveCompliance "Wind-up of a harmonic drive with the wave
     annotation (Placement(transformation(extent={{100,-36},{120,-16}})));
   Modelica.Blocks.Interfaces.RealOutput p_max(unit="Pa") "peak contact pressure, at the major axis and the cup's opening"
     annotation (Placement(transformation(extent={{100,-61},{120,-41}})));
-  Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "work turned into heat by hysteresis since initialization"
+  Modelica.Blocks.Interfaces.RealOutput E_loss(unit="J") "work turned into heat by hysteresis and dry friction since initialization"
     annotation (Placement(transformation(extent={{100,-87},{120,-67}})));
   annotation (
     Icon(graphics={Text(extent={{-90,30},{90,-30}}, textColor={43,58,74}, textString="FMU")}),

@@ -1,0 +1,117 @@
+r"""Friction at the wave generator of a harmonic drive: sliders between it and the housing.
+
+Dry friction holds up to a limit that speed lowers and load raises,
+
+    M = temperature_factor [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2)
+                            + load_loss |tau/ratio|],
+
+and builds up over the angle phi1: sliders in parallel, spring and friction each, of which every one takes its
+share of M. From rest it is M (1 - exp(-phi1/presliding)) (Dahl 1968) at a steady limit, as far as so few
+sliders follow it; after a reversal by Masing's rule. The springs stay while the limit changes. So a drive at
+rest holds any torque below M where it is, without a threshold of speed, and the work of every path is what
+the springs store and what is lost. Grease adds temperature_factor friction_viscous w1.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...quantity import Number
+from .drive import Drive
+from .hysteresis import shares
+from .lost_motion import WIDTH
+
+Array = NDArray[np.float64]
+
+BRAKES = 8
+"""How many sliders: friction from rest within 1 % of M."""
+_LEFT = (*(np.linspace(1.0, 0.0, BRAKES, endpoint=False) ** 2).tolist(), 0.0)
+_SHARES = shares(1.0, _LEFT)
+SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
+"""Springs over M/presliding and friction over M of the sliders [1]."""
+TURNED = 0.1
+"""Time [s] for which a drive that turns at initialization has turned before."""
+
+
+def limit(drive: Drive, w1: Number, tau: Number) -> Number:
+    """M (...) [N.m] at speeds (...) [rad/s] of the wave generator and torques (...) [N.m] at the output.
+
+    |tau| is tau tanh(tau/t) with t WIDTH times the rated torque, smooth through zero.
+    """
+    size = tau * np.tanh(tau / (WIDTH * drive.rated_torque)) / np.abs(drive.ratio)
+    stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
+    return drive.temperature_factor * (drive.friction_coulomb + stribeck + drive.load_loss * size)
+
+
+def viscous(drive: Drive, w1: Number) -> Number:
+    """Torque (...) [N.m] of the grease at speeds (...) [rad/s] of the wave generator."""
+    return drive.temperature_factor * drive.friction_viscous * w1
+
+
+def stiffness(drive: Drive) -> Number:
+    """[N.m/rad] of the sliders while all of them stick: M at rest and rated torque over presliding."""
+    return limit(drive, 0.0, drive.rated_torque) / drive.presliding
+
+
+@dataclass(frozen=True, slots=True)
+class Braked:
+    """Sliders (..., n) after a straight path.
+
+    force  : (..., n) [N.m] of each
+    torque : (...) [N.m] their sum
+    loss   : (...) [J] turned into heat on the way
+    """
+
+    force: Array
+    torque: Array
+    loss: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Friction:
+    """The sliders of a drive; `stiffness` (n) [N.m/rad] is all zero without dry friction."""
+
+    stiffness: Array
+
+    @classmethod
+    def of(cls, drive: Drive) -> "Friction":
+        """Of a drive."""
+        return cls(float(stiffness(drive)) * SPRINGS)
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is any."""
+        return bool(self.stiffness[-1] > 0.0)
+
+    def rest(self) -> Array:
+        """Memory (n + 3) before anything moved: forces [N.m], phi1 [rad], limit [N.m], 1 once begun."""
+        return np.zeros(self.stiffness.size + 3)
+
+    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: ArrayLike) -> Braked:
+        """The sliders on the straight path from a memory (..., n + 3) to angles (...) [rad] and limits [N.m].
+
+        The first path of all leads to where the drive is, whatever the angle: it has turned before for as
+        long as TURNED at its speed w1, and lost nothing yet.
+        """
+        begun, now = memory[..., -1] > 0.0, np.asarray(most, dtype=np.float64)
+        way = np.where(begun, np.asarray(phi1) - memory[..., -3], TURNED * np.asarray(w1))[..., None]
+        old, end = memory[..., :-3], now[..., None] * LIMITS
+        trial = old + self.stiffness * way
+        force = np.clip(trial, -end, end)
+        if not self.acts:
+            return Braked(force, np.zeros(now.shape), np.zeros(now.shape))
+        start = memory[..., -2, None] * LIMITS
+        beyond = np.abs(trial - force)
+        margin = np.maximum(start - np.copysign(old, old * trial), 0.0)
+        onset = margin / np.where(beyond > 0.0, margin + beyond, 1.0)
+        mean = 0.5 * (start + end + onset * (end - start))  # of the limit, while it slips
+        loss = np.where(begun, np.sum(mean * beyond / self.stiffness, axis=-1), 0.0)
+        return Braked(force, np.sum(force, axis=-1), loss)
+
+    def after(self, braked: Braked, phi1: ArrayLike, most: ArrayLike) -> Array:
+        """The memory (..., n + 3) there; none where nothing acts."""
+        if not self.acts:
+            return np.zeros((*braked.torque.shape, self.stiffness.size + 3))
+        ends = np.broadcast_arrays(phi1, most, 1.0)
+        return np.concatenate([braked.force, np.stack(ends, axis=-1)], axis=-1)

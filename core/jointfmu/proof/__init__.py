@@ -1,0 +1,1 @@
+"""FMUs that carry their own proof: the experiments of FMI-LS-REF inside an FMU, read and executed."""

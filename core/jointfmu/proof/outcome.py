@@ -1,0 +1,96 @@
+"""What became of the experiments of an FMU."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .manifest import Experiment
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """An output where it is furthest from its reference, measured by what is allowed."""
+
+    output: str
+    time: float
+    value: float
+    reference: float
+    allowed: float
+
+    @property
+    def error(self) -> float:
+        """How far it is off."""
+        return abs(self.value - self.reference)
+
+    @property
+    def finite(self) -> bool:
+        """Whether the value is a number."""
+        return bool(np.isfinite(self.value))
+
+    @property
+    def share(self) -> float:
+        """The error over what is allowed [1]; infinite if the value is no number."""
+        return self.error / self.allowed if self.finite else np.inf
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is a number, near enough."""
+        return bool(self.share <= 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of an experiment: the worst point of each output, or an error, or why it was left out."""
+
+    experiment: Experiment
+    points: Sequence[Point] = ()
+    compared: int = 0
+    error: str = ""
+
+    @property
+    def worst(self) -> Point | None:
+        """The worst of all outputs."""
+        return max(self.points, key=lambda point: point.share, default=None)
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing missed."""
+        return not self.error and all(point.passed for point in self.points)
+
+
+@dataclass(frozen=True, slots=True)
+class Proof:
+    """All of an FMU.
+
+    starts : start values compared
+    differing : a line for each that differs from modelDescription.xml
+    """
+
+    fmu: Path
+    importer: str
+    starts: int
+    differing: Sequence[str]
+    outcomes: Sequence[Outcome]
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing failed."""
+        return not self.misses
+
+    @property
+    def misses(self) -> list[str]:
+        """A line for everything that failed."""
+        lines = list(self.differing)
+        for outcome in self.outcomes:
+            name = outcome.experiment.name
+            if outcome.error:
+                lines.append(f"{name}: {outcome.error}")
+            lines += [
+                f"{name}: {p.output} = {p.value:.10g} at {p.time:g} s, reference {p.reference:.10g}, "
+                f"off by {p.error:.2g}, allowed {p.allowed:.2g}"
+                for p in outcome.points
+                if not p.passed
+            ]
+        return lines

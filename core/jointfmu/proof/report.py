@@ -1,0 +1,114 @@
+"""A proof as text and as one JSON object."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from .manifest import PURPOSES
+from .outcome import Outcome, Point, Proof
+
+_NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
+_EXPERIMENT = ("experiment", "verdict", "points", "worst output", *_NUMBERS)
+_OUTPUT = ("output", "worst in", *_NUMBERS)
+
+
+def lines(proof: Proof) -> Iterator[str]:
+    """Two tables, of experiments and of outputs, each with its worst point; then what missed."""
+    experiments: list[tuple[str, ...]] = [_EXPERIMENT]
+    worst: dict[str, tuple[str, Point]] = {}
+    for outcome in proof.outcomes:
+        name, point = outcome.experiment.name, outcome.worst
+        cells = _cells(point) if point else ("",) * 5
+        count = str(outcome.compared or "")
+        experiments.append((name, _verdict(outcome), count, point.output if point else "", *cells))
+        for own in outcome.points:
+            if own.output not in worst or own.share > worst[own.output][1].share:
+                worst[own.output] = name, own
+    yield f"{proof.fmu} in {proof.importer}: {count_of(proof)}"
+    yield ""
+    yield from _table(experiments)
+    if worst:
+        yield ""
+        yield from _table([_OUTPUT, *((o, name, *_cells(p)) for o, (name, p) in worst.items())])
+    yield ""
+    yield from (f"missed: {text}" for text in proof.misses)
+    yield summary(proof)
+
+
+def count_of(proof: Proof) -> str:
+    """How many experiments there are of each kind, and start values."""
+    kinds = [outcome.experiment.purpose for outcome in proof.outcomes]
+    parts = [f"{kinds.count(p)} {p}" for p in (*PURPOSES, *sorted({*kinds} - {*PURPOSES})) if p in kinds]
+    return f"{', '.join(parts) or 'no experiment executed'}; {proof.starts} start values"
+
+
+def summary(proof: Proof) -> str:
+    """One line: how many experiments passed, missed, were left out."""
+    left = sum(bool(outcome.experiment.unfit) for outcome in proof.outcomes)
+    missed = sum(not outcome.passed for outcome in proof.outcomes)
+    passed = len(proof.outcomes) - left - missed
+    words = [f"{passed} passed", f"{missed} missed", *([f"{left} not executed"] if left else [])]
+    if proof.differing:
+        words.append(f"{len(proof.differing)} of the start failed")
+    return ", ".join(words)
+
+
+def document(proof: Proof) -> dict[str, Any]:
+    """All of it: every experiment with the worst point of each output."""
+    return {
+        "fmu": str(proof.fmu),
+        "importer": proof.importer,
+        "passed": proof.passed,
+        "start_values": {"compared": proof.starts, "differing": list(proof.differing)},
+        "experiments": [_experiment(outcome) for outcome in proof.outcomes],
+        "misses": proof.misses,
+    }
+
+
+def _experiment(outcome: Outcome) -> dict[str, Any]:
+    one = outcome.experiment
+    return {
+        "name": one.name,
+        "purpose": one.purpose,
+        "verdict": _verdict(outcome),
+        "error": outcome.error or one.unfit or None,
+        "points": outcome.compared,
+        "outputs": [_point(point) for point in outcome.points],
+    }
+
+
+def _point(point: Point) -> Mapping[str, Any]:
+    value = point.value if point.finite else None
+    return {
+        "output": point.output,
+        "time": point.time,
+        "value": value,
+        "reference": point.reference,
+        "error": None if value is None else point.error,
+        "allowed": point.allowed,
+        "passed": point.passed,
+    }
+
+
+def _verdict(outcome: Outcome) -> str:
+    if outcome.experiment.unfit:
+        return f"not executed: {outcome.experiment.unfit}"
+    if not outcome.passed:
+        return "missed"
+    return "passed" if outcome.points else "runs, no reference"
+
+
+def _cells(point: Point) -> tuple[str, ...]:
+    numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
+    return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")
+
+
+def _table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    """Rows under each other, names left and numbers right."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    words = len(rows[0]) - len(_NUMBERS)
+    for row in rows:
+        cells = (
+            cell.ljust(width) if i < words else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        yield "  ".join(cells).rstrip()

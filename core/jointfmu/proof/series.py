@@ -1,0 +1,60 @@
+"""Time series as CSV after the rules of the FMI cross-check: names quoted, the time first, no units."""
+
+import csv
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+TIME = "time"
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Values over time: `time` (n) [s], `columns` {variable: (n)}."""
+
+    time: Array
+    columns: Mapping[str, Array]
+
+    def at(self, times: Array) -> dict[str, Array]:
+        """Columns at times (m), linear in between and held beyond the ends.
+
+        Where a time stands twice, the value jumps: there it is the last one.
+        """
+        return {name: np.interp(times, self.time, column) for name, column in self.columns.items()}
+
+
+def text(series: Series, digits: int | None = None) -> str:
+    """The series as the text of a file; `digits` of the columns, None: exact."""
+    head = ",".join(f'"{name}"' for name in (TIME, *series.columns))
+    form = "%r" if digits is None else f"%.{digits}g"
+    rows = zip(*(column.tolist() for column in (series.time, *series.columns.values())), strict=True)
+    lines = (",".join([repr(time), *(form % (value + 0.0) for value in row)]) for time, *row in rows)
+    return "\n".join([head, *lines, ""])
+
+
+def parse(content: str, where: str) -> Series:
+    """The series of a file's text.
+
+    Raises ValueError, one line beginning with `where`: no time, a row of another length, no number, a time
+    that falls.
+    """
+    rows = [row for row in csv.reader(io.StringIO(content)) if row]
+    head = [name.strip() for name in rows[0]] if rows else []
+    if not head or head[0] != TIME or len(rows) < 2:
+        raise ValueError(f"{where}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows")
+    if len(set(head)) < len(head):
+        raise ValueError(f"{where}: a column is given twice, allowed is once")
+    try:
+        table = np.array([[float(cell) for cell in row] for row in rows[1:]])
+        times, columns = table[:, 0], table[:, 1:].T
+        named = dict(zip(head[1:], columns, strict=True))
+    except (ValueError, IndexError):
+        raise ValueError(f"{where}: expected rows of {len(head)} numbers") from None
+    if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
+        raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
+    return Series(times, named)

@@ -1,0 +1,205 @@
+"""The files of FMI-LS-REF: manifest, experiments (MA-HS-Experiments), parameter sets (SSV), series, texts."""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element, SubElement
+
+from jointfmu import __version__
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, dump
+from jointfmu.proof import manifest
+from jointfmu.proof.plan import FLOOR
+from jointfmu.proof.series import text
+from jointfmu.quantity import flatten
+from jointfmu.units import UNITS
+
+from ..xml_parts import serialized
+from .experiments import Experiment
+from .reference import DIGITS
+
+TOLERANCE = 1e-5
+"""Of a reference result [1]. An importer that prints six digits rounds by 5e-6; the rest is for what differs
+between the package and a compiled law: measured, 1e-8 at neighbours of refusals and 1e-9 elsewhere, with the
+rounding of the files. Platforms differ by 1e-12."""
+_COMMON = "http://ssp-standard.org/SSP1/SystemStructureCommon"
+_TITLES = {
+    "smoke-test": "Smoke test",
+    "validation": "Load ramp, loop, shipped models, neighbours of refusals",
+    "uncertainty-analysis": "Samples of all real parameters",
+}
+_PAGE = """\
+The proof inside this FMU
+
+The folder extra/{standard} holds experiments after FMI-LS-REF {version} with
+reference results. They were computed by the Python package jointfmu {own}, not by this FMU.
+
+{counts}
+
+How to run them
+  jointfmu prove FMU
+or by any importer: set the parameters of the experiment (SSV), apply its inputs (CSV), take steps of its
+stepSize and compare the outputs at the times of its results (CSV). Each input is held for a step before these
+times, so it does not matter whether an importer applies it at the begin or at the end of a step.
+
+Tolerance
+  |value - reference| <= {tolerance:g} max(|reference|, {floor:g} nominal value)
+An importer that prints six digits rounds by 5e-6. The compiled law and the package differ by far less: 1e-8
+at neighbours of refusals, 1e-9 elsewhere. Below a millionth of its nominal value an output is round-off.
+
+What the experiments are
+  smoke test: a few loads.
+  validation: the load ramp; of a joint with memory a loop; shipped models of the structure of this FMU;
+    neighbours of refusals: parameters, one at a time, just inside their intervals.
+  uncertainty analysis: all real parameters within 1 %. This is a test plan: it does not say how well the
+    numbers are known. parameters/study.toml has it for jointfmu uncertainty.
+
+Requirements
+  What the FMU takes and refuses: {page}.
+  Where each number comes from: parameters/{file}.toml beside the experiments.
+"""
+
+
+class _Related(NamedTuple):
+    """A line of the manifest."""
+
+    source: str
+    type: str
+    role: str
+    doc: str
+
+
+def archive(
+    model: Model,
+    parameters: ParameterFile,
+    models: Sequence[tuple[ParameterFile, Mapping[str, Any]]],
+    experiments: Sequence[Experiment],
+    study: Mapping[str, str],
+    page: bool,
+) -> dict[str, bytes]:
+    """{path in the FMU: content}."""
+    members: dict[str, bytes] = {}
+    related: list[_Related] = []
+
+    def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
+        members[source] = content
+        related.append(_Related(source, kind, role, doc))
+
+    own, exposed = slug(parameters.name), model.parameter_fields()
+    if page:
+        address = "../../documentation/index.html"
+        related.append(_Related(address, "text/html", "requirement", "what the FMU takes, gives and refuses"))
+    add(
+        f"parameters/{own}.toml",
+        "application/toml",
+        "requirement",
+        "each parameter with its source",
+        dump(parameters).encode(),
+    )
+    address = "../../documentation/fmi-ls-ref.txt"
+    related.append(
+        _Related(address, "text/plain", "document", "what the experiments are, and their tolerance")
+    )
+    for file, _ in models:
+        values = {name: value for name, value in flatten(file.values).items() if name in exposed}
+        content = parameter_set(model, file.name, values)
+        add(f"parameters/{slug(file.name)}.ssv", manifest.SSV, "parameter", file.name, content)
+    if study:
+        lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in study.items()]
+        content = "\n".join(["schema = 1", "", "[parameters]", *lines, ""]).encode()
+        doc = "distributions of the uncertainty experiment"
+        add("parameters/study.toml", "application/toml", "method", doc, content)
+    for purpose in dict.fromkeys(one.purpose for one in experiments):
+        chosen = [(i, one) for i, one in enumerate(experiments) if one.purpose == purpose]
+        root = Element("Experiments", name=_TITLES[purpose], description=model.doc)
+        series: dict[str, bytes] = {}
+        for i, one in chosen:
+            series |= _experiment(model, root, f"{i:02d}", one, members | series)
+        content = serialized(root)
+        add(f"{purpose}.exp", manifest.EXPERIMENTS, f"experiment/{purpose}", _TITLES[purpose], content)
+        members |= series
+        for path in series:
+            if path.endswith("_ref.csv"):
+                related.append(_Related(path, manifest.CSV, "result", "reference result of the package"))
+    members["fmi-ls-manifest.xml"] = _manifest(related)
+    found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
+    return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, page).encode()}
+
+
+def slug(name: str) -> str:
+    """A name as part of a file name."""
+    return re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_")[:40].strip("_") or "parameters"
+
+
+def _experiment(
+    model: Model, root: Element, number: str, one: Experiment, there: Mapping[str, bytes]
+) -> dict[str, bytes]:
+    """Declare an experiment; its files. Inputs that another experiment has are taken from there."""
+    stem = f"experiments/{number}_{slug(one.name)}"
+    stimuli = text(one.drive.stimuli).encode()
+    same = (path for path, content in there.items() if path.endswith("_in.csv") and content == stimuli)
+    files = {"Stimuli": next(same, f"{stem}_in.csv"), "References": f"{stem}_ref.csv"}
+    written = {files["Stimuli"]: stimuli, files["References"]: text(one.results, DIGITS).encode()}
+    if one.settings:
+        files = {"Parameters": f"{stem}.ssv", **files}
+        written[files["Parameters"]] = parameter_set(model, one.name, one.settings)
+    node = SubElement(root, "Experiment", name=one.name, description=one.doc, tolerance=repr(TOLERANCE))
+    times = {
+        "startTime": 0.0,
+        "stopTime": float(one.drive.instants[-1]),
+        "stepSize": 0.5 * one.drive.interval,
+    }
+    SubElement(node, manifest.TRANSIENT, {name: repr(time) for name, time in times.items()})
+    for tag, path in files.items():
+        SubElement(node, tag, source=path)
+    return {path: content for path, content in written.items() if path not in there}
+
+
+def parameter_set(model: Model, name: str, values: Mapping[str, Any]) -> bytes:
+    """An SSV file of parameters and inputs of a model."""
+    units = {v.name: v.unit for v in model.inputs}
+    units |= {
+        n: item.metadata["unit"] for n, item in model.parameter_fields().items() if "unit" in item.metadata
+    }
+    root = Element(
+        "ssv:ParameterSet",
+        {"xmlns:ssc": _COMMON, "xmlns:ssv": manifest.VALUES, "version": "1.0", "name": name},
+    )
+    parameters = SubElement(root, "ssv:Parameters")
+    for variable, value in values.items():
+        node = SubElement(parameters, "ssv:Parameter", name=variable)
+        if isinstance(value, bool):
+            SubElement(node, "ssv:Boolean", value=str(value).lower())
+        else:
+            SubElement(node, "ssv:Real", value=repr(float(value)), unit=units[variable])
+    used = sorted({units[n] for n, value in values.items() if not isinstance(value, bool)})
+    if used:
+        group = SubElement(root, "ssv:Units")
+        for unit in used:
+            node = SubElement(group, "ssc:Unit", name=unit)
+            SubElement(node, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[unit].base.items()})
+    return serialized(root)
+
+
+def _manifest(related: Sequence[_Related]) -> bytes:
+    head = {"name": manifest.NAME, "version": manifest.VERSION, "description": manifest.DESCRIPTION}
+    root = Element("fmiReferences", {"xmlns:fmi-ls": manifest.ATTRIBUTES})
+    root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
+    for line in related:
+        SubElement(root, "Related", type=line.type, source=line.source, role=line.role, description=line.doc)
+    return serialized(root)
+
+
+def _text(own: str, experiments: Sequence[Experiment], page: bool) -> str:
+    counts = {p: sum(one.purpose == p for one in experiments) for p in manifest.PURPOSES}
+    return _PAGE.format(
+        standard=manifest.NAME,
+        version=manifest.VERSION,
+        own=__version__,
+        counts="\n".join(f"{count:4d} {purpose}" for purpose, count in counts.items() if count),
+        tolerance=TOLERANCE,
+        floor=FLOOR,
+        page="documentation/index.html" if page else "modelDescription.xml",
+        file=own,
+    )

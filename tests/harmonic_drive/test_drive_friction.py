@@ -1,0 +1,175 @@
+"""Friction at the wave generator: its torque, its energy, and that it holds what stands still."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jointfmu.joints.harmonic_drive.friction import SPRINGS, Friction, limit
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.parameters import default
+
+DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "load_loss": 0.15}
+PRESLIDING = 0.01
+"""[rad], the default."""
+ROUND_OFF = 1e-12
+
+
+def spring(**changes):
+    return HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **changes))
+
+
+def started(law, *motion):
+    """Memory of a drive that began so."""
+    return law.driven(motion, law.rest())[1]
+
+
+def turning(law, speed, tau=0.0):
+    """Friction [N.m] of a drive that turns steadily with a torque at the output [N.m]."""
+    wound = float(law.windup(tau)["phi_rel"])
+    memory, ratio = started(law, 0.0, speed, wound, speed / law.joint.ratio), law.joint.ratio
+    phi1 = np.copysign(20.0 * PRESLIDING, speed)
+    out, _ = law.driven((phi1, speed, phi1 / ratio + wound, speed / ratio), memory)
+    assert float(out["tau"]) == pytest.approx(tau, abs=1e-9)
+    return float(out["tau_friction"])
+
+
+# Torque
+
+
+def test_friction_builds_up_as_that_of_dahl():
+    law, phi1 = spring(friction_coulomb=0.05), np.linspace(0.0, 6.0 * PRESLIDING, 101)
+    found = law.driven((phi1, 0.0, phi1 / 100.0, 0.0), started(law, 0.0, 0.0, 0.0, 0.0))[0]["tau_friction"]
+    dahl = 0.05 * (1.0 - np.exp(-phi1 / PRESLIDING))
+    assert np.max(np.abs(found - dahl)) < 0.01 * 0.05  # as `friction.BRAKES` says
+    assert found[-1] == pytest.approx(0.05, rel=ROUND_OFF)
+
+
+@pytest.mark.parametrize("speed", [-200.0, -0.5, 3.0, 150.0])
+@pytest.mark.parametrize("tau", [-4.0, 0.0, 5.0])
+@pytest.mark.parametrize("ratio", [100.0, -50.0])
+def test_steady_friction_is_that_of_speed_and_load(speed, tau, ratio):
+    law = spring(**DRY, friction_viscous=1e-4, stribeck_speed=2.0, temperature_factor=1.3, ratio=ratio)
+    dry = 0.03 + 0.02 * np.exp(-((speed / 2.0) ** 2)) + 0.15 * abs(tau / ratio)
+    # |tau| is smooth through zero: tanh(4/0.05) is 1
+    assert turning(law, speed, tau) == pytest.approx(1.3 * (np.sign(speed) * dry + 1e-4 * speed), rel=1e-9)
+
+
+def test_without_friction_nothing_acts_and_nothing_is_remembered():
+    law = spring()
+    out, memory = law.driven((3.0, 100.0, 0.0305, 1.0), law.rest())
+    assert float(out["tau_friction"]) == 0.0
+    assert not np.any(memory[-11:])
+    assert float(out["tau1"]) == float(out["tau"]) / 100.0
+
+
+def test_a_drive_begins_where_it_is():
+    """Far from zero at rest without friction, turning with that of its speed; no heat yet."""
+    law = spring(**DRY)
+    for speed, share in ((0.0, 0.0), (2.0, 1.0), (-2.0, -1.0)):
+        out, memory = law.driven((500.0, speed, 5.0, speed / 100.0), law.rest())
+        most = float(limit(law.joint, speed, 0.0))
+        assert float(out["tau_friction"]) == pytest.approx(share * most, rel=ROUND_OFF)
+        assert float(out["E_loss"]) == 0.0
+        after = law.driven((500.0, speed, 5.0, speed / 100.0), memory)[0]
+        assert float(after["tau_friction"]) == pytest.approx(share * most, rel=ROUND_OFF)
+
+
+# Energy
+
+
+def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
+    """One step against very many, of which each is nearly a trapezium."""
+    brake, rng = Friction(5.0 * SPRINGS), np.random.default_rng(4)
+    memory = brake.after(brake.moved(brake.rest(), 0.0, 0.0, 0.05), 0.0, 0.05)
+    for _ in range(30):
+        before = memory
+        phi, most = before[-3] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1)
+        once = brake.moved(before, phi, 0.0, most)
+        steps, work, loss = 1000, 0.0, 0.0
+        for part in np.linspace(0.0, 1.0, steps + 1)[1:]:
+            at = before[-3] + part * (phi - before[-3]), before[-2] + part * (most - before[-2])
+            few = brake.moved(memory, at[0], 0.0, at[1])
+            work += 0.5 * (np.sum(memory[:-3]) + float(few.torque)) * (at[0] - memory[-3])
+            loss += float(few.loss)
+            memory = brake.after(few, *at)
+        stored = [float(np.sum(m[:-3] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]
+        assert once.force == pytest.approx(memory[:-3], abs=ROUND_OFF)
+        assert float(once.loss) == pytest.approx(loss, rel=1e-9, abs=ROUND_OFF)
+        # a corner of a slider's force lies within one of the steps
+        assert work == pytest.approx(stored[1] - stored[0] + float(once.loss), abs=8 * 0.1 * 0.08 / steps)
+
+
+def test_no_path_gives_energy_back_from_heat():
+    law, rng = (
+        spring(**DRY, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4),
+        np.random.default_rng(5),
+    )
+    memory, previous = started(law, 0.0, 0.0, 0.0, 0.0), 0.0
+    for _ in range(500):
+        phi1 = rng.normal(0.0, 0.05)
+        motion = (phi1, rng.normal(0.0, 20.0), phi1 / 100.0 + rng.normal(0.0, 8e-4), rng.normal())
+        out, memory = law.driven(motion, memory)
+        assert float(out["E_loss"]) >= previous
+        previous = float(out["E_loss"])
+
+
+@pytest.mark.slow  # many steps
+def test_input_work_is_stored_or_lost():
+    """All mechanisms but the viscous ones, along a smooth path of both flanges; trapezia of both torques."""
+    law = spring(**DRY, d=0.0, hysteresis_loss=2e-4, lost_motion=1e-4, error_2=1e-4, ratio=-80.0)
+    t = np.linspace(0.0, 6.0, 24001)
+    phi1, w1 = 0.3 * np.sin(3.0 * t), 0.9 * np.cos(3.0 * t)
+    wound = 1.2e-3 * np.sin(7.3 * t)
+    phi2 = phi1 / -80.0 + wound
+    memory, work, before = law.rest(), 0.0, None
+    for k in range(t.size):
+        out, memory = law.driven((phi1[k], w1[k], phi2[k], 0.0), memory)
+        now = np.array([phi1[k], phi2[k]]), np.array([out["tau1"], out["tau2"]], dtype=float)
+        if before is None:
+            begun = stored(law, memory, out)
+        else:
+            work -= float(np.sum(0.5 * (now[1] + before[1]) * (now[0] - before[0])))
+        before = now
+    lost = float(out["E_loss"])
+    assert lost > 0.1
+    assert work == pytest.approx(stored(law, memory, out) - begun + lost, abs=1e-5 * lost)  # steps squared
+
+
+def stored(law, memory, out):
+    """Energy [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
+    n = law.hysteresis.limit.size
+    parts = ((memory[:n], law.hysteresis.stiffness), (memory[n + 2 : -3], law.friction.stiffness))
+    sliders = sum(float(np.sum(force**2 / (2.0 * K))) for force, K in parts)
+    return float(law.curve.energy(abs(float(out["phi_rel"])))) + sliders
+
+
+# Motion
+
+
+def coast(law, inertia, speed, step, count):
+    """Angle and speed (count + 1, 2) of a motor that nobody drives, while the output follows it unloaded."""
+    phi, w, found = 0.0, speed, [(0.0, speed)]
+    out, memory = law.driven((0.0, w, 0.0, w / 100.0), law.rest())
+    for _ in range(count):
+        w += step * float(out["tau1"]) / inertia
+        phi += step * w
+        out, memory = law.driven((phi, w, phi / 100.0, w / 100.0), memory)
+        found.append((phi, w))
+    return np.array(found)
+
+
+def test_a_coasting_motor_stops_after_the_way_that_its_energy_lasts():
+    """J w^2/2 = M phi; what is left rings within the presliding and dies out."""
+    inertia, speed, friction = 3e-5, 30.0, 0.03
+    law = spring(friction_coulomb=friction, friction_viscous=0.0)
+    ends = 0.5 * inertia * speed**2 / friction
+    found = coast(law, inertia, speed, 1e-4, 1500)
+    stop = inertia * speed / friction  # [s]
+    before = found[: int(0.9 * stop / 1e-4)]
+    t = 1e-4 * np.arange(len(before))
+    assert before[:, 1] == pytest.approx(speed - friction / inertia * t, abs=0.01 * speed)
+    assert found[-1, 0] == pytest.approx(ends, abs=3.0 * PRESLIDING)  # the sliders spring back
+    swing = [np.ptp(part) for part in np.split(found[600:1500, 0], 3)]
+    assert np.all(np.diff(swing) < 0.0)
+    assert swing[-1] < 0.5 * PRESLIDING
