@@ -52,7 +52,7 @@ def build_systems(
     jobs = [(fmu, one, version) for version in "23" for fmu, one in wanted_fmus.items()]
     built = []
     for fmu, one, version in track(jobs, "build FMUs of systems", len(jobs)):
-        file = one.file or partner_parameters(one.model)
+        file = (one.file if one.own else one.base) or partner_parameters(one.model)
         alias = "" if fmu == one.model else fmu
         built.append(build(one.model, file, out / f"fmi{version}", version, variability, alias))
     return built + [path for system in chosen for path in pack_system(system, out)]

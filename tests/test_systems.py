@@ -953,6 +953,7 @@ def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     folder = Path(str(files("jointfmu_models"))) / "systems"
     copy = tmp_path / "systems"
     shutil.copytree(folder, copy)
+    shutil.copytree(folder.parent / "harmonic_drive", tmp_path / "harmonic_drive")
     monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
     shipped = names()
     assert set(shipped) == {path.stem for path in folder.glob("*.toml")}

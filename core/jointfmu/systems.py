@@ -39,7 +39,8 @@ class Component:
     """One part of a system.
 
     model : what it is exported as, a joint's or a partner's
-    file  : parameters of a joint, with those that the system gives; None: of a partner
+    base  : parameters of a joint without those that the system gives; None: of a partner
+    file  : the same with them
     own   : whether its FMU is another than the model's: the system names a file for it, or gives a parameter
         that is baked in
     values, units, sources : {parameter or input: SI value, unit, text} that the system gives it
@@ -47,6 +48,7 @@ class Component:
 
     name: str
     model: str
+    base: ParameterFile | None
     file: ParameterFile | None
     own: bool
     values: Mapping[str, Any]
@@ -117,7 +119,8 @@ class System:
         for name, part in self.joints.items():
             if part.kind == file.joint and not part.own:
                 given = {key: value for key, value in part.values.items() if key not in part.state}
-                parts[name] = replace(part, file=file.with_values(given, "user", f"system {self.name}"))
+                whole = file.with_values(given, "user", f"system {self.name}")
+                parts[name] = replace(part, base=file, file=whole)
         return replace(self, components=parts)
 
 
@@ -231,13 +234,13 @@ def _component(path: Path, name: str, section: Any) -> Component:
         if text := problem(key, value, declared[key]):
             raise ValueError(f"{name}.{text}")
         values[key] = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
-    own = given is not None
+    own, base = given is not None, file
     if file:
         changes = {key: value for key, value in values.items() if key not in inputs}
         file = file.with_values(changes, "user", f"system {path.stem}")
         own |= not changes.keys() <= _exposed(model, file).keys()
     units = {key: declared[key].metadata.get("unit", "") for key in values}
-    return Component(name, model, file, own, values, units, sources)
+    return Component(name, model, base, file, own, values, units, sources)
 
 
 def _exposed(model: str, file: ParameterFile | None) -> dict[str, Any]:

@@ -58,9 +58,8 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     figures += [*resonances(outcome.ringing, kind.name), *ring_downs(outcome.decays, kind.name)]
     figures += motions(outcome.arms, kind.name)
     names = [model.name for model in kind.models]
-    names += [
-        name for name, system in systems().items() if kind.name in {j.kind for j in system.joints.values()}
-    ]
+    kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
+    names += [name for name, found in kinds.items() if kind.name in found]
     return {
         "name": kind.name,
         "title": kind.title,

@@ -6,6 +6,12 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=28,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=240000,
       final friction=9.81520450376618,
       final stick=67000,
@@ -67,6 +73,12 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=41,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=460000,
       final friction=18.9950438095598,
       final stick=130000,
@@ -128,6 +140,12 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=11,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=114000,
       final friction=4.52500467550116,
       final stick=31000,
@@ -189,6 +207,12 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=1.3,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=58000,
       final friction=2.32769436976909,
       final stick=16000,
@@ -250,8 +274,14 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=1.5,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=32000,
-      final friction=1.45378887589296,
+      final friction=1.45378887589295,
       final stick=10000,
       final sliders=[
       0.00643263244135639, 2.073388569181e-05;
@@ -311,6 +341,12 @@ model SixAxisRobot "Robot with six axes"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=0.16,
+      final error_1=0,
+      final error_1_phase=0,
+      final error_2=0,
+      final error_2_phase=0,
+      final error_4=0,
+      final error_4_phase=0,
       final K_FTS0=14200,
       final friction=0.69250013493461,
       final stick=4700,
@@ -410,7 +446,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{120,-20},{140,0}})));
   JointStiffness.Components.AngleProfile wrist_motor(start=0.1, duration=1, height=69.81)
     annotation (Placement(transformation(extent={{-90,-50},{-70,-30}})));
-  JointStiffness.Components.HarmonicDriveSpring wrist_drive(data=Wrist_driveData(), friction=1.45378887589296, stick=10000, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring wrist_drive(data=Wrist_driveData(), friction=1.45378887589295, stick=10000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,-50},{-10,-30}})));
   Modelica.Mechanics.Rotational.Components.Inertia wrist_link(J=0.15, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{30,-50},{50,-30}})));
