@@ -9,6 +9,9 @@ import pytest
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default, dump
+
 EXTRAS = (
     "casadi",
     "distributed",
@@ -65,6 +68,7 @@ def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> 
     [
         (("ring", "robot_joint", "--plot", "ring.png"), "matplotlib"),
         (("build", "GearContact"), "casadi"),
+        (("report", "joint.toml"), "matplotlib"),
         (("modes", "absent.toml"), "skfem"),
         (("footprint", "compute", "absent.toml", "--preload", "9e3"), "skfem"),
     ],
@@ -73,8 +77,9 @@ def test_what_is_missing_is_named_in_one_line(
     words: tuple[str, ...], package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    (tmp_path / "joint.toml").write_text(dump(default(next(iter(KINDS)))))
     done = bare(tmp_path, *words)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert package in done.stderr
     assert "pip install" in done.stderr
-    assert not list(tmp_path.glob("*.png"))
+    assert not [*tmp_path.glob("*.png"), *tmp_path.glob("*.html")]

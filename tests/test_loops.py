@@ -78,7 +78,7 @@ def test_without_memory_nothing_is_lost(native, version):
 )
 def test_conjugate_output(native, fmu, input_name, expected):
     with ramp.unpacked(native / "fmi3" / f"{fmu}.fmu") as (_, description):
-        assert loops.conjugate(description, input_name, None, fmu) == expected
+        assert loops.conjugate(*loops.variables(description), input_name, None, fmu) == expected
 
 
 def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, capsys):

@@ -69,6 +69,7 @@ def test_every_kind_of_command_is_shown():
         "catalogue",
         "law",
         "parameters",
+        "report",
         "build",
         "ramp",
         "prove",

@@ -187,9 +187,13 @@ def run(
     """
     points = [swing.along(amplitude) for amplitude in amplitudes]
     with ramp.unpacked(fmu) as (_, description):
-        output = conjugate(description, input_name, output, str(fmu))
-    results = [ramp.along(fmu, input_name, each, settings) for each in points]
-    first = results[int(np.argmax(amplitudes))]
+        output = conjugate(*variables(description), input_name, output, str(fmu))
+    return of([ramp.along(fmu, input_name, each, settings) for each in points], input_name, output, swing)
+
+
+def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: Swing) -> Loops:
+    """The loops of an input that swung, one for each amplitude, with an output that is conjugate to it."""
+    first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
     driven = units.base(first.units[input_name]) in FORCES
     motion, force = (output, input_name) if driven else (input_name, output)
     x, y = first.columns[motion], first.columns[force]
@@ -199,21 +203,26 @@ def run(
     return Loops(motion, force, (first.units[motion], first.units[force]), sign, loops)
 
 
-def conjugate(description: Any, input_name: str, output: str | None, source: str) -> str:
+def variables(description: Any) -> tuple[dict[str, str], dict[str, str]]:
+    """{name: unit} of the inputs and of the outputs of an fmpy model description."""
+    inputs, outputs = (
+        {v.name: v.unit or "1" for v in description.modelVariables if v.causality == causality}
+        for causality in ("input", "output")
+    )
+    return inputs, outputs
+
+
+def conjugate(
+    inputs: Mapping[str, str], outputs: Mapping[str, str], input_name: str, output: str | None, source: str
+) -> str:
     """The output whose product with the input is an energy, of the same suffix where there are several.
 
     Raises ValueError if there is none, or if `output` is none of them.
     """
-    variables = {v.name: v for v in description.modelVariables}
-    inputs = [v.name for v in description.modelVariables if v.causality == "input"]
     if input_name not in inputs:
         raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
-    own = variables[input_name].unit or "1"
-    fitting = [
-        v.name
-        for v in description.modelVariables
-        if v.causality == "output" and v.unit != "J" and _energy(own, v.unit or "1")
-    ]
+    own = inputs[input_name]
+    fitting = [name for name, unit in outputs.items() if unit != "J" and _energy(own, unit)]
     if output is not None:
         if output not in fitting:
             raise ValueError(
@@ -227,7 +236,7 @@ def conjugate(description: Any, input_name: str, output: str | None, source: str
             "angle, a force or a torque as input"
         )
     same = [name for name in fitting if _suffix(name) == _suffix(input_name)]
-    return str((same or fitting)[0])
+    return (same or fitting)[0]
 
 
 def _suffix(name: str) -> str:

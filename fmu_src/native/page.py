@@ -89,7 +89,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         terminals=terminals(model),
         messages=_messages(model, spring, rest),
         figure=_figure(model, spring, rest),
-        drawings=_drawings(model, spring),
+        drawings=drawings(model, spring),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 
@@ -141,7 +141,7 @@ def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tupl
 def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]:
     """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
     inputs = {**rest, model.ramp.input: model.ramp.end}
-    values = inputs | _evaluated(model, spring, inputs)
+    values = inputs | evaluated(model, spring, inputs)
     warnings = []
     for i, outside in enumerate(model.outside):
         low, high = outside.interval(spring.joint, spring.curve.end, values)
@@ -150,11 +150,12 @@ def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]
     return warnings
 
 
-def _evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+def evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+    """All outputs of a tabulated joint at inputs."""
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
 
-def _panels(model: Model) -> tuple[Panel, ...]:
+def panels(model: Model) -> tuple[Panel, ...]:
     """What the plot shows; of a joint that does not say it, the first output over the driven input."""
     own = part(model, "page")
     panels = own.PANELS.get(model.name) if own else None
@@ -165,7 +166,7 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
     """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
     ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
     points = [{**rest, model.ramp.input: float(x)} for x in ramp]
-    rows = [point | _evaluated(model, spring, point) for point in points]
+    rows = [point | evaluated(model, spring, point) for point in points]
     variables = {v.name: v for v in (*model.inputs, *model.outputs)}
 
     def column(name: str, shown: str) -> list[float]:
@@ -173,7 +174,7 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
         return [factor * row[name] for row in rows]
 
     plots = []
-    for over, names in _panels(model):
+    for over, names in panels(model):
         x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
         plot = Plot(f"{over} [{x}]", f"{', '.join(names)} [{y}]")
         for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
@@ -182,7 +183,7 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
     return svg(plots)
 
 
-def _drawings(model: Model, spring: Any) -> dict[str, str]:
+def drawings(model: Model, spring: Any) -> dict[str, str]:
     """Further ones: DRAWINGS, {FMU: {name: (spring, end of the ramp) -> plots in a row}}, of the joint."""
     own = part(model, "page")
     named = getattr(own, "DRAWINGS", {}).get(model.name, {})

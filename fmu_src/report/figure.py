@@ -1,7 +1,8 @@
 """A figure of the report; `figures(outcome)` in the file of a joint returns a list of them."""
 
+import json
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
@@ -11,6 +12,8 @@ from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.reference import PROVES_NOTHING, ROLES, Point
 
 Values: TypeAlias = Sequence[float] | NDArray[np.float64]
+_DIGITS = 7
+"""Of the numbers of a curve: more than a screen shows."""
 _COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
@@ -72,3 +75,24 @@ def drawn(canvas: Canvas, panels: Sequence[Panel]) -> None:
         axes.set_ylabel(panel.y)
         if len(panel.series) > 1:
             axes.legend(fontsize=8)
+
+
+def as_json(figure: Figure) -> str:
+    """The panels as JSON, for the page's charts."""
+
+    def numbers(values: Any) -> list[float]:
+        return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
+
+    panels = [
+        {
+            "title": panel.title,
+            "x": panel.x,
+            "y": panel.y,
+            "series": [
+                s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
+                for s in panel.series
+            ],
+        }
+        for panel in figure.panels
+    ]
+    return json.dumps(panels, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")

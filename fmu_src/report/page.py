@@ -1,11 +1,8 @@
 """The page: a tab per joint with figures, the table of published against computed, the checks."""
 
-import json
 import platform
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from jointfmu import __version__
 from jointfmu.joints import KINDS
@@ -17,14 +14,11 @@ from jointfmu.systems import systems
 from jointfmu.validation import shown_claim, shown_error, shown_tolerance, summary
 
 from ..joints import part
-from ..laboratory import web_file
 from ..templates import template
-from .figure import Figure
+from .figure import as_json
+from .looks import script, style
 from .motion import motions
 from .systems import resonances, ring_downs
-
-_DIGITS = 7
-"""Of the numbers of a curve: more than a screen shows."""
 
 
 def write_report(path: Path, outcome: Any) -> None:
@@ -41,14 +35,10 @@ def write_report(path: Path, outcome: Any) -> None:
         shown_claim=shown_claim,
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
         tabs=[_tab(kind, outcome) for kind in KINDS.values()],
-        style=web_file("style.css") + (Path(__file__).with_name("report.css")).read_text(encoding="utf-8"),
-        script=web_file("text.js") + web_file("chart.js") + _script(),
+        style=style(),
+        script=script("figures.js", "tabs.js"),
     )
     write_text(path, page)
-
-
-def _script() -> str:
-    return Path(__file__).with_name("report.js").read_text(encoding="utf-8")
 
 
 def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
@@ -63,28 +53,7 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     return {
         "name": kind.name,
         "title": kind.title,
-        "figures": [(figure, _panels(figure)) for figure in figures],
+        "figures": [(figure, as_json(figure)) for figure in figures],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
     }
-
-
-def _panels(figure: Figure) -> str:
-    """The panels as JSON."""
-
-    def numbers(values: Any) -> list[float]:
-        return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
-
-    panels = [
-        {
-            "title": panel.title,
-            "x": panel.x,
-            "y": panel.y,
-            "series": [
-                s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
-                for s in panel.series
-            ],
-        }
-        for panel in figure.panels
-    ]
-    return json.dumps(panels, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")

@@ -5,7 +5,12 @@ from pathlib import Path
 
 import pytest
 from jointfmu_fmu_src.joints.harmonic_drive import figures
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import bench, catalogue
+from jointfmu_fmu_src.joints.harmonic_drive.efficiency import bench, catalogue, spring_bench
+from jointfmu_fmu_src.report.course import Course
+from jointfmu_fmu_src.report.joint import write_joint_report
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import ParameterFile, default
 
 GREASE = {
     "friction_coulomb": 0.02,
@@ -14,6 +19,7 @@ GREASE = {
     "friction_viscous": 2e-4,
 }
 GIVEN = GREASE | {"load_loss": 0.12}
+SPRING = MODELS["HarmonicDriveSpring"]
 
 
 @pytest.fixture
@@ -69,3 +75,42 @@ def test_the_report_draws_it(fmu: Path) -> None:
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))
         assert list(slow) == sorted(slow)
     assert [*back.series[0].titles] == [drive.name for drive in catalogue()]
+
+
+def drive_file(**changes: float) -> ParameterFile:
+    return default("harmonic_drive").with_values(changes, "user", "test")
+
+
+@pytest.mark.parametrize("ratio", [100.0, -50.0])
+def test_the_python_drive_on_the_bench_is_the_fmu(fmu: Path, ratio: float) -> None:
+    given = GIVEN | {"ratio": ratio}
+    own = spring_bench(SPRING, drive_file(**given))
+    with bench(fmu, given) as drive:
+        for speed, load in ((3.0, 0.5), (100.0, 5.0)):
+            # the table of the FMU is the same to 1e-9
+            assert own.efficiency(speed, load) == pytest.approx(drive.efficiency(speed, load), rel=1e-9)
+        assert own.starting_torque() == pytest.approx(drive.starting_torque(), rel=1e-9)
+        assert own.back_driving_torque(20.0) == pytest.approx(drive.back_driving_torque(20.0), rel=1e-8)
+
+
+def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
+    write_joint_report(tmp_path / "drive.html", drive_file(**GIVEN, ratio=100.0))
+    page = (tmp_path / "drive.html").read_text(encoding="utf-8")
+    assert "Starting torque of the motor without load: 0.03 N.m." in page
+    assert f"drives the motor back: {100.0 * 0.03 / 0.88:.4g} N.m." in page
+    for law in KINDS["harmonic_drive"].laws:  # of a straight line the wind-up is at the bracket's end
+        other = default("harmonic_drive", law).with_values(GIVEN, "user", "test")
+        bench = spring_bench(SPRING, other)
+        for load in (0.2, 1.0, 5.0):
+            carried = load / abs(bench.ratio)
+            expected = carried / (1.12 * carried + 0.02 + 0.01 * math.exp(-400.0) + 0.02)
+            # |tau| is smooth: tanh(0.2/0.1)
+            assert bench.efficiency(100.0, load) == pytest.approx(expected, rel=1e-2), (law, load)
+    write_joint_report(tmp_path / "plain.html", drive_file())
+    assert "None with these parameters" in (tmp_path / "plain.html").read_text(encoding="utf-8")
+
+
+def test_a_law_that_reaches_twice_as_far_has_twice_the_ramp() -> None:
+    model = MODELS["HarmonicDriveCompliance"]
+    course = Course(model, drive_file(max_torque=2.0 * default("harmonic_drive").values.max_torque))
+    assert course.end == pytest.approx(2.0 * model.ramp.end, rel=1e-9)

@@ -16,6 +16,7 @@ EXAMPLES = {
     "footprint import": "footprint import my_field.csv --preload 9000 --out with_field.toml",
     "footprint compute": "footprint compute models/assemblies/box_specimen.toml --refinement 0.35",
     "modes": "modes models/assemblies/box_specimen.toml --refinement 0.35",
+    "report": "report my_joint.toml --out my_joint.html",
     "ramp": "ramp dist/fmi2/GearContact.fmu --input f --to 1000 --step 10 --csv ramp.csv",
     "prove": "prove dist/fmi2/GearContact.fmu",
     "ring": "ring robot_joint --fmus dist/fmi2 --load 0 2.5 --csv ring.csv",

@@ -1,4 +1,4 @@
-"""What friction costs a drive, found by running its FMU: efficiency, starting and back-driving torque."""
+"""What friction costs a drive, found by running it: efficiency, starting and back-driving torque."""
 
 import math
 import tomllib
@@ -7,12 +7,17 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Any, Protocol
 
 from scipy.optimize import brentq
+
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile
 
 from ...master import Slave
 
 _MOTION = ("phi1", "w1", "phi2", "w2")
+_TORQUES = ("tau", "tau1")
 _FAR = 20.0
 """Way of the wave generator over `presliding` [1] after which its friction has built up."""
 _STEADY: Mapping[str, float] = {"hysteresis_loss": 0.0, "error_1": 0.0, "error_2": 0.0, "error_4": 0.0}
@@ -50,11 +55,49 @@ def catalogue() -> list[CatalogueDrive]:
     return [CatalogueDrive(**{k: v for k, v in row.items() if k not in ("source", "read")}) for row in rows]
 
 
+class Driven(Protocol):
+    """What a bench turns: set phi1, w1, phi2, w2, get tau and tau1 and maybe more, accept by a step."""
+
+    def set(self, *values: float) -> None: ...
+
+    def get(self) -> list[float]: ...
+
+    def step(self, time: float, size: float) -> None: ...
+
+
+class Sprung:
+    """The Python drive in the place of an FMU; it begins at rest with all angles zero."""
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        assert model.rest
+        self._model, self._spring = model, model.spring(file.values)
+        self._memory = model.rest(self._spring)
+        self.set(0.0, 0.0, 0.0, 0.0)
+        self.step(0.0, 0.0)
+
+    def set(self, *values: float) -> None:
+        """Give the inputs their values."""
+        self._inputs = dict(zip(_MOTION, values, strict=True))
+
+    def get(self) -> list[float]:
+        """The torques at the present inputs, and the stiffness."""
+        outputs = self._evolved()[0]
+        return [float(outputs[name]) for name in (*_TORQUES, "K_WTS")]
+
+    def step(self, time: float, size: float) -> None:
+        """Accept the present inputs."""
+        self._memory = self._evolved()[1]
+
+    def _evolved(self) -> Any:
+        assert self._model.evolve
+        return self._model.evolve(self._spring, self._inputs, self._memory)
+
+
 @dataclass(slots=True)
 class Bench:
-    """An instance of HarmonicDriveSpring that is turned and loaded; see `bench`."""
+    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`."""
 
-    drive: Slave
+    drive: Driven
     ratio: float
     presliding: float
     stiffness: float
@@ -93,19 +136,31 @@ class Bench:
         return math.inf if holds(most) > 0.0 else float(brentq(holds, 0.0, most, rtol=1e-9))
 
     def _wind_up(self, torque: float) -> float:
-        """Wind-up [rad] under a torque [N.m]; the stiffness is least without one."""
+        """Wind-up [rad] under a torque [N.m]."""
 
         def missing(angle: float) -> float:
             self.drive.set(self.angle, 0.0, self.angle / self.ratio + angle, 0.0)
             return self.drive.get()[0] - torque
 
-        return float(brentq(missing, 0.0, torque / self.stiffness, xtol=1e-16)) if torque else 0.0
+        if not torque:
+            return 0.0
+        far = torque / self.stiffness
+        while missing(far) * torque < 0.0:
+            far *= 2.0
+        return float(brentq(missing, 0.0, far, xtol=1e-16))
 
 
 @contextmanager
 def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
     """The FMU HarmonicDriveSpring (FMI 2.0) at a path, with parameters beside the default ones."""
-    wires = ("tau", "tau1", "K_WTS", "ratio", "presliding")
+    wires = (*_TORQUES, "K_WTS", "ratio", "presliding")
     with Slave(path, {**parameters, **_STEADY}, _MOTION, wires) as drive:
         _, _, stiffness, ratio, presliding = drive.get()
         yield Bench(drive, ratio, presliding, stiffness)
+
+
+def spring_bench(model: Model, file: ParameterFile) -> Bench:
+    """The same of the Python drive with the parameters of a file: no FMU is needed."""
+    steady = file.with_values(_STEADY, "user", "steady")
+    drive = Sprung(model, steady)
+    return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])

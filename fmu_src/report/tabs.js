@@ -1,16 +1,4 @@
-/* The report: a tab per joint, and the charts of its figures. */
-
-const charts = [];
-for (const place of document.querySelectorAll(".figure")) {
-  const panels = JSON.parse(place.querySelector("script").textContent), made = element("div", { class: "charts" });
-  place.append(made);
-  for (const panel of panels) charts.push([new Chart(made, panel.title), panel]);
-}
-
-/** Charts of the tab that is shown; a hidden one has no width. */
-function drawAll() {
-  for (const [chart, panel] of charts) if (!chart.figure.closest("[hidden]")) chart.draw(panel.series, { label: panel.x }, { label: panel.y });
-}
+/* The report: a tab per joint. */
 
 const tabs = [...document.querySelectorAll("[role=tab]")];
 
@@ -38,5 +26,4 @@ for (const [i, tab] of tabs.entries()) {
 }
 const named = () => tabs.find((tab) => tab.dataset.name === location.hash.slice(1)) || tabs[0];
 addEventListener("hashchange", () => select(named()));
-addEventListener("resize", drawAll);
 select(named());
