@@ -13,7 +13,7 @@ from jointfmu_fmu_src.checks import check, default_ramp, same
 from jointfmu_fmu_src.modelica import library
 
 from jointfmu import cli, joints
-from jointfmu.parameters import default
+from jointfmu.parameters import default, dump
 
 pytestmark = pytest.mark.slow
 
@@ -112,3 +112,13 @@ def test_its_parameter_file_is_read_and_written():
     assert (file.joint, file.values.c) == ("toy", C)
     with pytest.raises(ValueError, match=r"c = 0 N/m is outside \(0, inf\)"):
         file.with_values({"c": 0.0}, "user", "test")
+
+
+def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
+    """Of a joint that says nothing of pages and loops: the line over its load, and its parameters."""
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text(dump(default("toy")))
+    assert cli.main(["report", "mine.toml"]) == 0
+    page = Path("mine.html").read_text(encoding="utf-8")
+    assert "<td><code>c</code></td>" in page
+    assert "<h2>Loops</h2>" not in page
