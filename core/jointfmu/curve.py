@@ -137,7 +137,7 @@ class Curve:
             with np.errstate(divide="ignore", invalid="ignore"):
                 step = x + residual / slope
             new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
-            done = np.all(np.abs(new - x) <= 4e-16 * np.abs(x) + 1e-300)
+            done = np.all((np.abs(new - x) <= 4e-16 * np.abs(x) + 1e-300) | (y <= nodes[0]))
             x = new
             if done:
                 break

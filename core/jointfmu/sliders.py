@@ -32,6 +32,8 @@ SPREAD = 1.0 / np.sqrt(12.0)
 
 BELOW, ABOVE = 10, 7
 """Heights of `around` between none and the reference, and between it and the end of the curve."""
+SLIDERS = 2 * (BELOW + ABOVE + 2)
+"""Sliders of a foundation with these heights."""
 LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
 """Least and largest load of a reference, and that without one, over the load at the end of the curve [1]."""
 
@@ -55,13 +57,14 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     load = curve.derivatives(given, 0)[0]
     touches = load > LOWEST * end
     load = np.where(touches, np.minimum(load, HIGHEST * end), USUAL * end)[..., None]
-    first = np.where(touches & (load[..., 0] < HIGHEST * end), given, curve.inverse(load[..., 0]))[..., None]
     down = (np.arange(BELOW)[::-1] + part) / BELOW
     up = (np.arange(ABOVE) + part) / ABOVE
     below = load * (1.0 - down) ** 2 / (down**2 + (1.0 - down) ** 2)
     above = load * np.exp(np.log(end / load) * up**2)
-    lowest, last = (curve.inverse(y * end) + 0.0 * first for y in (0.0, 1.0))
-    return np.concatenate([lowest, curve.inverse(below), first, curve.inverse(above), last], axis=-1)
+    lowest, last = (np.full_like(load, x) for x in curve.displacement[[0, -1]])
+    between = curve.inverse(np.concatenate([below, load, above], axis=-1))
+    between[..., BELOW] = np.where(touches & (load[..., 0] < HIGHEST * end), given, between[..., BELOW])
+    return np.concatenate([lowest, between, last], axis=-1)
 
 
 @dataclass(frozen=True, slots=True)

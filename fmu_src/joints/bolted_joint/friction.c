@@ -20,7 +20,7 @@ static void lay_heights(Foundation *f, double reference)
     curve_at(f->curve, reference, 0, y);
     const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
     const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);
-    *h++ = inverse(f, 0.0);
+    *h++ = f->curve->first.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
         *h++ = inverse(f, load * rest / (part * part + rest));
@@ -30,7 +30,7 @@ static void lay_heights(Foundation *f, double reference)
         const double part = (k + f->offset) / (double)N_ABOVE;
         *h++ = inverse(f, load * exp(over * (part * part)));
     }
-    *h = inverse(f, end);
+    *h = f->curve->end.x;
 }
 
 void foundation_lay(Foundation *f, double reference)

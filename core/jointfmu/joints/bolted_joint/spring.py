@@ -13,7 +13,7 @@ from ...footprint.patches import few_points
 from ...footprint.shape import PressureShape
 from ...interface import largest_spot
 from ...quantity import Number
-from ...sliders import Foundation, around, offsets
+from ...sliders import SLIDERS, Foundation, around, offsets
 from .contact import (
     Place,
     along,
@@ -133,7 +133,7 @@ class BoltedJointSpring:
     def at_rest(self) -> Array:
         """Memory of a joint that has not moved yet, see `_Memory`."""
         patches = self.patches.share.size
-        none, forces = np.zeros(patches), self.foundation().at_rest(patches)
+        none, forces = np.zeros(patches), np.zeros((patches, 2, SLIDERS))
         return _Memory(UNKNOWN, 0.0, np.zeros(3), none, none, forces).flat()
 
     def evolve(
