@@ -54,6 +54,17 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     assert all(" us of " in line for line in promised.splitlines())
 
 
+def test_mujoco_plugin(monkeypatch, capsys):
+    pytest.importorskip("mujoco")
+    module = benchmark("mujoco_plugin")
+    for short in ("REPEATS", "PYTHON_STEPS"):
+        monkeypatch.setattr(module, short, 2)
+    module.main()
+    _, *rows, _ = capsys.readouterr().out.splitlines()
+    assert [row.split("  ")[0] for row in rows] == [*module.CASES]
+    assert all(" us  of 2 us " in row for row in rows)
+
+
 def test_the_readme_names_every_file():
     """Each file or folder once as a row's subject, and no row of a file that is gone."""
     text = (BENCHMARKS / "README.md").read_text()

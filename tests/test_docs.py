@@ -198,7 +198,7 @@ TOOLS = [page for page in PAGES if page.parent.name == "tools" and page.name != 
 @pytest.mark.parametrize("path", TOOLS, ids=shown)
 def test_a_tools_page_says_what_a_user_needs(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert len(TOOLS) == 7
+    assert len(TOOLS) == 8
     assert re.search(r"^\*(Not run|Run) here", text, flags=re.MULTILINE)  # what was tried
     for word in ("step size", "model exchange", "loop", "dist/"):
         assert word in text.lower(), word
@@ -365,10 +365,10 @@ def test_the_tutorial_ends_in_a_resonance_plot(tutorial: Tutorial) -> None:
     assert [row["load"] for row in json.loads(last)["rows"]] == [0.0, 1.0, 2.0, 4.0]
 
 
-@pytest.mark.parametrize("page", ["fmpy", "ecos"])
+@pytest.mark.parametrize("page", ["fmpy", "ecos", "mujoco"])
 def test_python_of_the_tools_that_were_run(tutorial: Tutorial, page: str) -> None:
     for block in blocks(DOCS / "tools" / f"{page}.md", "python"):
-        for client in ("ecospy", "libcosimpy"):
+        for client in ("ecospy", "libcosimpy", "mujoco"):
             if client in block and find_spec(client) is None:
                 pytest.skip(f"needs {client}")
         done = subprocess.run([sys.executable, "-c", block], cwd=tutorial.folder, timeout=100)

@@ -40,12 +40,13 @@ def libraries(
     units: Sequence[str],
     platforms: Sequence[str] = tuple(TARGETS),
     stem: str = "",
+    linked: Sequence[str] = (),
 ) -> dict[str, bytes]:
     """{platform: shared library} of the .c files `units`, with FMI's functions exported.
 
     `sources` are all files by flat name, FMI's headers come from fmpy; `stem` is the libraries' file
-    name. What units of the same sources share is compiled once, in this and in later builds. Equal sources
-    give equal bytes.
+    name, `linked` are options for another library that they use. What units of the same sources share is
+    compiled once, in this and in later builds. Equal sources give equal bytes.
 
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
@@ -57,7 +58,7 @@ def libraries(
     def library(platform: str) -> bytes:
         with tempfile.TemporaryDirectory() as out:
             file = Path(out) / file_name(stem or name, platform)
-            _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, "-o", str(file))
+            _run(f"{name} for {platform}", folder, "cc", *options[platform], *units, *linked, "-o", str(file))
             return file.read_bytes()
 
     with ThreadPoolExecutor(cpu_count()) as pool:

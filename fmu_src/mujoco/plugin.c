@@ -1,0 +1,227 @@
+/* A joint between two flanges (phi1 w1 phi2 w2 in, tau1 tau2 out first) as MuJoCo's passive force and sensor.
+ *
+ * Compiled with the C sources of an FMU. Each plugin instance has an instance of the FMU; its path lies in
+ * MuJoCo's plugin state (before, after, inputs, accepted), so that mjData can be copied, saved and set. */
+#include <mujoco/mujoco.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "memory.h"
+#include "step.h"
+#include "values.h"
+
+enum { PHI1, W1, PHI2, W2 };
+enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_INPUTS + 1 : 0 };
+_Static_assert(N_INPUTS == 4 && N_OUTPUTS >= 2 && !MOVES, "a joint between two flanges");
+
+typedef struct {
+    Instance *instance;
+    int joints[2];
+    char why[sizeof((Text *)0)->line]; /* of the last refusal */
+} Coupling;
+
+/* Messages: MuJoCo's warnings, and one line for the error that follows */
+
+static void deliver(const Reporter *to, const char *name, Status status, const char *category, const char *line)
+{
+    (void)category;
+    Coupling *c = to->environment;
+    if (status == ERROR)
+        snprintf(c->why, sizeof c->why, "%s", line);
+    else
+        mju_warning("%s: %s", name, line);
+}
+
+/* Configuration: joints for phi1 and phi2, and parameters by name */
+
+static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *key, int *joint)
+{
+    const char *name = mj_getPluginConfig(m, instance, key);
+    *joint = name && *name ? mj_name2id(m, mjOBJ_JOINT, name) : -1;
+    if (*joint >= 0 && m->jnt_type[*joint] == mjJNT_HINGE)
+        return true;
+    snprintf(c->why, sizeof c->why, "%s = '%.80s' is no hinge joint; expected the name of one", key,
+             name ? name : "");
+    return false;
+}
+
+static bool set_parameter(Coupling *c, const char *text, uint32_t ref)
+{
+    const Variable *v = &variables[ref];
+    char *end;
+    double value = strtod(text, &end);
+    bool right = *end == '\0' && end != text;
+    if (v->boolean) {
+        value = strcmp(text, "true") == 0;
+        right = value || strcmp(text, "false") == 0;
+    }
+    if (right)
+        instance_put(c->instance, ref, value);
+    else
+        snprintf(c->why, sizeof c->why, "%s = '%.80s' is no %s", v->name, text,
+                 v->boolean ? "Boolean; expected true or false" : "number; expected one");
+    return right;
+}
+
+static bool configure(Coupling *c, const mjModel *m, int instance)
+{
+    if (!find_joint(c, m, instance, "phi1", &c->joints[0]) || !find_joint(c, m, instance, "phi2", &c->joints[1]))
+        return false;
+    for (uint32_t ref = FIRST_PARAMETER; ref < N_VALUES; ref++) {
+        const char *text = mj_getPluginConfig(m, instance, variables[ref].name);
+        if (text && *text && !set_parameter(c, text, ref))
+            return false;
+    }
+    c->instance->dirty = c->instance->parameters_changed = true;
+    return instance_set_experiment(c->instance, "init", 0.0, false, 0.0) == OK &&
+           instance_change(c->instance, "init", BOTH | INSTANTIATED, INITIALIZATION) == OK &&
+           instance_initialize(c->instance, "init") == OK;
+}
+
+static void free_coupling(Coupling *c)
+{
+    if (c)
+        instance_free(c->instance);
+    free(c);
+}
+
+static int init(const mjModel *m, mjData *d, int instance)
+{
+    const char *name = mj_id2name(m, mjOBJ_PLUGIN, instance);
+    Coupling *c = calloc(1, sizeof *c);
+    if (!c)
+        return -1;
+    const Reporter reporter = {deliver, NULL, c};
+    c->instance =
+        instance_new("init", 3, MODEL_EXCHANGE, name && *name ? name : data.name, data.token, false, reporter);
+    if (!c->instance || !configure(c, m, instance)) {
+        char why[sizeof c->why];
+        memcpy(why, c->why, sizeof why);
+        free_coupling(c);
+        mju_error("%s: %s", name && *name ? name : data.name, why);
+        return -1;
+    }
+    d->plugin_data[instance] = (uintptr_t)c;
+    return 0;
+}
+
+static void destroy(mjData *d, int instance)
+{
+    free_coupling((Coupling *)d->plugin_data[instance]);
+    d->plugin_data[instance] = 0;
+}
+
+/* The path of the inputs */
+
+static int nstate(const mjModel *m, int instance)
+{
+    (void)m, (void)instance;
+    return PATH;
+}
+
+static void reset(const mjModel *m, mjtNum *state, void *coupling, int instance)
+{
+    (void)m, (void)coupling, (void)instance;
+    for (int i = 0; i < PATH; i++)
+        state[i] = 0.0;
+}
+
+#if N_MEMORY
+static void read_path(Instance *m, const mjtNum *state)
+{
+    Path *path = &m->now.path;
+    memcpy(path->memory[0], state, N_MEMORY * sizeof *state);
+    memcpy(path->memory[1], state + N_MEMORY, N_MEMORY * sizeof *state);
+    memcpy(path->inputs, state + 2 * N_MEMORY, sizeof path->inputs);
+    path->accepted = state[PATH - 1] != 0.0;
+    path->last = 1;
+}
+
+static void write_path(const Instance *m, mjtNum *state)
+{
+    const Path *path = &m->now.path;
+    memcpy(state, path->memory[1u - path->last], N_MEMORY * sizeof *state);
+    memcpy(state + N_MEMORY, path->memory[path->last], N_MEMORY * sizeof *state);
+    memcpy(state + 2 * N_MEMORY, path->inputs, sizeof path->inputs);
+    state[PATH - 1] = path->accepted;
+}
+#endif
+
+/* Evaluate at the present angles and speeds, on the path of the state; if `accept`, the path goes on from them.
+ * The first evaluation after a reset begins the path, as an FMU's initialization does. */
+static const double *evaluate(const mjModel *m, mjData *d, int instance, bool accept)
+{
+    Coupling *c = (Coupling *)d->plugin_data[instance];
+    Instance *fmu = c->instance;
+    double *inputs = fmu->now.values + FIRST_INPUT;
+    for (int i = 0; i < 2; i++) {
+        inputs[2 * i] = d->qpos[m->jnt_qposadr[c->joints[i]]];
+        inputs[2 * i + 1] = d->qvel[m->jnt_dofadr[c->joints[i]]];
+    }
+    fmu->dirty = true;
+#if N_MEMORY
+    mjtNum *state = d->plugin_state + m->plugin_stateadr[instance];
+    read_path(fmu, state);
+    accept |= !fmu->now.path.accepted;
+#endif
+    if ((accept ? instance_accept(fmu) : instance_evaluate(fmu)) != OK)
+        mju_error("%s: %s", fmu->name, c->why);
+#if N_MEMORY
+    if (accept)
+        write_path(fmu, state);
+#endif
+    return fmu->now.values + FIRST_OUTPUT;
+}
+
+/* What MuJoCo calls */
+
+static int nsensordata(const mjModel *m, int instance, int sensor)
+{
+    (void)m, (void)instance, (void)sensor;
+    return N_OUTPUTS;
+}
+
+static void compute(const mjModel *m, mjData *d, int instance, int capability)
+{
+    const double *outputs = evaluate(m, d, instance, false);
+    const Coupling *c = (const Coupling *)d->plugin_data[instance];
+    if (capability == mjPLUGIN_PASSIVE)
+        for (int i = 0; i < 2; i++)
+            d->qfrc_passive[m->jnt_dofadr[c->joints[i]]] += outputs[i];
+    else
+        for (int i = 0; i < m->nsensor; i++)
+            if (m->sensor_type[i] == mjSENS_PLUGIN && m->sensor_plugin[i] == instance)
+                memcpy(d->sensordata + m->sensor_adr[i], outputs, N_OUTPUTS * sizeof *outputs);
+}
+
+static void advance(const mjModel *m, mjData *d, int instance)
+{
+    if (N_MEMORY)
+        evaluate(m, d, instance, true);
+}
+
+/* When the library is loaded. */
+__attribute__((constructor)) static void register_plugin(void)
+{
+    static char name[sizeof "jointfmu." + sizeof data.name];
+    static const char *attributes[2 + N_PARAMETERS] = {"phi1", "phi2"};
+    for (uint32_t i = 0; i < N_PARAMETERS; i++)
+        attributes[2 + i] = variables[FIRST_PARAMETER + i].name;
+    snprintf(name, sizeof name, "jointfmu.%s", data.name);
+    mjpPlugin plugin;
+    mjp_defaultPlugin(&plugin);
+    plugin.name = name;
+    plugin.nattribute = sizeof attributes / sizeof *attributes;
+    plugin.attributes = attributes;
+    plugin.capabilityflags = mjPLUGIN_PASSIVE | mjPLUGIN_SENSOR;
+    plugin.needstage = mjSTAGE_VEL;
+    plugin.nstate = nstate;
+    plugin.nsensordata = nsensordata;
+    plugin.init = init;
+    plugin.destroy = destroy;
+    plugin.reset = reset;
+    plugin.compute = compute;
+    plugin.advance = advance;
+    mjp_registerPlugin(&plugin);
+}
