@@ -103,12 +103,14 @@ def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force,
 @pytest.mark.slow
 @pytest.mark.parametrize("motion", patch_reduction.MOTIONS)
 def test_friction_of_few_patches_is_that_of_all_nodes(spring, motion):
-    """28 patches of a field of 400 nodes: forces within 2 % of gross slip, areas of loops within 3 %."""
+    """28 patches of a field of 400 nodes: forces within 2 % of gross slip, areas of loops within 3 %.
+
+    About twice what the benchmark prints.
+    """
     shape, motion = patch_reduction.field(), patch_reduction.MOTIONS[motion]
     start = patch_reduction.tightened(spring.curve, shape, (patch_reduction.mean_pressure(spring), 0.0))
     largest = float(np.max(start) - spring.curve.displacement[0])
-    step = patch_reduction.STEP
-    force, loss = patch_reduction.friction(spring, shape, step, largest, motion)
-    few, lost = patch_reduction.friction(spring, few_points(shape, 28), step, largest, motion)
+    force, loss = patch_reduction.friction(spring, shape, True, largest, motion)
+    few, lost = patch_reduction.friction(spring, few_points(shape, 28), False, largest, motion)
     np.testing.assert_allclose(few, force, rtol=0.0, atol=0.02 * np.max(np.abs(force)))
     np.testing.assert_allclose(lost, loss, rtol=0.03)

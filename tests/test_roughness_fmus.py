@@ -80,6 +80,8 @@ def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built
             slope = (ends[1][output] - ends[0][output]) / (2.0 * h)
             size = max(abs(slope), SLOPE * abs(now) / h)
             rough = 1e-3 if output in CASES[name].jumps else 1e-4
+            if output in CASES[name].kinks:  # before the first step the differences lay the sliders anew
+                rough = 1e-2
             assert found[output] == pytest.approx(slope, abs=rough * size), (output, moved)
 
 

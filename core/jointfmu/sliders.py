@@ -38,9 +38,13 @@ LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
 """Least and largest load of a reference, and that without one, over the load at the end of the curve [1]."""
 
 
-def offsets(count: int) -> Array:
-    """Offsets (count) [1] of `around` for foundations side by side: multiples of the golden section."""
-    return np.asarray((np.arange(count) + 0.5) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0)
+def offsets(share: Array) -> Array:
+    """Offsets (n) [1] of `around` for foundations side by side, whose shares of the area are (n) [1].
+
+    Multiples of the golden section in the order of the shares: what neighbours in it miss cancels.
+    """
+    rank = np.argsort(np.argsort(-share, kind="stable"), kind="stable")
+    return np.asarray((rank * (0.5 * (np.sqrt(5.0) - 1.0)) + 0.5) % 1.0)
 
 
 def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:

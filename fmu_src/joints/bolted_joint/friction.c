@@ -607,7 +607,8 @@ void foundation_rates(const Foundation *f, const PatchPath *path, const double r
     const double approach = fmax(path->from->approach, path->to->approach);
     int touched = touched_on(path);
     Inner inner = {.known = false};
-    if (touched < HEIGHTS && approach == f->height[touched]) /* springs that are about to touch */
+    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0;
+    if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
         touched++;
     *rate = (Shear){.loss = 0.0};
     if (touched > full)
