@@ -108,7 +108,7 @@ DIFFERENCE = 1e-6
 1e-16/h of the differences at h = 1e-3 are below 1e-11, but the third derivative of the tables jumps at their
 nodes, which are about as far apart as the differences reach. Measured: 8e-9."""
 KINKS = 2e-3
-"""The same for an output with kinks, of which two can hide each other from the differences. Measured: 6e-4."""
+"""The same for an output with kinks; two of them can hide each other from the differences. Measured: 6e-4."""
 JUMPS = 1e-4
 """The same for an output that holds the third derivative itself. Measured for K_zz: 2e-6."""
 
