@@ -332,7 +332,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
         const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
-        if (kind->foundation[j].reference != reference)
+        if (kind->moved != RESTING && kind->foundation[j].reference != reference)
             lay(kind, j, reference);
         const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
@@ -445,7 +445,10 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         const PatchPath path = path_of(joint, j, inputs, memory);
         double *const moved[2] = {kind->force[j][0], kind->force[j][1]};
         Shear shear;
-        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+        if (kind->moved == RESTING) /* without forces all springs in contact stick, whatever the heights */
+            shear = foundation_at_rest(&kind->foundation[j], &kind->to[j]);
+        else
+            foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
         add_shear(x, data.patches[j], shear.traction, shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
     }
@@ -474,7 +477,8 @@ void joint_accept(Joint *joint, const double *inputs, const double *before, doub
     after[RIGID + 2] = inputs[THETA + 2];
     for (int j = 0; j < n_patches(); j++) {
         const Point *from = &kind->from[j], *to = &kind->to[j];
-        const int n = 2 * (from->touched > to->touched ? from->touched : to->touched);
+        const int touched = from->touched > to->touched ? from->touched : to->touched;
+        const int n = kind->moved == RESTING ? 0 : 2 * touched;
         double *force = after + FORCES + 2 * j * SLIDERS;
         after[REFERENCES + j] = kind->moved == RESTING ? to->approach : kind->foundation[j].reference;
         after[APPROACHES + j] = to->approach;

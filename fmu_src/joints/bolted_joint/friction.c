@@ -492,6 +492,12 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
                      .loss = sum.heat[0] + sum.heat[1]};
 }
 
+Shear foundation_at_rest(const Foundation *f, const Point *at)
+{
+    const double K = f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
+    return (Shear){.tangent = {K, 0.0, K}};
+}
+
 /* Rates */
 
 enum { KEEPS = 2, CARRIES, SHIFT, LIMIT = SHIFT + 2, STIFFNESS, N_SLIDE }; /* arguments of `slide`: force, then these */

@@ -60,6 +60,8 @@ Point foundation_point(const Foundation *foundation, double approach, int near);
  * touch on it; along y they are left out where the path is straight and the load rests. */
 void foundation_move(const Foundation *foundation, const PatchPath *path, double *const moved[2], Work *work,
                      Shear *shear);
+/* What sliders without force give that do not move along the surface. */
+Shear foundation_at_rest(const Foundation *foundation, const Point *at);
 /* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */
 void foundation_rates(const Foundation *foundation, const PatchPath *path, const double rates[2],
                       const double shift[2], Shear *rate);

@@ -27,7 +27,6 @@ class Drive(ABC):
         ge=0.0,
         default=0.0,
     )
-
     lost_motion: float = quantity(
         "rad", "play of the output at next to no torque, between its ends; 0: none", ge=0.0, default=0.0
     )
