@@ -50,9 +50,9 @@ def flat_fields(
     names : of a parameter set that has one of a group's alternatives; without them all are opened
     """
     if names is None:
-        yield from ((prefix + name, item) for name, item in _every_field(cls))
+        yield from ((prefix + name, item) for name, item in _every_field(cls))  # type: ignore[arg-type]
         return
-    hints = _hints(cls)
+    hints = _hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
         if "group" in item.metadata:
             sections = _sections(item, hints[item.name])
@@ -131,7 +131,7 @@ def assemble(
 
     make : (class, {name of a field: value}) -> instance
     """
-    hints = _hints(cls)
+    hints = _hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
         name = prefix + label(item)
