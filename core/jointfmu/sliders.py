@@ -206,7 +206,7 @@ class Foundation:
         """
         path, end = _Path.of(before, after, shift), self.carried(after)
         start = self.carried(before) if np.any(path.change) else end
-        keeps, carries = self._carrying(start, end, path)
+        keeps, carries = (1.0, end.stiffness) if start is end else self._carrying(start, end, path)
         old, along = (force[..., 0, :], force[..., 1, :]), (path.along[..., 0, :], path.along[..., 1, :])
         x, y, beyond, *tangent = slide(*old, keeps, carries, *along, end.limit, end.stiffness)
         loss = slip_loss(*old, x, y, beyond, start.limit, end.limit, end.stiffness)

@@ -157,7 +157,7 @@ def test_another_table_needs_no_compiler(
     build([name], ["fmi3"], file, tmp_path)
     instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
     for inputs in random_inputs(name, 10, seed=11):
-        # a place within a segment has the round-off of the wind-up, many times its own where segments are short
+        # a place within a short segment has the round-off of the whole wind-up
         assert instance.at(inputs) == close(expected(inputs), max(SAME, 1e-14 * points))
 
 

@@ -37,19 +37,16 @@ UNKNOWN, RESTING, ALONG, FREE = 0.0, 1.0, 2.0, 3.0
 """How friction has moved so far, see `_Memory`."""
 
 
-_nodes = lru_cache(maxsize=8)(pressure_shape)
-
-
 @lru_cache(maxsize=8)
 def points(pattern: PressureSource) -> PressureShape:
     """The points that carry the normal force of a joint."""
-    return few_points(_nodes(pattern), POINTS)
+    return few_points(pressure_shape(pattern), POINTS)
 
 
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
-    return few_points(_nodes(pattern), PATCHES)
+    return few_points(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)
