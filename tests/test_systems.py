@@ -632,7 +632,7 @@ def test_the_modelica_example_moves_as_the_archive(
     """rumoca's solver on the Modelica text, fmpy's steps on the FMUs: they meet as h^2, the order of a step.
 
     What the extrapolation to h = 0 leaves, is of the layer in which the component's sliders cease to stick
-    (drive, 2.3e-4), and of the number of sliders (bolted joint, 0.9 %).
+    (drive, 1.7e-4), and of the number of sliders (bolted joint, 0.5 %).
     """
     rumoca = pytest.importorskip("rumoca")
     found = simulate(rumoca, top(f"extends JointStiffness.Examples.{model};"), stop, stop / 300, rtol=1e-8)
