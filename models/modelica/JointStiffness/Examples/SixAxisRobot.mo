@@ -2,7 +2,7 @@ within JointStiffness.Examples;
 model SixAxisRobot "Robot with six axes"
   extends Modelica.Icons.Example;
 
-  record Base_driveData "Of base_drive"
+  record Base_driveData "CSG-32-100, of base_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=28,
@@ -66,10 +66,10 @@ model SixAxisRobot "Robot with six axes"
       0.000450149253731343, 30.9044776119403, 110000, 0, 0;
       0.00110497693351425, 102.93552238806, 110000, 0, 0;
       0.00119705834464043, 113.524884667571, 120000, 0, 0;
-      0.00775101763907734, 900, 120000, 0, 0]);
+      0.00385935097241067, 433, 120000, 0, 0]);
   end Base_driveData;
 
-  record Shoulder_driveData "Of shoulder_drive"
+  record Shoulder_driveData "CSG-40-100, of shoulder_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=41,
@@ -133,10 +133,10 @@ model SixAxisRobot "Robot with six axes"
       0.000432, 57.3230769230769, 200000, 0, 0;
       0.00108036923076923, 186.996923076923, 200000, 0, 0;
       0.0011704, 206.353538461538, 230000, 0, 0;
-      0.00418625418060201, 900, 230000, 0, 0]);
+      0.00348190635451505, 738, 230000, 0, 0]);
   end Shoulder_driveData;
 
-  record Elbow_driveData "Of elbow_drive"
+  record Elbow_driveData "CSG-25-100, of elbow_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=11,
@@ -200,10 +200,10 @@ model SixAxisRobot "Robot with six axes"
       0.000469677419354839, 14.9032258064516, 50000, 0, 0;
       0.00108634838709677, 45.7367741935484, 50000, 0, 0;
       0.00117687741935484, 50.5800774193548, 57000, 0, 0;
-      0.0160789813242784, 900, 57000, 0, 0]);
+      0.00386845500848896, 204, 57000, 0, 0]);
   end Elbow_driveData;
 
-  record Forearm_driveData "Of forearm_drive"
+  record Forearm_driveData "CSG-20-100, of forearm_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=1.3,
@@ -267,10 +267,10 @@ model SixAxisRobot "Robot with six axes"
       0.000455, 7.4375, 25000, 0, 0;
       0.0011112, 23.8425, 25000, 0, 0;
       0.0012038, 26.3427, 29000, 0, 0;
-      0.0313299137931035, 900, 29000, 0, 0]);
+      0.00398508620689655, 107, 29000, 0, 0]);
   end Forearm_driveData;
 
-  record Wrist_driveData "Of wrist_drive"
+  record Wrist_driveData "CSG-17-100, of wrist_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=1.5,
@@ -334,10 +334,10 @@ model SixAxisRobot "Robot with six axes"
       0.0004056, 4.1184, 14000, 0, 0;
       0.000929828571428571, 11.4576, 14000, 0, 0;
       0.00100731428571429, 12.6198857142857, 16000, 0, 0;
-      0.0564685714285714, 900, 16000, 0, 0]);
+      0.00459357142857143, 70, 16000, 0, 0]);
   end Wrist_driveData;
 
-  record Hand_driveData "Of hand_drive"
+  record Hand_driveData "CSG-14-100, of hand_drive"
     extends JointStiffness.Data.HarmonicDrive(
       final ratio=100,
       final d=0.16,
@@ -401,7 +401,7 @@ model SixAxisRobot "Robot with six axes"
       0.000442553191489362, 2.10382978723404, 6100, 0, 0;
       0.00117965817928148, 6.60017021276596, 6100, 0, 0;
       0.00127796302755494, 7.24898221137077, 7100, 0, 0;
-      0.127017542997784, 900, 7100, 0, 0]);
+      0.00532740215271398, 36, 7100, 0, 0]);
   end Hand_driveData;
 
   JointStiffness.Components.AngleProfile base_motor(start=0.1, duration=1, height=122.2)
@@ -522,14 +522,6 @@ equation
 <tr><td><code>base_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_motor.height</code></td><td>122.2 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.rated_torque</code></td><td>178 N m</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.K1</code></td><td>67000 N m/rad</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.K2</code></td><td>110000 N m/rad</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.K3</code></td><td>120000 N m/rad</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.T1</code></td><td>29 N m</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.T2</code></td><td>108 N m</td><td>Harmonic Drive catalogue, CSG-32-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>base_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>base_drive.d</code></td><td>28 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>base_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>base_link.J</code></td><td>7.40718819165282 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -557,14 +549,6 @@ equation
 <tr><td><code>shoulder_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.height</code></td><td>87.27 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.rated_torque</code></td><td>345 N m</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.K1</code></td><td>130000 N m/rad</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.K2</code></td><td>200000 N m/rad</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.K3</code></td><td>230000 N m/rad</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.T1</code></td><td>54 N m</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.T2</code></td><td>196 N m</td><td>Harmonic Drive catalogue, CSG-40-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>shoulder_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>shoulder_drive.d</code></td><td>41 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>shoulder_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>shoulder_link.J</code></td><td>8.14835487753431 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -592,14 +576,6 @@ equation
 <tr><td><code>elbow_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.height</code></td><td>104.7 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.rated_torque</code></td><td>87 N m</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.K1</code></td><td>31000 N m/rad</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.K2</code></td><td>50000 N m/rad</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.K3</code></td><td>57000 N m/rad</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.T1</code></td><td>14 N m</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.T2</code></td><td>48 N m</td><td>Harmonic Drive catalogue, CSG-25-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>elbow_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>elbow_drive.d</code></td><td>11 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>elbow_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>elbow_link.J</code></td><td>2.23554092189438 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -627,14 +603,6 @@ equation
 <tr><td><code>forearm_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.height</code></td><td>-78.54 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.rated_torque</code></td><td>52 N m</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.K1</code></td><td>16000 N m/rad</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.K2</code></td><td>25000 N m/rad</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.K3</code></td><td>29000 N m/rad</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.T1</code></td><td>7 N m</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.T2</code></td><td>25 N m</td><td>Harmonic Drive catalogue, CSG-20-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>forearm_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>forearm_drive.d</code></td><td>1.3 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>forearm_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>forearm_link.J</code></td><td>0.0697886093001334 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -662,14 +630,6 @@ equation
 <tr><td><code>wrist_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.height</code></td><td>69.81 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.rated_torque</code></td><td>31 N m</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.K1</code></td><td>10000 N m/rad</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.K2</code></td><td>14000 N m/rad</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.K3</code></td><td>16000 N m/rad</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.T1</code></td><td>3.9 N m</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.T2</code></td><td>12 N m</td><td>Harmonic Drive catalogue, CSG-17-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>wrist_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>wrist_drive.d</code></td><td>1.5 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>wrist_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>wrist_link.J</code></td><td>0.15 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -697,14 +657,6 @@ equation
 <tr><td><code>hand_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.height</code></td><td>157.1 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_drive.ratio</code></td><td>100 1</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.rated_torque</code></td><td>10 N m</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.K1</code></td><td>4700 N m/rad</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.K2</code></td><td>6100 N m/rad</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.K3</code></td><td>7100 N m/rad</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.T1</code></td><td>2 N m</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.T2</code></td><td>6.9 N m</td><td>Harmonic Drive catalogue, CSG-14-100, by jointfmu new harmonic-drive --catalogue</td></tr>
-<tr><td><code>hand_drive.max_torque</code></td><td>900 N m</td><td>beyond the peak torques of all six, which so share one FMU</td></tr>
 <tr><td><code>hand_drive.d</code></td><td>0.16 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>hand_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
 <tr><td><code>hand_link.J</code></td><td>0.0032 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
