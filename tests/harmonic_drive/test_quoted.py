@@ -2,12 +2,18 @@
 
 import csv
 import math
+from dataclasses import replace
 from importlib.resources import files
+from pathlib import Path
 
+import drive_catalogue
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_fmu_src.joints.harmonic_drive.beside import beside
 from jointfmu_fmu_src.joints.harmonic_drive.efficiency import bench, parameters, printed_drives, spring_bench
+from jointfmu_fmu_src.report.beside import OWN, PREDICTED, SET
+from jointfmu_fmu_src.report.joint import write_joint_report
 
 from jointfmu import cli
 from jointfmu.joints import MODELS
@@ -240,3 +246,42 @@ def test_estimates_of_friction_stay_off():
 )
 def test_friction_that_cannot_be_is_refused(capsys, words, text):
     assert text in refused_line(capsys, "new", "harmonic-drive", "--catalogue", "CSG-17-50", *words)
+
+
+# the page of a drive, and the study
+
+
+def rows_of(name, **options):
+    return {row.name: row for row in beside(SPRING, made(name, **options))}
+
+
+def test_the_page_has_what_is_published_of_the_drive(tmp_path):
+    """Which number set a parameter is told by the parameter's source; estimates of friction are left out."""
+    rows = rows_of("RT1-H-17-100")
+    roles = {name: row.role for name, row in rows.items()}
+    set_by_it = ("starting_torque", "running_torque", "efficiency", "wind-up at T1, 3.9 N.m")
+    assert all(roles[name] == SET for name in set_by_it)
+    assert all(roles[name] == PREDICTED for name in ("back_driving_torque", "lost_motion"))
+    assert roles["hysteresis_loss"] == OWN
+    assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-9) for name in set_by_it[:3])
+    assert {"lost_motion", "hysteresis_loss"} == {name for name, row in rows.items() if row.bound}
+    measured = rows_of("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5")
+    assert measured["efficiency"].role == measured["starting_torque"].role == PREDICTED
+    assert not {"starting_torque", "efficiency"} & set(rows_of("CSG-17-100"))
+    assert beside(SPRING, default("harmonic_drive")) == []
+    write_joint_report(tmp_path / "drive.html", replace(made("RT1-H-17-100"), name="Shoulder"))
+    page = (tmp_path / "drive.html").read_text(encoding="utf-8")
+    assert "Beside what is published of it" in page
+    assert "3.06 N.m" in page
+    write_joint_report(tmp_path / "other.html", default("harmonic_drive"))
+    assert "Beside what is published" not in (tmp_path / "other.html").read_text(encoding="utf-8")
+
+
+def test_the_study_prints_its_tables(capsys):
+    for part in ("single_drives", "over_load", "over_speed", "over_both", "worked_examples"):
+        getattr(drive_catalogue, part)()
+    out = capsys.readouterr().out
+    page = (Path(__file__).resolve().parents[2] / "docs" / "harmonic_drive.md").read_text(encoding="utf-8")
+    for line in out.splitlines():
+        if line.startswith("| RT1-H"):
+            assert line in page
