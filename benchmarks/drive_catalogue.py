@@ -72,7 +72,19 @@ def all_drives():
         ("the same, with hysteresis at its limit", size, "predicted", f"{min(held):.2f} to {max(held):.2f} "
          "arcmin"),
     ]  # fmt: skip
+    other = [
+        lost_motion(HarmonicDriveSpring.of(made(name).values)) / limit for name, limit in another_maker()
+    ]
+    text = f"{min(other):.2f} to {max(other):.2f} of it"
+    rows.append(("lost motion 2 or 1 arcmin, another maker", f"{len(other)} drives", "predicted", text))
     table(("published", "of", "parameters", "model"), rows)
+
+
+def another_maker():
+    """(CSF of the same size and ratio, printed lost motion [rad]) of the drives of another maker."""
+    path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_zd.csv"
+    for row in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
+        yield f"CSF-{row['size']}-{row['ratio']}", float(row["lost_motion_arcmin"]) * ARCMIN
 
 
 def single_drives():
