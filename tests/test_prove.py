@@ -33,8 +33,8 @@ from jointfmu.proof.manifest import FOLDER
 pytestmark = pytest.mark.slow
 
 MEASURED = 2e-3
-"""Part of the tolerance that the FMUs use. Measured: 8.4e-4 of it, 8e-9, at a neighbour of a refusal; elsewhere
-5e-10, from the digits of the files, and 4e-10 by the solver of model exchange."""
+"""Part of the tolerance that the FMUs use. Measured: 8.4e-4 of it, 8e-9, at a neighbour of a refusal;
+elsewhere 5e-10, from the digits of the files, and 4e-10 by the solver of model exchange."""
 RUNS = [
     (name, importer, version)
     for name in NAMES

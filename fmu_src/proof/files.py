@@ -55,8 +55,8 @@ memory accepts its path.
 Tolerance
   |value - reference| <= {tolerance:g} max(|reference|, {floor:g} nominal value)
 An importer that prints six digits rounds by 5e-6. The compiled law and the package differ by far less: 1e-8
-at neighbours of refusals, 1e-9 elsewhere; a solver adds 4e-10 where there are states. Below a millionth of its
-nominal value an output is round-off.
+at neighbours of refusals, 1e-9 elsewhere; a solver adds 4e-10 where there are states. Below a millionth of
+its nominal value an output is round-off.
 
 What the experiments are
   smoke test: a few loads.
