@@ -12,8 +12,6 @@ from hashlib import sha256
 from os import cpu_count
 from pathlib import Path
 
-import fmpy
-
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
     "x86_64-linux": "x86_64-linux-gnu.2.17",
@@ -118,6 +116,8 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
 
 
 def _headers() -> dict[str, str]:
+    import fmpy
+
     folder = Path(fmpy.__file__).parent / "c-code"
     return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
 
