@@ -112,9 +112,14 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, Any], ratio: float) -> Sectio
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
         f"{name}_load": _section(
-            "TorqueCurve", times | {key: (value, "N.m") for key, value in points.items()}
+            "TorqueCurve", times | {key: (_clean(value), "N.m") for key, value in points.items()}
         ),
     }
+
+
+def _clean(torque: float) -> float:
+    """To 1e-8 N.m: later digits depend on the processor."""
+    return round(torque, 8) + 0.0
 
 
 def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, Any]:
