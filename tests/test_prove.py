@@ -127,7 +127,7 @@ def test_a_changed_start_value_fails_by_name(
     line = f"e starts at {float(match[1])!r}, modelDescription.xml says 0.21"
     assert (found["passed"], found["misses"]) == (False, [line])
     assert cli.main(["prove", str(path)]) == 1
-    assert f"missed: {line}\n" in capsys.readouterr().out
+    assert capsys.readouterr().out.endswith(f"missed: {line}\n44 passed, 0 missed, 1 start value differs\n")
 
 
 def test_a_changed_parameter_of_the_python_flavour_fails_by_name(
@@ -193,6 +193,11 @@ def test_a_library_that_crashes_fails_in_one_line(
 
     found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), status=1)
     (line,) = found["misses"]
+    assert cli.main(["prove", str(tmp_path / fmu.name)]) == 1
+    assert capsys.readouterr().out.splitlines()[-2:] == [
+        f"missed: {line}",
+        "it does not start, nothing was executed",
+    ]
     assert re.fullmatch(r"start: fmpy ended with status -\d+; the FMU's library may be broken", line)
 
 
@@ -333,6 +338,8 @@ def test_an_fmu_is_not_compared_with_the_file_of_another_joint(
     file = KINDS[MODELS[OTHER].joint].default_file()
     line = refused_line(capsys, "prove", fmu, "--against", file)
     assert f"{NAME}.fmu: has not the variables of {OTHER}, for which {file} is" in line
+    line = refused_line(capsys, "prove", fmu, "--against", file, "--listing", "out")
+    assert "expected it without --against" in line
 
 
 # Manifests that are not our own

@@ -43,6 +43,8 @@ def add(commands: Any) -> None:
 
 
 def _prove(args: argparse.Namespace) -> int:
+    if args.listing and args.against:
+        raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
     proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
     folders = listing.write(proof, args.listing) if args.listing and proof.passed else []
     if args.json:

@@ -111,6 +111,8 @@ class Proof:
     def misses(self) -> list[str]:
         """A line for everything that failed, of an experiment with its worst output."""
         lines = list(self.differing)
+        if self.outcomes and not self.runs:
+            lines.append(f"{self.importer} executes none of the experiments")
         for outcome in self.outcomes:
             name = outcome.name
             if outcome.error:
