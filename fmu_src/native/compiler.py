@@ -13,8 +13,6 @@ from importlib import import_module
 from os import cpu_count
 from pathlib import Path
 
-import fmpy
-
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
     "x86_64-linux": "x86_64-linux-gnu.2.17",
@@ -132,6 +130,8 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
 
 
 def _headers() -> dict[str, str]:
+    import fmpy
+
     folder = Path(fmpy.__file__).parent / "c-code"
     return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
 

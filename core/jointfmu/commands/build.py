@@ -56,7 +56,7 @@ def _build(args: argparse.Namespace) -> int:
         raise ValueError("--wasm is for the FMUs of joints; expected no --systems beside it")
     file = load(args.params) if args.params else None
     try:
-        from jointfmu_fmu_src import building, ssp
+        from jointfmu_fmu_src import building
 
         built = []
         if args.names or not args.systems:
@@ -64,6 +64,8 @@ def _build(args: argparse.Namespace) -> int:
                 args.names, args.flavour, file, args.out, args.parameters, args.name, args.wasm
             )
         if args.systems:
+            from jointfmu_fmu_src import ssp
+
             built += ssp.build_systems(args.out, None, file, variability=args.parameters)
     except ImportError as error:
         raise without_package(error, "build") from None
