@@ -45,7 +45,7 @@ def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
 def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
     """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes.
 
-    The function is called with one node after the other; of few numbers with all others at once.
+    The function is called with one node after the other; few numbers go with all nodes at once.
     """
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
     total = _WEIGHTS[0] * function(middle + half * _NODES[0])

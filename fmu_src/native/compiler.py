@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
+from importlib import import_module
 from os import cpu_count
 from pathlib import Path
 
@@ -25,8 +26,12 @@ _COMPILED = (
     "-fvisibility=hidden", "-DNDEBUG", "-s",
 )  # fmt: skip
 _OPTIONS = (*_COMPILED, "-shared")
-_WEB = ("-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED, "-Wl,--export-dynamic")
-"""A module that takes nothing from its host: what is visible is exported, and `_initialize` comes first."""
+_WEB = (
+    "-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED,
+    "-Wl,--export-dynamic", "-Wl,-z,stack-size=131072",
+)  # fmt: skip
+"""A module that takes nothing from its host but what the sources import: what is visible is exported, and
+`_initialize` comes first. No function needs a page of stack; zig would reserve 16 MB."""
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Parts of the C runtime that belongs to Windows 10 and newer."""
 
@@ -70,12 +75,21 @@ def exported(files: Iterable[str], version: str) -> list[str]:
     return [name for name in files if name.endswith(".c") and name != other]
 
 
-def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
-    """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
+def webassembly(
+    name: str, sources: Mapping[str, str], units: Sequence[str], defined: Sequence[str] = ()
+) -> bytes:
+    """A WebAssembly module of the .c files `units`, a reactor; the rest as `libraries`.
+
+    defined : macros, NAME=TEXT
+
+    Raises as `libraries`.
+    """
+    import_module("ziglang")
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{name}.wasm"
-        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        macros = [f"-D{macro}" for macro in defined]
+        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *macros, *units, "-o", str(file))
         return file.read_bytes()
 
 

@@ -117,7 +117,7 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
                 f"{title}: pythonfmu in {_installed()} has no libraries for an FMU; expected them below "
                 "pythonfmu/resources/binaries: install it again"
             )
-        pack(members | proof(model, parameters, page=False), work / target.name)
+        pack(members | proof(model, parameters, native=False), work / target.name)
     return target
 
 
