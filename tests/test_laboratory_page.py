@@ -9,10 +9,10 @@ import pytest
 from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from joint_cases import JOINTS
-from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.laboratory import write_laboratory
 from jointfmu_fmu_src.laboratory.modules import modules
 
+from jointfmu import cli
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump, load
 
@@ -208,8 +208,9 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
         }
         others = set(file.flat) - set(module.model.parameter_fields())
         assert {key: file.flat[key] for key in others} == {key: first.flat[key] for key in others}
-        with pytest.raises(ValueError, match="flavour"):
-            build([name], ["none"], file, tmp_path)  # all but the flavour is taken
+        words = ("build", name, "--params", str(path), "--flavour", "python", "--out", str(tmp_path))
+        assert cli.main(list(words)) == 0
+        assert (tmp_path / "python" / f"{name}.fmu").is_file()
 
 
 @needed

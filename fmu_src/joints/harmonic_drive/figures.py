@@ -51,7 +51,7 @@ def _spring(outcome: Any) -> Path:
 def friction(fmu: Path) -> list[Panel]:
     """Efficiency over load at some speeds, and the torques that move the catalogue's drives backwards."""
     panels, published_torques, found_torques = [], [], []
-    drives, share = efficiency.catalogue(), np.linspace(0.02, 1.0, 25)
+    drives, share = efficiency.catalogue(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
         with efficiency.bench(fmu, drive.parameters) as bench:
             loads = drive.rated_torque * share
@@ -61,7 +61,7 @@ def friction(fmu: Path) -> list[Panel]:
             }
             found_torques.append(bench.back_driving_torque(10.0 * drive.back_driving_torque))
         published_torques.append(drive.back_driving_torque)
-        series = [Series(f"{rpm} rpm", loads, row) for rpm, row in rows.items()]
+        series = [Series(f"{rpm} rev/min", loads, row) for rpm, row in rows.items()]
         panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
     ends = [0.0, max(published_torques)]
     names = [drive.name for drive in drives]
