@@ -33,7 +33,8 @@ from jointfmu_fmu_src.master import Slave, motion
 from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.report.motion import windup
-from jointfmu_fmu_src.structure import MASTERS, NUMBER, Master
+from jointfmu_fmu_src.ssv import NUMBER
+from jointfmu_fmu_src.structure import MASTERS, Master
 from jointfmu_fmu_src.wiring import model_of, wires
 from lxml import etree
 from numpy.typing import NDArray

@@ -18,6 +18,7 @@ from ..folders import asset, part
 from ..native.page import drawings, panels
 from ..shown import shown_unit, spelled
 from ..templates import law_terms, template
+from .beside import Beside
 from .course import Course, kinds_of
 from .figure import Figure, Panel, Series, as_json
 from .looks import script, style
@@ -82,6 +83,7 @@ def _page(model: Model, file: ParameterFile) -> str:
         version=__version__,
         figures=[(figure, as_json(figure)) for figure in figures],
         loops=_loop_rows(loops) if loops else [],
+        beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
         drawings={
             name: f'<div class="wide">{svg}</div>' for name, svg in drawings(model, course.spring).items()
         },
@@ -201,6 +203,19 @@ def _loop_rows(loops: Loops) -> list[dict[str, str]]:
         {name: shown(row, name) for name in units} | {"loss_factor": f"{row['loss_factor']:.3g}"}
         for row in loops.rows()
     ]
+
+
+def _beside_rows(rows: list[Beside]) -> list[dict[str, str]]:
+    """The table of what is published of this joint, in the display units of the published numbers."""
+    shown = []
+    for row in rows:
+        unit = shown_unit(row.unit, row.published)
+        times, ending = factor(row.unit, unit), f" {spelled(unit)}".rstrip()
+        numbers = (f"{times * value:.4g}{ending}" for value in (row.published, row.computed))
+        names = ("name", "published", "computed", "role", "source")
+        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        shown.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.bound else ""})
+    return shown
 
 
 def _range(course: Course) -> str:

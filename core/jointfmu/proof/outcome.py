@@ -42,12 +42,27 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of an experiment: the worst point of each output, or an error, or why it was left out."""
+    """What became of an experiment: the worst point of each output, or an error, or why it was left out.
+
+    interface : of the FMU; empty if it was left out
+    """
 
     experiment: Experiment
+    interface: str
     points: Sequence[Point] = ()
     compared: int = 0
     error: str = ""
+
+    @property
+    def name(self) -> str:
+        """Of the experiment and the interface."""
+        return f"{self.experiment.name}, {self.interface}" if self.interface else self.experiment.name
+
+    @property
+    def left_out(self) -> str:
+        """Why it was not executed; empty if it was."""
+        text = self.experiment.unfit or f"is for {' and '.join(self.experiment.interfaces)}"
+        return "" if self.interface else text
 
     @property
     def worst(self) -> Point | None:
@@ -64,12 +79,14 @@ class Outcome:
 class Proof:
     """All of an FMU.
 
+    interfaces : in which it was run
     starts : start values compared
     differing : a line for each that differs from modelDescription.xml
     """
 
     fmu: Path
     importer: str
+    interfaces: Sequence[str]
     starts: int
     differing: Sequence[str]
     outcomes: Sequence[Outcome]
@@ -84,7 +101,7 @@ class Proof:
         """A line for everything that failed."""
         lines = list(self.differing)
         for outcome in self.outcomes:
-            name = outcome.experiment.name
+            name = outcome.name
             if outcome.error:
                 lines.append(f"{name}: {outcome.error}")
             lines += [

@@ -11,13 +11,11 @@ from typing import Any
 
 from .. import ramp
 from ..progress import track
-from .importers import PACKAGES, VERSIONS
-from .manifest import Related
+from .importers import PACKAGES, VERSIONS, interfaces
+from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof
-from .plan import REAL, Plan, task
-
-STARTS = (*REAL, "Boolean", "Integer", "Enumeration", "Int32", "Int64")
-"""Types of variables whose start values are compared."""
+from .plan import Plan, task
+from .values import has_start, start
 
 
 def prove(fmu: Path, importer: str = "fmpy") -> Proof:
@@ -32,41 +30,58 @@ def prove(fmu: Path, importer: str = "fmpy") -> Proof:
             f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
             "install it with: pip install 'jointfmu[test]'"
         )
-    with ramp.unpacked(fmu) as (folder, description):
+    with ramp.unpacked(fmu, exchange=True) as (folder, description):
         if description.fmiVersion[0] not in VERSIONS[importer]:
             raise ValueError(
                 f"{fmu}: is of FMI {description.fmiVersion}, {importer} takes "
                 f"{' and '.join(f'{digit}.0' for digit in VERSIONS[importer])}"
             )
-        variables = {v.name: v for v in description.modelVariables}
-        plans = [Plan.of(fmu, folder, experiment, description, variables) for experiment in experiments]
-        starting = [
-            v
-            for v in description.modelVariables
-            if v.causality in ("parameter", "input") and v.start is not None and v.type in STARTS
+        offered = _offered(description)
+        common = [name for name in interfaces(importer) if name in offered]
+        if not common:
+            raise ValueError(
+                f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(interfaces(importer))}"
+            )
+        plans = [
+            Plan.of(fmu, folder, one, interface, description)
+            for one in experiments
+            for interface in _executed(one, common)
         ]
-        begin = {**task(fmu, folder, outputs=[v.name for v in starting]), "start": True}
+        starting = [v for v in description.modelVariables if has_start(v)]
+        begin = {**task(fmu, folder, offered[0], outputs=[v.name for v in starting]), "start": True}
         (first,) = _answers("fmpy", [begin])
         if "error" in first:
-            return Proof(fmu, importer, 0, [f"start: {first['error']}"], [])
+            return Proof(fmu, importer, common, 0, [f"start: {first['error']}"], [])
         differing = [
             f"{v.name} starts at {_shown(value)}, modelDescription.xml says {v.start}"
             for v, value in zip(starting, first["rows"][0], strict=True)
-            if value != _stated(v)
+            if value != start(v)
         ]
         answers = _answers(importer, [plan.task for plan in plans if plan.task])
         bar = track(plans, fmu.stem, len(plans))
         outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in bar]
-    return Proof(fmu, importer, len(starting), differing, outcomes)
+    return Proof(fmu, importer, common, len(starting), differing, outcomes)
+
+
+def _offered(description: Any) -> list[str]:
+    """Interfaces of an FMU."""
+    kinds = {CO_SIMULATION: description.coSimulation, MODEL_EXCHANGE: description.modelExchange}
+    return [name for name, kind in kinds.items() if kind is not None]
+
+
+def _executed(experiment: Experiment, common: Sequence[str]) -> Sequence[str]:
+    """Interfaces in which an experiment is executed; one without a name if in none."""
+    found = [] if experiment.unfit else [name for name in common if name in experiment.interfaces]
+    return found or [""]
 
 
 def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
     """Answers of a `worker` process as they come; if it dies, the rest says so."""
     if not tasks:
         return
-    start = [sys.executable, "-m", f"{__package__}.worker"]
+    command = [sys.executable, "-m", f"{__package__}.worker"]
     with subprocess.Popen(
-        start, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as work:
         assert work.stdin is not None
         assert work.stdout is not None
@@ -83,14 +98,6 @@ def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict
             work.kill()
     for _ in tasks[done:]:
         yield {"error": f"{importer} ended with status {status}; the FMU's library may be broken"}
-
-
-def _stated(variable: Any) -> Any:
-    """A start value of modelDescription.xml as a number or truth value."""
-    text = str(variable.start)
-    if variable.type == "Boolean":
-        return text in ("true", "1")
-    return float(text) if variable.type in REAL else int(text)
 
 
 def _shown(value: Any) -> str:

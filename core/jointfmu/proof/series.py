@@ -20,12 +20,21 @@ class Series:
     time: Array
     columns: Mapping[str, Array]
 
-    def at(self, times: Array) -> dict[str, Array]:
-        """Columns at times (m), linear in between and held beyond the ends.
+    def at(self, name: str, times: Array) -> Array:
+        """A column at times (m), linear in between and held beyond the ends.
 
         Where a time stands twice, the value jumps: there it is the last one.
         """
-        return {name: np.interp(times, self.time, column) for name, column in self.columns.items()}
+        return np.asarray(np.interp(times, self.time, self.columns[name]))
+
+    def before(self, name: str, times: Array) -> Array:
+        """The same, but where it jumps the first one."""
+        return np.asarray(np.interp(-times, -self.time[::-1], self.columns[name][::-1]))
+
+    def held(self, name: str, times: Array) -> Array:
+        """A column at times (m), each value held until the next row."""
+        rows = np.searchsorted(self.time, times, side="right") - 1
+        return self.columns[name][np.maximum(rows, 0)]
 
 
 def text(series: Series, digits: int | None = None) -> str:
@@ -45,7 +54,7 @@ def parse(content: str, where: str) -> Series:
     """
     rows = [row for row in csv.reader(io.StringIO(content)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
-    if not head or head[0] != TIME or len(rows) < 2:
+    if not head or head[0].lower() != TIME or len(rows) < 2:
         raise ValueError(f"{where}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows")
     if len(set(head)) < len(head):
         raise ValueError(f"{where}: a column is given twice, allowed is once")

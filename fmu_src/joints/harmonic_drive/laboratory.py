@@ -6,7 +6,7 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 
 from ...laboratory.part import Bench, Example, Shown, Turn
-from .efficiency import catalogue
+from .efficiency import parameters, printed_drives
 
 _SPANS = {
     "hysteresis_loss": (0.0, 1e-3),
@@ -40,10 +40,10 @@ _TURN = Turn(
     usual=200.0,
 )
 _LOOP = MODELS["HarmonicDriveSpring"].loop
-_CATALOGUE = catalogue()[0]
+_PRINTED = printed_drives()[0]
 _EXAMPLE = Example(
-    f"friction of the catalogue's {_CATALOGUE.name}, 1 arcmin of hysteresis and of kinematic error",
-    {k: v for k, v in _CATALOGUE.parameters.items() if k != "ratio"}
+    f"friction of the catalogue's {_PRINTED.name}, 1 arcmin of hysteresis and of kinematic error",
+    {k: v for k, v in parameters(_PRINTED).items() if k != "ratio"}
     | {k: float(v) for k, v in (_LOOP.settings if _LOOP else {}).items()}
     | {"error_2": 1.5e-4},
 )

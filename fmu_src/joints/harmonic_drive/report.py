@@ -9,6 +9,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ...report.figure import Figure, Panel, Series
+from .beside import beside
 from .efficiency import spring_bench
 
 SPEEDS = (500, 2000, 3500)
@@ -37,7 +38,8 @@ def friction(model: Model, file: ParameterFile) -> list[Figure]:
         f"that drives the motor back: {moved}. Efficiency against a load, without hysteresis and kinematic "
         "error, up to the rated torque; speeds are those of the motor."
     )
-    return [Figure(title, text, [Panel("Efficiency", "load [N.m]", "efficiency", series)])]
+    return [Figure(title, text, [Panel("Efficiency", "load [N m]", "efficiency", series)])]
 
 
 FIGURES = {"HarmonicDriveSpring": friction}
+BESIDE = {"HarmonicDriveSpring": beside}

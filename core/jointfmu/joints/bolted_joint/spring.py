@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...curve import Curve, approach_curve
 from ...footprint.bolts import PressureSource, pressure_shape
+from ...footprint.friction import friction_patches
 from ...footprint.patches import few_points
 from ...footprint.shape import PressureShape
 from ...interface import largest_spot
@@ -46,7 +47,7 @@ def points(pattern: PressureSource) -> PressureShape:
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
-    return few_points(pressure_shape(pattern), PATCHES)
+    return friction_patches(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)

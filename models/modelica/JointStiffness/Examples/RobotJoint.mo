@@ -8,7 +8,7 @@ model RobotJoint "Robot joint with a harmonic drive"
     annotation (Placement(transformation(extent={{-60,70},{-40,90}})));
   Modelica.Mechanics.Rotational.Components.Inertia motor(J=1e-05, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{-30,70},{-10,90}})));
-  JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.CD_14_100_of_Hu_2023(), friction=0.308786603497914, stick=2058.69215731192, stateSelect=StateSelect.default)
+  JointStiffness.Components.HarmonicDriveSpring drive(data=JointStiffness.Data.CD_14_100_of_Hu_2023(), hysteresis_friction=0.3087866035, hysteresis_stiffness=2058.692157, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{30,70},{50,90}})));
   Modelica.Mechanics.Rotational.Components.Inertia link(J=0.05, phi(fixed=true, start=0, nominal=1e-3), w(fixed=true, start=0, nominal=0.1))
     annotation (Placement(transformation(extent={{90,70},{110,90}})));
