@@ -163,6 +163,39 @@ def test_arrow_keys_and_the_pointer_draw_a_path(shown: Browser) -> None:
 
 
 @needed
+def test_another_input_moves_along_a_path(shown: Browser) -> None:
+    for name in MODELS:
+        choose(shown, name)
+        ways = shown.run("[...document.querySelectorAll('#moved option')].map((o) => o.textContent)") or []
+        for i, way in enumerate(ways):
+            found = shown.run(
+                "laboratory.then((lab) => { const moved = document.getElementById('moved'); "
+                f"moved.value = {i}; moved.dispatchEvent(new Event('change')); "
+                "return [lab.path.inputs.map((v) => v.name), lab.path.trace.force.length, "
+                "document.activeElement.id, document.getElementById('said').textContent] })"
+            )
+            assert found[0] == way.split(" and ")
+            assert found[1] > 100, found[3]
+            assert found[2] == "moved"
+
+
+@needed
+def test_on_a_phone_a_slider_and_its_curve_are_seen_together(shown: Browser) -> None:
+    choose(shown, next(iter(MODELS)))
+    shown.shape(*PHONE, phone=True)
+    ends = shown.run(
+        "new Promise((done) => { const sliders = document.getElementById('sliders'); sliders.open = true; "
+        "document.getElementById('curves').scrollIntoView(); requestAnimationFrame(() => { "
+        "const of = (e) => e.getBoundingClientRect(); "
+        "const plot = of(document.querySelector('#curves svg')); "
+        "done([plot.top, plot.bottom, of(sliders).top, of(sliders).bottom]) }) })"
+    )
+    shown.shape(*DESKTOP)
+    top, bottom, first, last = ends
+    assert 0.0 <= top < bottom <= first < last == PHONE[1]
+
+
+@needed
 def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
     choose(shown, next(iter(MODELS)))
     asked = "laboratory.then((lab) => lab.curves.panels[0].chart.zoom)"

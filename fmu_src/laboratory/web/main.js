@@ -19,6 +19,9 @@ class Laboratory {
     at("save").onclick = () => this.save();
     at("open").onchange = () => at("open").files[0] && this.read(at("open").files[0]);
     at("forget").onclick = () => { this.file = null; at("forget").hidden = true; this.redraw(); };
+    const wide = matchMedia("(min-width: 980px)"), beside = () => (at("sliders").open = wide.matches);
+    wide.addEventListener("change", beside);
+    beside();
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) this.read(event.dataTransfer.files[0]); });
     addEventListener("resize", () => this.redraw());
@@ -55,7 +58,7 @@ class Laboratory {
     at("turn-part").hidden = !about.turn;
     this.turn = about.turn && new Turn(views[4], this.joint, this);
     this.body = new Body(views[3], this.joint, this);
-    this.path = new Path(views[1], this.joint, this);
+    this.path = new Path(views[1], this.joint, this, about.path);
     this.sight = new Sight();
     this.draw();
   }
@@ -65,6 +68,14 @@ class Laboratory {
     const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
     if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
     return values;
+  }
+
+  /** A path along other inputs. */
+  follow(names) {
+    at("path").replaceChildren();
+    this.path = new Path(at("path"), this.joint, this, names);
+    this.draw();
+    at("moved").focus();
   }
 
   rampControl(about) {

@@ -3,18 +3,21 @@
 const POINTS = 800;
 
 class Path {
-  constructor(place, joint, lab) {
+  /** names: of the inputs that move. */
+  constructor(place, joint, lab, names) {
     this.joint = joint;
     this.lab = lab;
-    this.inputs = joint.about.path.map((name) => joint.variables.get(name));
+    this.inputs = names.map((name) => joint.variables.get(name));
     this.force = joint.variables.get(joint.about.pairs[this.inputs[0].name]);
     this.loss = joint.about.variables.find((v) => v.causality === "output" && v.unit === "J" && /loss/.test(v.name));
     this.points = [];
     this.size = 0.5;
     this.amplitude = element("input", { type: "range", min: 1, max: 100, value: 50, id: "amplitude", oninput: () => (this.size = Number(this.amplitude.value) / 100) });
     const button = (text, act) => element("button", { type: "button", onclick: act }, text);
+    const { path, pairs } = joint.about, ways = [path, ...Object.keys(pairs).filter((name) => path.length > 1 || name !== path[0]).map((name) => [name])];
+    const moved = element("select", { id: "moved", onchange: () => lab.follow(ways[Number(moved.value)]) }, ...ways.map((way, i) => element("option", { value: i, selected: way.join() === names.join() }, way.join(" and "))));
     place.append(element("div", { class: "row" },
-      element("label", { for: "amplitude" }, "Size of the loop"), this.amplitude, button("Loop to and fro", () => this.loop()),
+      ...(ways.length > 1 ? [element("label", { for: "moved" }, "What moves"), moved] : []), element("label", { for: "amplitude" }, "Size of the loop"), this.amplitude, button("Loop to and fro", () => this.loop()),
       ...(this.inputs.length > 1 ? [button("Round in a circle", () => this.circle())] : []), button("Clear the path", () => this.clear())));
     const places = element("div", { class: "charts" });
     place.append(places);
