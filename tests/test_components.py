@@ -1,6 +1,9 @@
 """The WebAssembly component in FMUs of FMI 3.0: the native FMU's numbers and refusals, in wasmtime."""
 
+import json
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -134,6 +137,10 @@ def test_a_loop_goes_on_from_a_saved_state(name: str, both: tuple[Fmu, Component
         assert gone(component, levels[half:]) != second
     with pytest.raises(Refused, match="error"):
         component("set-fmu-state", state[:-1])
+    restored = native.fmu.deserializeFMUState(state)  # the bytes are those of the library, too
+    native.fmu.setFMUState(restored)
+    native.fmu.freeFMUState(restored)
+    assert native.get() == near(name, first[-1])
 
 
 def test_random_parameters_give_the_numbers_or_refusals_of_the_library(
@@ -407,6 +414,23 @@ def test_tools_that_know_nothing_of_it_run_the_fmu(folder: Path, name: str) -> N
     assert len(ramp.run(path, load.input, load.end, load.end / 4).columns[load.input]) > 4
 
 
+def test_the_example_of_the_documentation_runs(folder: Path, tmp_path: Path) -> None:
+    text = (Path(__file__).parents[1] / "docs" / "wasm.md").read_text()
+    (example,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "dist").mkdir()
+    (tmp_path / "dist" / "fmi3").symlink_to(folder, target_is_directory=True)
+    done = subprocess.run([sys.executable, "-c", example], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    (name,) = set(re.findall(r"fmi3/(\w+)\.fmu", example))
+    ((driven, level),) = re.findall(r'\[references\["(\w+)"\]\], \[(.*?)\]', example)
+    (read,) = set(re.findall(r'references\["(\w+)"\]', example)) - {driven}
+    native = Fmu(folder / f"{name}.fmu").start()
+    native.set({driven: float(level)})
+    native.step()
+    assert json.loads(done.stdout) == [pytest.approx(native.get()[read], rel=SAME)]
+    native.free()
+
+
 def test_a_named_variant_has_its_own_numbers(tmp_path: Path, name: str) -> None:
     """Numbers that a tool may not set, too: they are data in the module."""
     file = default(MODELS[name].joint)
@@ -452,7 +476,7 @@ def test_a_variant_needs_no_compiler_once_the_module_is_kept(
 def test_it_is_of_fmi_3_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     for arguments, words in (
-        (["GearContact", "--flavour", "fmi2", "python"], ["WebAssembly", "fmi3", "fmi2, python"]),
+        ([NAMES[0], "--flavour", "fmi2", "python"], ["WebAssembly", "fmi3", "fmi2, python"]),
         (["--systems"], ["--wasm", "--systems"]),
     ):
         line = refused_line(capsys, "build", *arguments, "--wasm", "--out", out)

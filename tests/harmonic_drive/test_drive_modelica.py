@@ -13,7 +13,8 @@ from jointfmu_fmu_src.master import Slave
 from jointfmu_fmu_src.modelica import library
 from jointfmu_fmu_src.modelica.text import identifier
 from numpy.typing import NDArray
-from test_modelica import COMMITTED, EXACT, GRAVITY, move, simulate, top
+from read_modelica import Read, read, solution
+from test_modelica import COMMITTED, EXACT, GRAVITY, STAND_IN, move, simulate, top
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import BRAKES, LIMITS, limit
@@ -43,12 +44,17 @@ def spring(**changes: float) -> HarmonicDriveSpring:
     return HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **changes))
 
 
+def parameters(law: HarmonicDriveSpring, names: Mapping[str, float]) -> dict[str, float]:
+    """Those of the component for parameters of the package's drive."""
+    given = {name: getattr(law.joint, name) for name in names if not name.startswith("hysteresis")}
+    found = law.hysteresis
+    sums = {"friction": float(np.sum(found.limit)), "stiffness": float(np.sum(found.stiffness))}
+    return given | {f"hysteresis_{name}": value for name, value in sums.items()}
+
+
 def component(law: HarmonicDriveSpring, names: Mapping[str, float]) -> str:
     """A declaration of the component with parameters of the package's drive."""
-    given = {name: getattr(law.joint, name) for name in names if not name.startswith("hysteresis")}
-    given["hysteresis_friction"] = float(np.sum(law.hysteresis.limit))
-    given["hysteresis_stiffness"] = float(np.sum(law.hysteresis.stiffness))
-    values = ", ".join(f"{name}={value!r}" for name, value in given.items())
+    values = ", ".join(f"{name}={value!r}" for name, value in parameters(law, names).items())
     return f"JointStiffness.Components.HarmonicDriveSpring drive({values}, stateSelect=StateSelect.default);"
 
 
@@ -145,6 +151,30 @@ def test_a_drive_begins_where_it_is(rumoca: Any, speed: float):
     found = simulate(rumoca, text, 1e-3, 1e-4)
     exact = law.motion(500.0, speed, 5.0005, speed / 100.0)["tau_friction"]
     assert found["drive.tau_friction"][0] == pytest.approx(exact, rel=EXACT, abs=1e-12)
+
+
+def test_the_text_read_by_another_parser_holds_along_the_solution(rumoca: Any):
+    """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
+    pytest.importorskip("pymoca")
+    values = {**DRY, "ratio": -80.0, "friction_viscous": 1e-3, "error_2": 2e-4, "hysteresis_loss": 2e-4}
+    law = spring(**values)
+    body = f"{component(law, values)}\n  Way way(ratio=-80);"
+    wires = "connect(way.one, drive.flange_a);\n  connect(way.two, drive.flange_b);"
+    found = simulate(rumoca, top(body, wires, _WAY), 0.6, 1e-4, rtol=1e-8)
+    times, first = np.unique(found.time, return_index=True)
+    root, record = read(STAND_IN, COMMITTED), identifier(default("harmonic_drive").name)
+    seen = solution(found, "drive", first)
+
+    def errors(more: float) -> dict[str, float]:
+        given = parameters(law, values) | {"friction_coulomb": more * values["friction_coulomb"]}
+        return Read(root, "HarmonicDriveSpring", record, times, seen, given).errors()
+
+    states = {"der(q_h)", "der(q_w)", "der(phi_rel)", "der(flange_a.phi)"}
+    same, other = errors(1.0), errors(1.001)
+    assert states < set(same)
+    assert max(error for name, error in same.items() if name not in states) < 1e-12  # round-off
+    assert max(same[name] for name in states) < 0.01
+    assert other["M_w"] > 1e-4  # it would be seen
 
 
 # ---- in motion ----

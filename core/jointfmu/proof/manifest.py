@@ -75,11 +75,14 @@ class Experiment:
 class Related:
     """The related files of an FMU, by the addresses that its manifest and experiments give.
 
+    members : those to be read instead of the FMU's own
+
     Raises ValueError, one line that names FMU and file, wherever one is missing or broken.
     """
 
-    def __init__(self, fmu: Path) -> None:
+    def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
+        self.members: Mapping[str, bytes] = {}
         try:
             with zipfile.ZipFile(fmu) as archive:
                 self.members = {
@@ -93,6 +96,7 @@ class Related:
             raise ValueError(
                 f"{fmu}: is no FMU ({error}); expected a zip with modelDescription.xml"
             ) from None
+        self.members = members or self.members
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
 

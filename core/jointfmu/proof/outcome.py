@@ -92,22 +92,37 @@ class Proof:
     outcomes: Sequence[Outcome]
 
     @property
+    def runs(self) -> int:
+        """Runs of experiments."""
+        return sum(bool(outcome.interface) for outcome in self.outcomes)
+
+    @property
+    def worst(self) -> Point | None:
+        """The output that is furthest off, measured by what is allowed."""
+        points = [outcome.worst for outcome in self.outcomes if outcome.worst]
+        return max(points, key=lambda point: point.share, default=None)
+
+    @property
     def passed(self) -> bool:
         """Whether nothing failed."""
         return not self.misses
 
     @property
     def misses(self) -> list[str]:
-        """A line for everything that failed."""
+        """A line for everything that failed, of an experiment with its worst output."""
         lines = list(self.differing)
+        if self.outcomes and not self.runs:
+            lines.append(f"{self.importer} executes none of the experiments")
         for outcome in self.outcomes:
             name = outcome.name
             if outcome.error:
                 lines.append(f"{name}: {outcome.error}")
-            lines += [
-                f"{name}: {p.output} = {p.value:.10g} at {p.time:g} s, reference {p.reference:.10g}, "
-                f"off by {p.error:.2g}, allowed {p.allowed:.2g}"
-                for p in outcome.points
-                if not p.passed
-            ]
+            missed = sorted((p for p in outcome.points if not p.passed), key=lambda p: -p.share)
+            if missed:
+                worst, *others = missed
+                lines.append(
+                    f"{name}: {worst.output} = {worst.value:.10g} at {worst.time:g} s, reference "
+                    f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.allowed:.2g}"
+                    + (f"; also {', '.join(p.output for p in others)}" if others else "")
+                )
         return lines

@@ -24,8 +24,9 @@ def lines(proof: Proof) -> Iterator[str]:
             if own.output not in worst or own.share > worst[own.output][1].share:
                 worst[own.output] = outcome, own
     yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
-    yield ""
-    yield from _table(experiments)
+    if proof.outcomes:
+        yield ""
+        yield from _table(experiments)
     if worst:
         yield ""
         rows = [(n, o.experiment.name, o.interface, *_cells(p)) for n, (o, p) in worst.items()]
@@ -46,10 +47,12 @@ def summary(proof: Proof) -> str:
     """One line: how many runs of experiments passed, missed, were left out."""
     left = sum(bool(outcome.left_out) for outcome in proof.outcomes)
     missed = sum(not outcome.passed for outcome in proof.outcomes)
+    if not proof.outcomes:
+        return "it does not start, nothing was executed"
     passed = len(proof.outcomes) - left - missed
     words = [f"{passed} passed", f"{missed} missed", *([f"{left} not executed"] if left else [])]
-    if proof.differing:
-        words.append(f"{len(proof.differing)} of the start failed")
+    if count := len(proof.differing):
+        words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
     return ", ".join(words)
 
 

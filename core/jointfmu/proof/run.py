@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -18,13 +19,27 @@ from .plan import Plan, task
 from .values import has_start, start
 
 
-def prove(fmu: Path, importer: str = "fmpy") -> Proof:
-    """Execute what the manifest of an FMU names.
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """What somebody else says of an FMU.
+
+    source  : who
+    starts  : {variable: start value}
+    members : {path: content} of a manifest and its files
+    """
+
+    source: str
+    starts: Mapping[str, Any]
+    members: Mapping[str, bytes]
+
+
+def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -> Proof:
+    """Execute what the manifest of an FMU names, or another one.
 
     Raises ValueError, one line: no FMU, none that runs here, no manifest, a broken one, an importer that is
     not installed or does not know the FMU's version of FMI.
     """
-    experiments = Related(fmu).experiments()
+    experiments = Related(fmu, expected.members if expected else None).experiments()
     if find_spec(PACKAGES[importer]) is None:
         raise ValueError(
             f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
@@ -49,18 +64,33 @@ def prove(fmu: Path, importer: str = "fmpy") -> Proof:
         ]
         starting = [v for v in description.modelVariables if has_start(v)]
         begin = {**task(fmu, folder, offered[0], outputs=[v.name for v in starting]), "start": True}
-        (first,) = _answers("fmpy", [begin])
+        tasks = [plan.task for plan in plans if plan.task]
+        answers = _answers("fmpy", [begin, *(tasks if importer == "fmpy" else [])])
+        first = next(answers)
         if "error" in first:
             return Proof(fmu, importer, common, 0, [f"start: {first['error']}"], [])
+        found = {v.name: value for v, value in zip(starting, first["rows"][0], strict=True)}
         differing = [
-            f"{v.name} starts at {_shown(value)}, modelDescription.xml says {v.start}"
-            for v, value in zip(starting, first["rows"][0], strict=True)
-            if value != start(v)
+            f"{v.name} starts at {_shown(found[v.name])}, modelDescription.xml says {v.start}"
+            for v in starting
+            if found[v.name] != start(v)
         ]
-        answers = _answers(importer, [plan.task for plan in plans if plan.task])
+        differing += _differing(found, expected) if expected else []
+        if importer != "fmpy":
+            answers = _answers(importer, tasks)
         bar = track(plans, fmu.stem, len(plans))
         outcomes = [plan.outcome(next(answers) if plan.task else None) for plan in bar]
     return Proof(fmu, importer, common, len(starting), differing, outcomes)
+
+
+def _differing(found: Mapping[str, Any], expected: Expected) -> list[str]:
+    """A line for each start value that is not the one expected."""
+    return [
+        f"{name} {f'starts at {_shown(found[name])}' if name in found else 'is no parameter of the FMU'}, "
+        f"{expected.source} says {_shown(value)}"
+        for name, value in expected.starts.items()
+        if name not in found or found[name] != value
+    ]
 
 
 def _offered(description: Any) -> list[str]:

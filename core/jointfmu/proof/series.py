@@ -58,12 +58,14 @@ def parse(content: str, where: str) -> Series:
         raise ValueError(f"{where}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows")
     if len(set(head)) < len(head):
         raise ValueError(f"{where}: a column is given twice, allowed is once")
+    for row in rows[1:]:
+        if len(row) != len(head):
+            raise ValueError(f"{where}: {','.join(row)[:60]!r}: expected rows of {len(head)} numbers")
     try:
         table = np.array([[float(cell) for cell in row] for row in rows[1:]])
-        times, columns = table[:, 0], table[:, 1:].T
-        named = dict(zip(head[1:], columns, strict=True))
-    except (ValueError, IndexError):
-        raise ValueError(f"{where}: expected rows of {len(head)} numbers") from None
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}; expected rows of {len(head)} numbers") from None
+    times, named = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
     if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
         raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
     return Series(times, named)

@@ -571,7 +571,7 @@ equation
 <tr><td><code>base_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_motor.height</code></td><td>122.2 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_drive.d</code></td><td>28 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>base_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>base_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>base_link.J</code></td><td>7.40718819165282 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -598,7 +598,7 @@ equation
 <tr><td><code>shoulder_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.height</code></td><td>87.27 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_drive.d</code></td><td>41 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>shoulder_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>shoulder_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>shoulder_link.J</code></td><td>8.14835487753431 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -625,7 +625,7 @@ equation
 <tr><td><code>elbow_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.height</code></td><td>104.7 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_drive.d</code></td><td>11 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>elbow_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>elbow_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>elbow_link.J</code></td><td>2.23554092189438 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -652,7 +652,7 @@ equation
 <tr><td><code>forearm_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.height</code></td><td>-78.54 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_drive.d</code></td><td>1.3 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>forearm_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>forearm_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>forearm_link.J</code></td><td>0.0697886093001334 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -679,7 +679,7 @@ equation
 <tr><td><code>wrist_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.height</code></td><td>69.81 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_drive.d</code></td><td>1.5 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>wrist_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>wrist_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>wrist_link.J</code></td><td>0.15 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -706,7 +706,7 @@ equation
 <tr><td><code>hand_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.height</code></td><td>157.1 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_drive.d</code></td><td>0.16 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
-<tr><td><code>hand_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin: catalogues of strain-wave gears state 1 to 2 arcmin from ratio 50 on</td></tr>
+<tr><td><code>hand_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>hand_link.J</code></td><td>0.0032 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_link.m</code></td><td>0 kg</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_link.l</code></td><td>0 m</td><td>kinematics and inverse dynamics of [arm]</td></tr>

@@ -56,8 +56,8 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
   constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
-  constant Real turned=<< turned >> "Time for which a drive that turns at initialization has turned before [s]";
-  constant Real forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction [s]";
+  constant Modelica.Units.SI.Time turned=<< turned >> "Time for which a drive that turns at initialization has turned before";
+  constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
   constant Real width=<< width >> "Torque at the output over rated torque within which |tau| is smooth";
   constant Real brakes[:, 2]=<< brakes >> "Springs and friction of the wave generator's sliders, each over the sum of all";
   parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
@@ -66,6 +66,7 @@ protected
   Modelica.Units.SI.Torque q_h[n](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
   Modelica.Units.SI.Torque held_h[n] "What of it friction holds";
   Real rate_h[n](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
   parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
   parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + load_loss*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
   parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
@@ -73,6 +74,7 @@ protected
   Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
   Modelica.Units.SI.Torque held_w[m] "What of it friction holds";
   Real rate_w[m](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_w[m] "What they turn into heat";
   Real errorSlope "Derivative of phi_error in flange_a.phi";
   Modelica.Units.SI.Angle windUp "Absolute value of the wind-up";
 initial equation
@@ -101,6 +103,7 @@ equation
     held_h[i] = noEvent(min(max(q_h[i], -M_h[i]), M_h[i]));
     rate_h[i] = K_h[i]*(w_rel - noEvent(abs(w_rel))*(q_h[i] - held_h[i])/(layer*M_h[i] + Modelica.Constants.small));
     der(q_h[i]) = rate_h[i];
+    heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
   tau_h = sum(held_h);
   M_w = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + load_loss*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
@@ -108,6 +111,7 @@ equation
     held_w[i] = noEvent(min(max(q_w[i], -M_w*brakes[i, 2]), M_w*brakes[i, 2]));
     rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
     der(q_w[i]) = rate_w[i];
+    heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);
   end for;
   tau_friction = sum(held_w) + temperature_factor*friction_viscous*w1;
   windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
@@ -116,9 +120,7 @@ equation
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
   flange_a.tau = -(tau/ratio + errorSlope*tau) + tau_friction;
-  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2
-    + sum(held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small) for i in 1:n)
-    + sum(held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small) for i in 1:m);
+  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
   annotation (
     defaultComponentName="harmonicDrive",
     Icon(graphics={
