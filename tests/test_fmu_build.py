@@ -25,6 +25,8 @@ from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import generate
 from jointfmu_fmu_src.partners import PARTNERS
+from proofs import BOTH
+from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
 from jointfmu import cli, ramp, systems, validation
@@ -313,9 +315,13 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     folder, out = job
     assert f"built: {3 * len(NAMES)} FMUs" in out
     assert "missed: 0" in out
+    proved = re.search(r"proved in fmpy: (\d+) FMUs by (\d+) runs", out)
+    assert proved is not None
+    assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
+    assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
     for flavour in ("fmi2", "fmi3", "python"):
-        own = "six_axis_robot_base_drive"  # of a system, for what is baked into it
-        partners = [] if flavour == "python" else [*PARTNERS, own]
+        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        partners = [] if flavour == "python" else [*PARTNERS, *own]
         assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
     archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
     for ssp in ("ssp", "ssp2"):
@@ -389,6 +395,29 @@ def test_the_main_job_fails_when_a_check_misses(
     lines = out.partition(missed)[2].splitlines()
     assert [line.split(":")[0].strip() for line in lines] == NAMES
     assert (tmp_path / "report" / "index.html").exists()  # the report shows what was missed
+
+
+def test_the_main_job_fails_when_an_fmu_does_not_prove_itself(
+    job: tuple[Path, str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An FMU with a reference that is changed, in place of what was built."""
+    copytree(job[0], tmp_path, dirs_exist_ok=True)
+    name = NAMES[0]
+    path = tmp_path / "fmi2" / f"{name}.fmu"
+
+    def change(member: str, data: bytes) -> bytes:
+        is_meant = member.endswith("load_ramp_ref.csv")
+        return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
+
+    changed_copy(job[0] / "fmi2" / f"{name}.fmu", path, change)
+    monkeypatch.setattr(pipeline, "build", lambda *_: [path])
+    monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
+    assert pipeline.main(tmp_path) == 1
+    missed = capsys.readouterr().out.partition("missed: 2\n")[2].splitlines()
+    assert [line.strip().partition(": ")[0] for line in missed] == 2 * [f"fmi2/{name}"]
+    assert [interface in line for interface, line in zip(BOTH, missed, strict=True)] == [True, True]
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    assert '<td class="miss">miss</td>' in page
 
 
 def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:

@@ -110,7 +110,7 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
         built = _pythonfmu(FmuBuilder, script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
-        pack(members | proof(model, parameters, page=False), work / target.name)
+        pack(members | proof(model, parameters, native=False), work / target.name)
     return target
 
 

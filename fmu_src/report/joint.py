@@ -17,6 +17,7 @@ from jointfmu.units import UNITS, display_unit
 from ..folders import asset, part
 from ..native.page import drawings, panels
 from ..templates import law_terms, template
+from .beside import Beside
 from .course import Course, kinds_of
 from .figure import Figure, Panel, Series, as_json
 from .looks import script, style
@@ -81,6 +82,7 @@ def _page(model: Model, file: ParameterFile) -> str:
         version=__version__,
         figures=[(figure, as_json(figure)) for figure in figures],
         loops=_loop_rows(loops) if loops else [],
+        beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
         drawings=drawings(model, course.spring),
         rows=rows,
         origins=[(kind, MEANT[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
@@ -198,6 +200,19 @@ def _loop_rows(loops: Loops) -> list[dict[str, str]]:
         {name: shown(row, name) for name in units} | {"loss_factor": f"{row['loss_factor']:.3g}"}
         for row in loops.rows()
     ]
+
+
+def _beside_rows(rows: list[Beside]) -> list[dict[str, str]]:
+    """The table of what is published of this joint, in the display units of the published numbers."""
+    shown = []
+    for row in rows:
+        unit = display_unit(row.unit, row.published)
+        factor, ending = UNITS[row.unit].display[unit], "" if unit == "1" else f" {unit}"
+        numbers = (f"{factor * value:.4g}{ending}" for value in (row.published, row.computed))
+        names = ("name", "published", "computed", "role", "source")
+        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        shown.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.bound else ""})
+    return shown
 
 
 def _range(course: Course) -> str:

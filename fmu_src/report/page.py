@@ -56,4 +56,5 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
         "figures": [(figure, as_json(figure)) for figure in figures],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
+        "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],
     }

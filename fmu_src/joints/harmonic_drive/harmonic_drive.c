@@ -51,10 +51,10 @@ static bool windup(Joint *joint, int steps, Text *why)
     double head[N_HEAD], phi = 0.0, K[2];
     pair_head(0, joint->c, head);
     const double smoothing = head[SMOOTHING];
-    const double step = asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
+    const double step = same_asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
     curve_begin(&joint->curve, 0.0);
     for (int k = 0; k <= steps; k++) {
-        const double xi = k * step, torque = smoothing * sinh(xi);
+        const double xi = k * step, torque = smoothing * same_sinh(xi);
         stiffness(&torque, joint->c, K);
         if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * head[K_FTS0])) {
             stiffness(&head[MAX_TORQUE], joint->c, K);
@@ -68,9 +68,9 @@ static bool windup(Joint *joint, int steps, Text *why)
             return false;
         double rise = 0.0;
         for (int i = 0; i < N_DRIVE_GAUSS && k < steps; i++) {
-            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * sinh(at);
+            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * same_sinh(at);
             stiffness(&inner, joint->c, K);
-            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * cosh(at) / K[0];
+            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * same_cosh(at) / K[0];
         }
         phi += half * rise;
     }

@@ -9,6 +9,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ...report.figure import Figure, Panel, Series
+from .beside import beside
 from .efficiency import spring_bench
 
 SPEEDS = (500, 2000, 3500)
@@ -41,3 +42,4 @@ def friction(model: Model, file: ParameterFile) -> list[Figure]:
 
 
 FIGURES = {"HarmonicDriveSpring": friction}
+BESIDE = {"HarmonicDriveSpring": beside}

@@ -1,6 +1,6 @@
 /* What is seen of a joint: its curves, a path drawn by hand, the pressure on its contact, a body that rings on it. */
 
-const STEPS = 120;
+const [STEPS, COARSE] = [120, 40];
 const POINTS = 800;
 const [PER_PERIOD, PERIODS] = [40, 14];
 
@@ -9,12 +9,12 @@ const shown = (v, values) => values.map((x) => x * v.factor);
 const label = (v) => withUnit(v.name, v.shown);
 
 /** The load ramp from rest: { name: values } of all outputs and the driven input; what is refused ends it. */
-function ramp(joint, values, end, also = () => {}) {
+function ramp(joint, values, end, steps, also = () => {}) {
   const driven = joint.about.ramp.input, names = joint.about.variables.filter((v) => v.causality === "output").map((v) => v.name);
   const found = Object.fromEntries([driven, ...names].map((name) => [name, []]));
   if (!joint.begin(new Map(values).set(driven, 0))) return found;
-  for (let i = 0; i <= STEPS; i++) {
-    const x = (end * i) / STEPS;
+  for (let i = 0; i <= steps; i++) {
+    const x = (end * i) / steps;
     if (i && !joint.step({ [driven]: x })) break;
     found[driven].push(x);
     for (const name of names) found[name].push(joint.get(name));
@@ -32,17 +32,16 @@ class Curves {
     });
   }
 
-  /** found: the ramp; now: inputs and outputs at the sliders. */
-  draw(lab, found, now) {
-    for (const { over, quantities, chart } of this.panels) {
-      const series = quantities.map((v) => ({ name: v.name, x: shown(over, found[over.name]), y: shown(v, found[v.name]) }));
-      const first = quantities[0];
-      if (now && now[over.name] * over.factor <= Math.max(...series[0].x, 0) && now[over.name] >= 0)
-        quantities.forEach((v, k) => series.push({ name: "at the sliders", x: [now[over.name] * over.factor], y: [now[v.name] * v.factor], marks: "full", size: 5, colour: COLOURS[k], quiet: k > 0, titles: [`${v.name} at the sliders`] }));
-      series.push(...this.published(over, quantities), ...this.measured(over, quantities, lab), ...dropped(lab.file, over, first, false));
-      const log = series.some((s) => s.faint);
-      chart.draw(series, { label: label(over), log }, { label: quantities.length > 1 ? `[${unitText(first.shown)}]` : label(first), log });
-    }
+  /** A panel; found: the ramp. */
+  draw({ over, quantities, chart }, lab, found) {
+    const { now } = lab;
+    const series = quantities.map((v) => ({ name: v.name, x: shown(over, found[over.name]), y: shown(v, found[v.name]) }));
+    const first = quantities[0];
+    if (now[over.name] * over.factor <= Math.max(...series[0].x, 0) && now[over.name] >= 0)
+      quantities.forEach((v, k) => series.push({ name: "at the sliders", x: [now[over.name] * over.factor], y: [now[v.name] * v.factor], marks: "full", size: 5, colour: COLOURS[k], quiet: k > 0, titles: [`${v.name} at the sliders`] }));
+    series.push(...this.published(over, quantities), ...this.measured(over, quantities, lab), ...dropped(lab.file, over, first, false));
+    const log = series.some((s) => s.faint);
+    chart.draw(series, { label: label(over), log }, { label: quantities.length > 1 ? `[${unitText(first.shown)}]` : label(first), log });
   }
 
   published(over, quantities) {
@@ -101,18 +100,32 @@ class Path {
     this.heat = this.loss && new Chart(places, `${this.loss.name} along the path`, this.loss.doc);
     this.now = element("div", { class: "now" });
     places.append(this.now);
-    this.replay();
     this.loop();
+  }
+
+  /** The path is gone again once for all that shows it. */
+  views() {
+    let gone = false;
+    const once = (draw) => () => {
+      if (!gone) this.replay();
+      gone = true;
+      draw();
+    };
+    const places = [[this.pad.figure, this.showPad], [this.answer.figure, this.showAnswer], ...(this.heat ? [[this.heat.figure, this.showHeat]] : []), [this.now, this.showOutputs]];
+    return places.map(([place, draw]) => ({ place, show: once(() => draw.call(this)) }));
   }
 
   /** The path again from rest, with the present values. */
   replay() {
     this.trace = { at: [], force: [], loss: [] };
+    this.joint.messages.clear();
     const start = new Map(this.lab.values);
     for (const v of this.inputs) start.set(v.name, 0);
     this.good = this.joint.begin(start);
     if (this.good) this.note();
     for (const point of this.points) this.go(point);
+    this.started = this.joint.starts;
+    this.messages = new Set(this.joint.messages);
   }
 
   go(point) {
@@ -127,13 +140,15 @@ class Path {
     if (this.loss) this.trace.loss.push(this.joint.get(this.loss.name));
   }
 
-  /** On to another point, from where the path ends. */
+  /** On to other points, from where the path ends; gone again first, if the joint was elsewhere. */
   add(points) {
+    if (this.started !== this.joint.starts) this.replay();
     for (const point of points) {
       if (this.points.length >= POINTS) break;
       this.points.push(point);
       this.go(point);
     }
+    this.messages = new Set(this.joint.messages);
     this.show();
   }
 
@@ -179,25 +194,44 @@ class Path {
     this.show();
   }
 
-  draw() {
-    this.replay();
-    this.show();
+  show() {
+    this.showPad();
+    this.showAnswer();
+    if (this.heat) this.showHeat();
+    this.showOutputs();
+    this.lab.tell();
   }
 
-  show() {
-    const [first, second] = this.inputs, { at, force, loss } = this.trace;
-    const x = at.map((p) => p[0] * first.factor), along = (v) => v.span.map((end) => end * v.factor);
-    const lengths = at.map((_, i) => i);
-    const y = second ? at.map((p) => p[1] * second.factor) : x.map(() => 0);
+  /** Where the path went, along one of its inputs. */
+  along(k) {
+    return this.trace.at.map((p) => p[k] * this.inputs[k].factor);
+  }
+
+  showPad() {
+    const [first, second] = this.inputs, along = (v) => v.span.map((end) => end * v.factor);
+    const x = this.along(0), y = second ? this.along(1) : x.map(() => 0);
     const end = { name: "now", x: x.slice(-1), y: y.slice(-1), marks: "full", size: 6, colour: "var(--red)" };
     this.pad.draw([{ name: "path", x, y }, end], { label: label(first), range: along(first) }, { label: second ? label(second) : "", range: second ? along(second) : [-1, 1], hidden: !second });
-    const answer = shown(this.force, force);
+  }
+
+  showAnswer() {
+    const [first] = this.inputs, x = this.along(0), answer = shown(this.force, this.trace.force);
     this.answer.draw([{ name: this.force.name, x, y: answer }, { name: "now", x: x.slice(-1), y: answer.slice(-1), marks: "full", size: 6, colour: "var(--red)" }, ...dropped(this.lab.file, first, this.force, true)], { label: label(first) }, { label: label(this.force) });
-    if (this.heat) this.heat.draw([{ name: this.loss.name, x: lengths, y: shown(this.loss, loss) }], { label: "points of the path" }, { label: label(this.loss) });
+  }
+
+  showHeat() {
+    const { loss } = this.trace;
+    this.heat.draw([{ name: this.loss.name, x: loss.map((_, i) => i), y: shown(this.loss, loss) }], { label: "points of the path" }, { label: label(this.loss) });
+  }
+
+  showOutputs() {
+    const [first] = this.inputs, { at, force } = this.trace;
     const work = at.reduce((sum, p, i) => (i ? sum + 0.5 * (force[i] + force[i - 1]) * (p[0] - at[i - 1][0]) : 0), 0);
-    const rows = this.good ? this.joint.about.variables.filter((v) => v.causality === "output").map((v) => [v.name, this.joint.get(v.name) * v.factor, unitText(v.shown), v.doc]) : [];
-    this.now.replaceChildren(table("All outputs at the end of the path", ["output", "value", "unit", "meaning"], [...rows, [`∫ ${this.force.name} d${first.name}`, work, "J", "work of this output along the path"]]));
-    this.lab.tell();
+    const outputs = this.good ? this.joint.about.variables.filter((v) => v.causality === "output").map((v) => [v.name, this.joint.get(v.name) * v.factor, unitText(v.shown), v.doc]) : [];
+    const rows = [...outputs, [`∫ ${this.force.name} d${first.name}`, work, "J", "work of this output along the path"]];
+    const cells = this.now.querySelectorAll("td.n");
+    if (cells.length === rows.length) rows.forEach((row, i) => (cells[i].textContent = digits(row[1], 5)));
+    else this.now.replaceChildren(table("All outputs at the end of the path", ["output", "value", "unit", "meaning"], rows));
   }
 }
 
@@ -208,10 +242,12 @@ class PressureMap {
     this.svg = element("svg", { class: "plot", role: "img", "aria-label": this.about.name });
     this.text = element("p", { class: "note" });
     this.rows = element("details", { class: "values", ontoggle: () => this.tabulate() }, element("summary", {}, "Values as a table"));
-    place.append(element("figure", {}, element("h3", {}, this.about.name), this.svg, this.text, this.rows));
+    this.figure = element("figure", {}, element("h3", {}, this.about.name), this.svg, this.text, this.rows);
+    place.append(this.figure);
   }
 
-  draw() {
+  draw(values) {
+    this.joint.begin(values);
     const rows = (this.rowsShown = this.joint.map());
     if (!rows.length) return void this.svg.replaceChildren();
     const all = [...rows.map(([x, y]) => [x, y]), ...this.about.marks];
@@ -245,6 +281,25 @@ class PressureMap {
   }
 }
 
+/** Which places are in the window, or nearly so. */
+class Sight {
+  constructor() {
+    this.seen = new Set();
+    this.known = new Set();
+    this.watcher = new IntersectionObserver((changes) => {
+      for (const { target, isIntersecting } of changes) this.seen[isIntersecting ? "add" : "delete"](target);
+    }, { rootMargin: "100px" });
+  }
+
+  /** A place that was never asked for counts as seen. */
+  sees(place) {
+    if (this.known.has(place)) return this.seen.has(place);
+    this.known.add(place);
+    this.watcher.observe(place);
+    return true;
+  }
+}
+
 class Body {
   constructor(place, joint, lab) {
     this.joint = joint;
@@ -275,14 +330,19 @@ class Body {
     return this.moves ? slope : 1 / slope;
   }
 
-  /** values: the ramp; stiffness: along it. */
-  draw(values, stiffness) {
-    const { joint } = this, found = stiffness.map((K) => Math.sqrt(K / this.inertia) / (2 * Math.PI));
+  views(steps) {
+    const over = { place: this.over.figure, show: () => this.resonance(steps / 2), ramp: true };
+    return [over, ...(this.decay ? [{ place: this.decay.figure, show: () => this.letGo() }] : [])];
+  }
+
+  resonance(steps) {
+    const { joint, lab } = this, stiffness = [];
+    const values = ramp(joint, lab.values, lab.end, steps, () => stiffness.push(this.stiffness()));
+    const found = stiffness.map((K) => Math.sqrt(K / this.inertia) / (2 * Math.PI));
     const same = joint.about.ramp.input === this.input.name && this.moves;
     const load = same ? this.output : joint.variables.get(joint.about.ramp.input);
     const x = shown(load, values[load.name]).map(same ? Math.abs : (v) => v);
     this.over.draw([{ name: "resonance", x, y: found }], { label: withUnit(same ? `|${load.name}|` : load.name, load.shown) }, { label: "resonance [Hz]" });
-    if (this.decay) this.letGo();
   }
 
   /** Free motion by the velocity Verlet scheme; the force at the sliders is held against. */
