@@ -25,7 +25,7 @@ from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 
-COUNTS = (22, 48, 120, 160)
+COUNTS = (48, 120, 160)
 PRELOAD = 9e3
 """Of a bolt of the default joint [N]."""
 ROUND = 400
@@ -55,10 +55,10 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Along y or about the normal; factor of tilt in the shape [1], and motion by a tilt at the radius of
-    gyration over the largest approach [1]."""
+    """Along y and about the normal; factor of tilt in the shape [1], and motion by a tilt at the radius of
+    gyration over the largest approach [1]. The turn is the part of it at the radius of gyration [1]."""
 
-    turns: bool = False
+    turn: float = 0.0
     moment: float = 0.0
     tilt: float = 0.0
 
@@ -67,9 +67,10 @@ MOTIONS = {
     "along": Motion(),
     "along, moment": Motion(moment=0.3),
     "along, tilt 0.1": Motion(tilt=0.1),
-    "turning": Motion(turns=True),
-    "turning, tilt 0.1": Motion(turns=True, tilt=0.1),
-    "turning, tilt 0.1 back": Motion(turns=True, tilt=-0.1),
+    "turning": Motion(turn=1.0),
+    "turning, tilt 0.1": Motion(turn=1.0, tilt=0.1),
+    "turning, tilt 0.1 back": Motion(turn=1.0, tilt=-0.1),
+    "both, tilt 0.1": Motion(turn=0.8, tilt=0.1),
 }
 """Columns of the table of the friction."""
 PLATES = 12
@@ -201,7 +202,7 @@ def friction(
     (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * x / gyration
-    along = np.column_stack([-y, x]) / gyration if motion.turns else np.column_stack([0.0 * x, 1.0 + 0.0 * x])
+    along = np.column_stack([-y, x]) * motion.turn / gyration + [0.0, np.sqrt(1.0 - motion.turn**2)]
     sliders = spring.on(shape).foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)

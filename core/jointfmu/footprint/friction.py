@@ -26,6 +26,8 @@ UNTILTED = 0.4
 """Part of them without displacement and tilt [1]."""
 APART, TILTED = 0.1, 0.2
 """Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
+MOST_MOMENT = 2.5
+"""Largest moment [1], over that at which nodes are open that carried a small part of the force."""
 LEAST_WAY, MOST_WAY = 0.05, 3.0
 """Shortest and longest motion [1], over that at which a node at the radius of gyration carries all but the
 part STUCK of its friction."""
@@ -67,7 +69,7 @@ def friction_patches(shape: PressureShape, count: int) -> PressureShape:
     nodes, points = (
         np.stack([each.share, *each.position.T, each.equal, each.tilt]) / unit for each in (shape, few)
     )
-    aim = _Aim.of(nodes, largest_moment(shape) * steep / highest)
+    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(shape) * steep / highest)
     share, x, y, equal, tilt = unit * _moved(points, aim)
     return PressureShape(share, np.column_stack([x, y]), equal, tilt)
 

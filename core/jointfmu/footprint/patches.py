@@ -1,4 +1,4 @@
-"""Few patches that stand for the nodes of a bolted contact, whatever law the interface has.
+"""Few points that stand for the nodes of a bolted contact, whatever law the interface has.
 
 Force and stiffness of a joint are sums over its nodes of share times a function of the node's approach, with
 its position as a factor. Whatever the law, these functions are near to powers of the node's pressure, which
