@@ -67,7 +67,7 @@ def resonance(path: Path) -> None:
         one = ringing.rung(system("robot_joint"))
         points = ringing.ring(one, Path(folder) / "fmi2")
     with plots.drawing(path, SIZE) as canvas:
-        draw(canvas, points, one.body)
+        draw(canvas, points, one, Path(folder) / "fmi2")
 
 
 def house() -> str:

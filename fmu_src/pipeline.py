@@ -27,8 +27,9 @@ from .ssp import build_systems
 
 @dataclass(slots=True)
 class Outcome:
-    """What was built and found."""
+    """What was built and found; `fmus` is the folder of the FMUs of FMI 2.0."""
 
+    fmus: Path
     built: list[Path] = field(default_factory=list)
     systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -72,10 +73,10 @@ def run(out: Path) -> Outcome:
 
     The ramps shown are those of the flavour `fmi2`; the others must repeat them.
     """
-    outcome = Outcome()
+    folder = out / "fmi2"
+    outcome = Outcome(folder)
     outcome.built = build([], list(FLAVOURS), None, out)
     outcome.systems = build_systems(out, joints=False)
-    folder = out / "fmi2"
     for name in track(MODELS, "validate and ramp", len(MODELS)):
         for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
             outcome.problems += [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))]

@@ -100,6 +100,21 @@ def test_events_of_all_kinds_are_met(
     assert exact(TIME)["fired"][-1] == 4
 
 
+def test_an_event_that_nearly_meets_a_communication_point_is_met(
+    neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Sampled every 0.1 s, which the FMU adds up: round-off apart from the points of a grid of 0.05 s."""
+    events = np.cumsum(np.full(30, 0.1))
+    apart = np.abs(events - 0.05 * np.round(events / 0.05))
+    assert np.any((apart > 0.0) & (apart < 1e-14))
+    files = {"u.csv": INPUT, "y.csv": csv(TIME, exact(TIME, period=0.1))}
+    files |= {"often.ssv": ssv('name="period"><v:Real value="0.1"/>')}
+    path = other_manifest(
+        neuron, tmp_path / "n.fmu", experiment("often", f'<Parameters source="often.ssv"/>{FILES}'), **files
+    )
+    assert {one["verdict"] for one in proved(capsys, path)["experiments"]} == {"passed"}
+
+
 def test_inputs_jump_and_are_switched_off(
     neuron: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

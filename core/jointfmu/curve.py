@@ -84,8 +84,8 @@ class Curve:
         """Load and its first `order` derivatives at displacements x (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(x, nodes[0], nodes[-1])
+        i = _segment(nodes, x)
+        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         first = nodes[i]
         h = nodes[i + 1] - first
         t = (inside - first) / h
@@ -107,16 +107,19 @@ class Curve:
         """Integral (...) of the load from the first node to displacements x (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(x, nodes[0], nodes[-1])
+        i = _segment(nodes, x)
+        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
         for part, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
             mean = mean * t + part * coefficient
-        load, stiffness = self.derivatives(inside, 1)
+        energy = np.asarray(self._energies[i] + step * mean)
         beyond = x - inside
-        return np.asarray(self._energies[i] + step * mean + beyond * (load + 0.5 * beyond * stiffness))
+        if not np.any(beyond):
+            return energy
+        load, stiffness = self.derivatives(inside, 1)
+        return np.asarray(energy + beyond * (load + 0.5 * beyond * stiffness))
 
     def inverse(self, load: ArrayLike) -> Array:
         """Displacement (...) at which the table carries a load (...), to round-off.
@@ -125,8 +128,8 @@ class Curve:
         """
         y = np.asarray(load, dtype=np.float64)
         nodes, places = self.load, self.displacement
-        i = np.clip(np.searchsorted(nodes, y, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(y, nodes[0], nodes[-1])
+        i = _segment(nodes, y)
+        inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
         first, h = places[i], places[i + 1] - places[i]
         low, high = np.zeros(y.shape), np.ones(y.shape)
         t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
@@ -152,6 +155,11 @@ class Curve:
         flat = edge == 0.0
         x = np.where(y <= nodes[0], self.displacement[0], x)
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
+
+
+def _segment(nodes: Array, x: Array) -> NDArray[np.intp]:
+    """Number (...) of the segment between nodes (n) that x (...) lies in, or next to."""
+    return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
 
 
 def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from importlib import import_module
 from os import cpu_count
@@ -54,6 +53,8 @@ def libraries(
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     options = {platform: _options(platform, stem or name) for platform in platforms}
     own = Path(__file__).with_name("windows.c")
     folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})

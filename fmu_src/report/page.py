@@ -45,7 +45,7 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     """What the page shows of a joint."""
     module = part(kind, "figures")
     figures = module.figures(outcome) if module else []
-    figures += [*resonances(outcome.ringing, kind.name), *ring_downs(outcome.decays, kind.name)]
+    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
     figures += motions(outcome.arms, kind.name)
     names = [model.name for model in kind.models]
     kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}

@@ -14,6 +14,8 @@ from .task import FLOOR, Rows, Task, description_of, reader
 
 MOST_STEPS = 100_000
 """Of the solver between two communication points."""
+NEAR = 1e-9
+"""Part of an interval [1] by which an event may differ from a communication point that it meets."""
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
@@ -48,9 +50,9 @@ class _Motion:
             for name in task.inputs
             if task.kinds[name] == "real" and variables[name].variability != "discrete"
         ]
-        self.interval = 0
+        self.interval, self.time = 0, task.times[0]
         self.failure: Exception | None = None
-        self._settle(task.times[0])
+        self._settle()
         self.solver = CVodeSolver(
             nx=description.numberOfContinuousStates,
             nz=description.numberOfEventIndicators,
@@ -69,34 +71,37 @@ class _Motion:
     def over(self, interval: int) -> None:
         """From a communication point to the next one, and over the events there."""
         self.interval = interval
-        time, end = self.task.times[interval : interval + 2]
-        while time < end:
-            if self.event <= time:
-                raise RuntimeError(f"announces an event at {self.event:g} s when it is {time:g} s")
-            until = min(end, self.event)
+        begin, end = self.task.times[interval : interval + 2]
+        near = NEAR * (end - begin)
+        while end - self.time > near:
+            if self.event <= self.time:
+                raise RuntimeError(f"announces an event at {self.event:g} s when it is {self.time:g} s")
+            until = self.event if self.event < end + near else end
             _stop_at(self.solver, until)
-            _, roots, time = self.solver.step(time, until)
+            _, roots, self.time = self.solver.step(self.time, until)
             if self.failure:
                 raise self.failure
-            self._at(time)
+            self._at(self.time)
             wanted, ends = self.fmu.completedIntegratorStep() if self.accepts else (False, False)
-            if ends:
-                raise RuntimeError(f"the FMU ends the simulation at {time:g} s")
-            jumps = time >= end and self._jumps(interval + 1)
-            if wanted or jumps or np.any(roots) or time >= self.event:
+            self._check(ends)
+            jumps = end - self.time <= near and self._jumps(interval + 1)
+            if wanted or jumps or np.any(roots) or self.time >= self.event:
                 self.fmu.enterEventMode()
                 for name, value in self.task.given(interval + 1).items() if jumps else ():
                     self.instance.set(self.variables[name], value)
-                self._settle(time)
-                self.solver.reset(time)
+                self._settle()
+                self.solver.reset(self.time)
 
-    def _settle(self, time: float) -> None:
+    def _check(self, ends: bool) -> None:
+        if ends:
+            raise RuntimeError(f"the FMU ends the simulation at {self.time:g} s")
+
+    def _settle(self) -> None:
         """Iterate an event until nothing changes, and go on in continuous time."""
         again = True
         while again:
             again, ends, *_, announced, event = self.instance.update()
-            if ends:
-                raise RuntimeError(f"the FMU ends the simulation at {time:g} s")
+            self._check(ends)
         self.event = float(event) if announced else np.inf
         self.fmu.enterContinuousTimeMode()
 

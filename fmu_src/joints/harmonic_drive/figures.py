@@ -52,7 +52,7 @@ def _spring(outcome: Any) -> Path:
 def friction(fmu: Path) -> list[Panel]:
     """Efficiency over load at some speeds, and the torques that move the catalogue's drives backwards."""
     panels, published_torques, found_torques = [], [], []
-    drives, share = efficiency.printed_drives(), np.linspace(0.02, 1.0, 25)
+    drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
         rated, back = drive.numbers["rated_torque"].value, drive.numbers["back_driving_torque"].value
         with efficiency.bench(fmu, efficiency.parameters(drive)) as bench:
@@ -62,10 +62,10 @@ def friction(fmu: Path) -> list[Panel]:
             }
             found_torques.append(bench.back_driving_torque(10.0 * back))
         published_torques.append(back)
-        series = [Series(f"{rpm} rpm", rated * share, row) for rpm, row in rows.items()]
+        series = [Series(f"{rpm} rev/min", rated * share, row) for rpm, row in rows.items()]
         if "efficiency" in drive.numbers:
             known = [drive.numbers["efficiency"].value]
-            series.append(Series("published, 2000 rpm", [rated], known, "empty", titles=[drive.name]))
+            series.append(Series("published, 2000 rev/min", [rated], known, "empty", titles=[drive.name]))
         panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
     ends = [0.0, max(published_torques)]
     names = [drive.name for drive in drives]

@@ -14,10 +14,14 @@ class Laboratory {
     at("model").onchange = () => this.choose(at("model").value, 0);
     at("set").onchange = () => this.choose(at("model").value, Number(at("set").value));
     at("reset").onclick = () => this.take(this.set);
+    at("example").onclick = () => this.change(this.about.example.values, this.about.example.doc);
     at("copy").onclick = () => this.copy();
     at("save").onclick = () => this.save();
     at("open").onchange = () => at("open").files[0] && this.read(at("open").files[0]);
     at("forget").onclick = () => { this.file = null; at("forget").hidden = true; this.redraw(); };
+    const wide = matchMedia("(min-width: 980px)"), beside = () => (at("sliders").open = wide.matches);
+    wide.addEventListener("change", beside);
+    beside();
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) this.read(event.dataTransfer.files[0]); });
     addEventListener("resize", () => this.redraw());
@@ -45,16 +49,16 @@ class Laboratory {
     this.end = about.ramp.end;
     this.controls = controls(at("controls"), about, this.values, (name, value) => { this.values.set(name, value); this.redraw(); });
     this.rampControl(about);
-    const warm = about.variables.some((v) => v.causality !== "output" && ["K", "degC"].includes(v.unit));
     const bound = about.variables.filter((v) => v.bound).map((v) => v.name);
-    at("left-out").textContent = [warm ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
+    at("left-out").textContent = [about.variables.some((v) => v.causality !== "output" && warm(v)) ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
     this.curves = new Curves(views[0], this.joint);
     at("map-part").hidden = !about.map;
     this.map = about.map && new PressureMap(views[2], this.joint);
+    at("example").hidden = !about.example;
     at("turn-part").hidden = !about.turn;
     this.turn = about.turn && new Turn(views[4], this.joint, this);
     this.body = new Body(views[3], this.joint, this);
-    this.path = new Path(views[1], this.joint, this);
+    this.path = new Path(views[1], this.joint, this, about.path);
     this.sight = new Sight();
     this.draw();
   }
@@ -64,6 +68,14 @@ class Laboratory {
     const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
     if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
     return values;
+  }
+
+  /** A path along other inputs. */
+  follow(names) {
+    at("path").replaceChildren();
+    this.path = new Path(at("path"), this.joint, this, names);
+    this.draw();
+    at("moved").focus();
   }
 
   rampControl(about) {
@@ -77,6 +89,16 @@ class Laboratory {
   take(set) {
     this.values = this.start(set);
     for (const name in this.controls) this.controls[name].show(this.values.get(name));
+    this.redraw();
+  }
+
+  /** Some other values, shown at the controls. */
+  change(values, doc) {
+    for (const [name, value] of Object.entries(values)) {
+      this.values.set(name, value);
+      this.controls[name].show(value);
+    }
+    this.say(`Set: ${doc}.`);
     this.redraw();
   }
 
