@@ -7,6 +7,7 @@ import patch_reduction
 import pytest
 
 from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.footprint.elimination import solved
 from jointfmu.footprint.friction import friction_patches
 from jointfmu.footprint.patches import few_points
 from jointfmu.footprint.plate import BoltedPlate
@@ -92,6 +93,14 @@ def test_points_are_the_same_on_every_run(points, count):
     one, other = (points(contact("plate"), count) for _ in range(2))
     assert np.array_equal(one.share, other.share)
     assert np.array_equal(one.position, other.position)
+
+
+def test_equations_are_solved_as_lapack_does():
+    """Within eps times the condition, some 1e5."""
+    slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)
+    matrix, right = slopes.T @ slopes, np.ones(110)
+    there = np.linalg.solve(matrix, right)
+    np.testing.assert_allclose(solved(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there)))
 
 
 def test_too_few_points_are_refused():

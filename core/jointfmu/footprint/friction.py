@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .elimination import solved
 from .patches import balanced, few_points, largest_moment
 from .shape import PressureShape
 
@@ -230,7 +231,7 @@ class _Around:
         """Change (5, n) of the points."""
         own = np.diag(self.square)
         diagonal = damping * (own + LEAST_DIAGONAL * np.max(own))
-        parts = np.linalg.solve(self.square + np.diag(diagonal), -self.gradient)
+        parts = solved(self.square + np.diag(diagonal), -self.gradient)
         parts = np.clip(parts, -LARGEST_STEP, LARGEST_STEP).reshape(self.size.shape)
         return np.asarray(self.size * parts)
 
