@@ -8,6 +8,7 @@ from matplotlib.figure import Figure as Canvas
 
 from ..decays import Decay
 from ..ringing import Body, Ringing, Rung, rings, stiffness_line
+from ..shown import spelled
 from .figure import Figure, Panel, Series, drawn
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
@@ -42,7 +43,7 @@ def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure
 def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
     body, moving, (point, *_) = one.body, one.moving.name, points
     said = point.law is not None
-    pulled = f"{body.deflection.factor * body.pull.deflection:g} {body.deflection.unit}"
+    pulled = f"{body.deflection.factor * body.pull.deflection:g} {spelled(body.deflection.unit)}"
     return Figure(
         f"In a system: ring-down of the {name.replace('_', ' ')}",
         f"The {moving}, {body.doc}, is pulled by {pulled} ({body.pull.doc}) at "
