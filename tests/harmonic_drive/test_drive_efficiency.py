@@ -86,8 +86,8 @@ def test_the_python_drive_on_the_bench_is_the_fmu(fmu: Path, ratio: float) -> No
 def test_the_page_of_a_drive_says_what_friction_costs(tmp_path: Path) -> None:
     write_joint_report(tmp_path / "drive.html", drive_file(**GIVEN, ratio=100.0))
     page = (tmp_path / "drive.html").read_text(encoding="utf-8")
-    assert "Starting torque of the motor without load: 0.03 N.m." in page
-    assert f"drives the motor back: {100.0 * 0.03 / 0.88:.4g} N.m." in page
+    assert "Starting torque of the motor without load: 0.03 N m." in page
+    assert f"drives the motor back: {100.0 * 0.03 / 0.88:.4g} N m." in page
     for law in KINDS["harmonic_drive"].laws:  # of a straight line the wind-up is at the bracket's end
         other = default("harmonic_drive", law).with_values(GIVEN, "user", "test")
         bench = spring_bench(SPRING, other)

@@ -115,7 +115,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     """Which number set a parameter is told by the parameter's source; estimates of friction are left out."""
     rows = rows_of("RT1-H-17-100")
     roles = {name: row.role for name, row in rows.items()}
-    set_by_it = ("starting_torque", "running_torque", "efficiency", "wind-up at T1, 3.9 N.m")
+    set_by_it = ("starting_torque", "running_torque", "efficiency", "wind-up at T1, 3.9 N m")
     assert all(roles[name] == SET for name in set_by_it)
     assert all(roles[name] == PREDICTED for name in ("back_driving_torque", "lost_motion"))
     assert roles["hysteresis_loss"] == OWN
@@ -128,7 +128,7 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     write_joint_report(tmp_path / "drive.html", replace(made("RT1-H-17-100"), name="Shoulder"))
     page = (tmp_path / "drive.html").read_text(encoding="utf-8")
     assert "Beside what is published of it" in page
-    assert "3.06 N.m" in page
+    assert "3.06 N m" in page
     write_joint_report(tmp_path / "other.html", default("harmonic_drive"))
     assert "Beside what is published" not in (tmp_path / "other.html").read_text(encoding="utf-8")
 

@@ -64,7 +64,7 @@ def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: s
     row = Row(**lines, rated=torques.get("rated_torque", printed["T2"]).value)
     for name, torque in torques.items():
         angle, found = float(row.angle(torque.value)), float(spring.curve.inverse(torque.value))
-        label = f"wind-up at {name.replace('_', ' ')}, {torque.value:g} N.m"
+        label = f"wind-up at {name.replace('_', ' ')}, {torque.value:g} N m"
         yield Beside(label, "rad", angle, False, found, role, printed["K1"].source)
 
 
