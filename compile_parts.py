@@ -21,4 +21,4 @@ if __name__ == "__main__":
     except (ImportError, RuntimeError, ValueError) as error:
         sys.exit(f"compile_parts.py: {error}")
     size = sum(file.stat().st_size for file in made)
-    print(f"{len(made)} parts, {size / 1e6:.1f} MB in {arguments.out}")
+    print(f"{len(made)} files, {size / 1e6:.1f} MB in {arguments.out}")

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
+from fcntl import F_DUPFD, fcntl
 from pathlib import Path
 from typing import Any
 
@@ -92,8 +93,8 @@ def browser() -> Iterator[Browser]:
     theirs, from_it = os.pipe()
 
     def places() -> None:
-        # 3 and 4 are what the browser reads and writes; the pipes may have these numbers already
-        high = [os.dup(to_it), os.dup(from_it)]
+        # 3 and 4 are what the browser reads and writes; the pipes, or their copies, may have these numbers
+        high = [fcntl(end, F_DUPFD, 10) for end in (to_it, from_it)]
         os.dup2(high[0], 3)
         os.dup2(high[1], 4)
 

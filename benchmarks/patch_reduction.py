@@ -14,6 +14,7 @@ from scipy.stats import qmc
 
 from jointfmu.curve import Curve
 from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.footprint.friction import friction_patches
 from jointfmu.footprint.patches import few_points
 from jointfmu.footprint.plate import BoltedPlate
 from jointfmu.footprint.shape import NodalField, PressureShape
@@ -24,13 +25,13 @@ from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 
-COUNTS = (22, 48, 120, 160)
+COUNTS = (48, 120, 160)
 PRELOAD = 9e3
 """Of a bolt of the default joint [N]."""
 ROUND = 400
 """Nodes of the field."""
 SEED = 3
-PATCHES = (22, 48)
+PATCHES = (16, 22)
 FINE = levels(1e-6, (1e-5, 2e-2), 0.12)
 """Loads of the heights for all nodes over the hardness [1]."""
 WAYS = 1.5 * np.linspace(0.0, 1.0, 25)[1:] ** 2
@@ -54,10 +55,10 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """Along y or about the normal; factor of tilt in the shape [1], and motion by a tilt at the radius of
-    gyration over the largest approach [1]."""
+    """Along y and about the normal; factor of tilt in the shape [1], and motion by a tilt at the radius of
+    gyration over the largest approach [1]. The turn is the part of it at the radius of gyration [1]."""
 
-    turns: bool = False
+    turn: float = 0.0
     moment: float = 0.0
     tilt: float = 0.0
 
@@ -66,10 +67,14 @@ MOTIONS = {
     "along": Motion(),
     "along, moment": Motion(moment=0.3),
     "along, tilt 0.1": Motion(tilt=0.1),
-    "turning": Motion(turns=True),
-    "turning, tilt 0.1": Motion(turns=True, tilt=0.1),
+    "turning": Motion(turn=1.0),
+    "turning, tilt 0.1": Motion(turn=1.0, tilt=0.1),
+    "turning, tilt 0.1 back": Motion(turn=1.0, tilt=-0.1),
+    "both, tilt 0.1": Motion(turn=0.8, tilt=0.1),
 }
 """Columns of the table of the friction."""
+PLATES = 12
+"""Random plates."""
 
 
 def ranges(moment: float) -> dict[str, Range]:
@@ -163,6 +168,28 @@ def contacts() -> Iterator[tuple[str, PressureShape]]:
     yield "field", field()
 
 
+def random_plate(seed: int) -> PressureShape:
+    """With three to eight bolts anywhere."""
+    rng = np.random.default_rng(seed)
+    hole = rng.uniform(0.006, 0.02)
+    cone = hole * rng.uniform(1.8, 3.0)
+    length = cone * rng.uniform(3.0, 9.0)
+    size = length * np.array([1.0, rng.uniform(0.3, 1.0)])
+    bolts: list[Array] = []
+    count, tries = int(rng.integers(3, 9)), iter(rng.uniform(-0.5, 0.5, (20000, 2)))
+    while len(bolts) < count and (place := next(tries, None)) is not None:
+        bolt = place * (size - 1.6 * hole)
+        if all(np.hypot(*(bolt - other)) > 1.5 * hole for other in bolts):
+            bolts.append(bolt)
+    return plate(*((float(x), float(y)) for x, y in bolts), size=(size[0], size[1]), hole=hole, cone=cone)
+
+
+def sheared() -> Iterator[tuple[str, list[PressureShape]]]:
+    """Contacts of the table of the friction; of several the largest deviations are printed."""
+    yield from ((name, [shape]) for name, shape in contacts())
+    yield f"{PLATES} random plates", [random_plate(seed) for seed in range(PLATES)]
+
+
 def friction(
     spring: BoltedJointSpring, shape: PressureShape, fine: bool, largest: float, motion: Motion
 ) -> tuple[Array, Array]:
@@ -175,7 +202,7 @@ def friction(
     (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
     approach = start - motion.tilt * largest * x / gyration
-    along = np.column_stack([-y, x]) / gyration if motion.turns else np.column_stack([0.0 * x, 1.0 + 0.0 * x])
+    along = np.column_stack([-y, x]) * motion.turn / gyration + [0.0, np.sqrt(1.0 - motion.turn**2)]
     sliders = spring.on(shape).foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
@@ -219,17 +246,26 @@ def print_normal(spring: BoltedJointSpring) -> None:
 def print_friction(spring: BoltedJointSpring) -> None:
     """Deviation of friction, over gross slip, and of loops from all nodes with fine heights."""
     print("| contact | patches | " + " | ".join(MOTIONS) + " |\n" + "|---" * (2 + len(MOTIONS)) + "|")
-    for name, shape in contacts():
-        largest = float(np.max(tightened(spring.curve, shape, (mean_pressure(spring), 0.0))))
-        largest -= float(spring.curve.displacement[0])
-        exact = [friction(spring, shape, True, largest, motion) for motion in MOTIONS.values()]
-        for count in PATCHES:
-            points, cells = few_points(shape, count), []
-            for (force, loss), motion in zip(exact, MOTIONS.values(), strict=True):
-                few, lost = friction(spring, points, False, largest, motion)
-                worst = np.max(np.abs(few - force)) / np.max(np.abs(force))
-                cells.append(f"{worst:.1e}, {np.max(np.abs(lost / loss - 1.0)):.1%}")
-            print(f"| {name} | {points.share.size} | " + " | ".join(cells) + " |", flush=True)
+    for name, shapes in sheared():
+        found = [friction_deviations(spring, shape) for shape in shapes]
+        for count, worst in zip(PATCHES, np.max(found, axis=0), strict=True):
+            cells = [f"{force:.1e}, {area:.1%}" for force, area in worst]
+            print(f"| {name} | {count} | " + " | ".join(cells) + " |", flush=True)
+
+
+def friction_deviations(spring: BoltedJointSpring, shape: PressureShape) -> Array:
+    """Largest deviations (counts, motions, 2) [1] of force over gross slip, and of areas of loops."""
+    largest = float(np.max(tightened(spring.curve, shape, (mean_pressure(spring), 0.0))))
+    largest -= float(spring.curve.displacement[0])
+    exact = [friction(spring, shape, True, largest, motion) for motion in MOTIONS.values()]
+    found = []
+    for count in PATCHES:
+        patches = friction_patches(shape, count)
+        for (force, loss), motion in zip(exact, MOTIONS.values(), strict=True):
+            few, lost = friction(spring, patches, False, largest, motion)
+            worst = np.max(np.abs(few - force)) / np.max(np.abs(force))
+            found.append((worst, np.max(np.abs(lost / loss - 1.0))))
+    return np.reshape(found, (len(PATCHES), len(MOTIONS), 2))
 
 
 def main() -> None:

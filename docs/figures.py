@@ -66,8 +66,8 @@ def resonance(path: Path) -> None:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.rung(system("robot_joint"))
         points = ringing.ring(one, Path(folder) / "fmi2")
-    with plots.drawing(path, SIZE) as canvas:
-        draw(canvas, points, one.body)
+        with plots.drawing(path, SIZE) as canvas:
+            draw(canvas, points, one, Path(folder) / "fmi2")
 
 
 def house() -> str:

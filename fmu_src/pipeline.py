@@ -1,4 +1,4 @@
-"""The main job: build every FMU, validate it, run the ramps, compare, write the report."""
+"""The main job: build every FMU, validate and prove it, run the ramps, compare, write the report."""
 
 import sys
 from dataclasses import dataclass, field
@@ -10,6 +10,8 @@ from jointfmu import ramp, validation
 from jointfmu.joints import MODELS
 from jointfmu.parameters import write_text
 from jointfmu.progress import track
+from jointfmu.proof.outcome import Proof
+from jointfmu.proof.run import prove
 from jointfmu.systems import System
 
 from . import cosimulation, decays
@@ -25,12 +27,14 @@ from .ssp import build_systems
 
 @dataclass(slots=True)
 class Outcome:
-    """What was built and found."""
+    """What was built and found; `fmus` is the folder of the FMUs of FMI 2.0."""
 
+    fmus: Path
     built: list[Path] = field(default_factory=list)
     systems: list[Path] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
+    proofs: list[Proof] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
     rows: list[validation.Row] = field(default_factory=list)
     fmu_rows: list[validation.Row] = field(default_factory=list)
@@ -42,6 +46,7 @@ class Outcome:
     def misses(self) -> list[str]:
         """One line for everything that failed; of an FMU's published points those that the package meets."""
         lines = list(self.problems)
+        lines += [f"{shown(proof.fmu)}: {text}" for proof in self.proofs for text in proof.misses]
         lines += [
             f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.allowed:.0e}"
             for c in self.checks
@@ -58,27 +63,33 @@ class Outcome:
         return lines
 
 
+def shown(fmu: Path) -> str:
+    """An FMU as it is named in the report."""
+    return f"{fmu.parent.name}/{fmu.stem}"
+
+
 def run(out: Path) -> Outcome:
-    """Build all flavours, check, and write `out/report/index.html` with the ramps as CSV, and the laboratory.
+    """Build all flavours, prove, check, and write the laboratory and `out/report/index.html`, ramps as CSV.
 
     The ramps shown are those of the flavour `fmi2`; the others must repeat them.
     """
-    outcome = Outcome()
+    folder = out / "fmi2"
+    outcome = Outcome(folder)
     outcome.built = build([], list(FLAVOURS), None, out)
     outcome.systems = build_systems(out, joints=False)
-    folder = out / "fmi2"
     for name in track(MODELS, "validate and ramp", len(MODELS)):
         for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
-            shown = f"{path.parent.name}/{name}"
-            outcome.problems += [f"{shown}: {problem}" for problem in validate_fmu(str(path))]
+            outcome.problems += [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))]
         result = default_ramp(name, folder)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
         outcome.checks += check(name, folder, result)
         outcome.checks += [same(name, out / beside, result) for beside in FLAVOURS if out / beside != folder]
-    for path in (p for p in outcome.systems if p.suffix == ".fmu"):
-        outcome.problems += [f"{path.parent.name}/{path.stem}: {text}" for text in validate_fmu(str(path))]
+    components = [path for path in outcome.systems if path.suffix == ".fmu"]
+    for path in components:
+        outcome.problems += [f"{shown(path)}: {text}" for text in validate_fmu(str(path))]
+    outcome.proofs = [prove(path) for path in (*outcome.built, *components)]
     for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):
         if step == "package":
             outcome.rows = validation.validate()
@@ -108,6 +119,12 @@ def main(out: Path) -> int:
     print(f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out / 'ssp'}")
     partners = [path for path in outcome.systems if path.suffix == ".fmu"]
     print(f"validated with fmpy: {len(outcome.built) + len(partners)}; ramps run: {len(outcome.ramps)}")
+    worst = max((proof.worst.share for proof in outcome.proofs if proof.worst), default=0.0)
+    runs = sum(proof.runs for proof in outcome.proofs)
+    print(
+        f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "
+        f"at worst {worst:.1e} of what is allowed"
+    )
     print(
         f"compared: {validation.summary(outcome.rows)}; "
         f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"

@@ -23,6 +23,8 @@ RESONANCE_TOLERANCE = 5e-3
 """Peak of the spectrum against sqrt(K/J) [1]."""
 DAMPING_TOLERANCE = 1e-2
 """Decrement of the free decay against the stated damping [1]."""
+LINE = 81
+"""Points of a line over the load."""
 RESOLVED = 1e-10
 """Least first deflection over that of the working point [1]: round-off is 1e-6 of it."""
 MOST_DAMPED = 0.1
@@ -36,6 +38,7 @@ class Ringing:
     """Free motion at one working point.
 
     load            : on the joint, SI
+    inertia         : of the body [kg or kg.m2]
     frequency       : peak of the simulated signal's spectrum [rad/s]
     expected        : sqrt(K/J) with the joint's stiffness there [rad/s]
     damping, stated : ratios [1], of the decay and of the joint's own damping
@@ -44,6 +47,7 @@ class Ringing:
     """
 
     load: float
+    inertia: float
     frequency: float
     expected: float
     damping: float
@@ -238,6 +242,15 @@ def ring(
     ]
 
 
+def stiffness_line(one: Rung, folder: Path, points: Sequence[Ringing]) -> tuple[Array, Array]:
+    """Loads (n), evenly from the least to the largest of some points, and sqrt(K/J) there [rad/s]."""
+    joint = {**one.joint.parameters, **one.body.elastic}
+    ends, inertia = [point.load for point in points], points[0].inertia
+    loads = np.linspace(min(ends), max(ends), LINE)
+    stiffness = np.array([one.body.rest(folder, float(load), joint).stiffness for load in loads])
+    return loads, np.sqrt(stiffness / inertia)
+
+
 def _ring_at(
     body: Body, folder: Path, load: float, parameters: Mapping[str, float], key: str, inertia: float
 ) -> Ringing:
@@ -274,4 +287,5 @@ def _ring(joint: Slave, body: Slave, rest: Rest, load: float, inertia: float) ->
     signal = motion(joint, body, rest.force, step, PERIODS * PER_PERIOD)[:, 0] - rest.position
     time = np.asarray(step * np.arange(signal.size), dtype=np.float64)
     messages = tuple(dict.fromkeys(joint.messages + body.messages))
-    return Ringing(load, peak(signal, step), expected, damping_ratio(signal), stated, time, signal, messages)
+    found = peak(signal, step), expected, damping_ratio(signal), stated
+    return Ringing(load, inertia, *found, time, signal, messages)

@@ -11,7 +11,8 @@ from jointfmu.systems import Component, System, systems
 from .archive import pack, workshop
 from .native.build import build
 from .partners import parameters as partner_parameters
-from .structure import MASTERS, Master, Value, parameter_set, structure
+from .ssv import Value, parameter_set
+from .structure import MASTERS, Master, metadata, structure
 from .wiring import lags, model_of, wires
 from .xml_parts import VARIABILITIES
 
@@ -77,8 +78,8 @@ def _pack(system: System, out: Path, version: str, master: Master) -> Path:
         own = values(component) | {lag: Value(master.lag, "1", master.doc) for lag in late.get(name, ())}
         every |= {f"{name}.{variable}": value for variable, value in own.items()}
         members[f"resources/{names[name]}.fmu"] = (out / fmus / f"{names[name]}.fmu").read_bytes()
-        members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version)
-    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version)
+        members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version, metadata())
+    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version, metadata())
     target = out / folder / f"{system.name}{master.suffix}.ssp"
     with workshop(target) as work:
         pack(members, work / target.name)

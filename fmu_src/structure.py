@@ -1,31 +1,20 @@
-"""System structure descriptions and parameter sets, SSP 1.0 and 2.0."""
+"""System structure descriptions, SSP 1.0 and 2.0."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
 from jointfmu.stamp import fixed_time
 from jointfmu.systems import System
-from jointfmu.units import UNITS
 
 from .native.licence import copyright_line
+from .ssv import NUMBER, SSP, add_units
 from .wiring import model_of, wires
 from .xml_parts import serialized
 
-NUMBER = {"1.0": "Real", "2.0": "Float64"}
-"""Type of real numbers in a version of SSP."""
-_SSP = "http://ssp-standard.org/SSP1/SystemStructure"
 _OMS = "https://raw.githubusercontent.com/OpenModelica/OMSimulator/master/schema/oms.xsd"
 _TYPE = "application/x-fmu-sharedlibrary"
-
-
-class Value(NamedTuple):
-    """A value in its unit, and where it comes from."""
-
-    value: Any
-    unit: str
-    source: str = ""
 
 
 class Master(NamedTuple):
@@ -65,7 +54,9 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
 
     names : {component: its FMU}
     """
-    root = _root("ssd:SystemStructureDescription", "Description", version, system.name)
+    spaces = {"xmlns:ssd": f"{SSP}Description", "xmlns:ssc": f"{SSP}Common"}
+    head = {**spaces, "version": version, "name": system.name, **metadata()}
+    root = Element("ssd:SystemStructureDescription", head)
     text = f"{system.description}. {master.doc}"
     root.set("description", text)
     inside = SubElement(root, "ssd:System", name=system.name, description=text)
@@ -96,51 +87,27 @@ def structure(system: System, names: Mapping[str, str], version: str, master: Ma
         SubElement(connections, "ssd:Connection", dict(ends))
     if master.in_turn:
         _for_omsimulator(inside, system.interval)
-    _units(root, "ssd", units)
+    add_units(root, "ssd", units)
     SubElement(root, "ssd:DefaultExperiment", startTime="0", stopTime=repr(system.stop_time))
     return serialized(root)
 
 
-def parameter_set(name: str, entries: Mapping[str, Value], version: str) -> bytes:
-    """An SSV file."""
-    root = _root("ssv:ParameterSet", "ParameterValues", version, name)
-    parameters = SubElement(root, "ssv:Parameters")
-    for variable, (value, unit, source) in entries.items():
-        node = SubElement(parameters, "ssv:Parameter", name=variable)
-        if source:
-            node.set("description", source)
-        if isinstance(value, bool):
-            SubElement(node, "ssv:Boolean", value=str(value).lower())
-        else:
-            SubElement(node, f"ssv:{NUMBER[version]}", value=repr(float(value)), unit=unit)
-    _units(root, "ssv", {entry.unit for entry in entries.values() if entry.unit})
-    return serialized(root)
-
-
-def _root(tag: str, schema: str, version: str, name: str) -> Element:
-    spaces = {f"xmlns:{tag[:3]}": _SSP + schema, "xmlns:ssc": f"{_SSP}Common"}
-    root = Element(tag, {**spaces, "version": version, "name": name})
-    root.attrib |= {
+def metadata() -> dict[str, str]:
+    """Who wrote an SSP file, and with what."""
+    found = {
         "author": "the jointfmu authors",
         "copyright": copyright_line(),
         "license": "MIT",
         "generationTool": f"jointfmu {__version__}",
     }
     if when := fixed_time():
-        root.set("generationDateAndTime", when.strftime("%Y-%m-%dT%H:%M:%SZ"))
-    return root
+        found["generationDateAndTime"] = when.strftime("%Y-%m-%dT%H:%M:%SZ")
+    return found
 
 
 def _bindings(node: Element, name: str) -> None:
     bindings = SubElement(node, "ssd:ParameterBindings")
     SubElement(bindings, "ssd:ParameterBinding", source=f"parameters/{name}.ssv")
-
-
-def _units(root: Element, prefix: str, names: set[str]) -> None:
-    units = SubElement(root, f"{prefix}:Units")
-    for name in sorted(names):
-        unit = SubElement(units, "ssc:Unit", name=name)
-        SubElement(unit, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[name].base.items()})
 
 
 def _for_omsimulator(system: Element, step: float) -> None:

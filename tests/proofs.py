@@ -3,15 +3,24 @@
 import json
 import zipfile
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
+from conftest import run_host
 
 from jointfmu import cli
 from jointfmu.proof.manifest import ATTRIBUTES, FOLDER, MANIFEST, NAME
 
 Change = Callable[[str, bytes], bytes | None]
+BOTH = ["co-simulation", "model exchange"]
+
+
+def needs(importer: str) -> None:
+    package = {"ecos": "ecospy", "libcosim": "libcosimpy"}.get(importer, "fmpy")
+    if find_spec(package) is None or run_host(f"import {package}").returncode:
+        pytest.skip(f"needs {package} (in the extra 'test' on Linux x86_64), ecos Debian's libtbb12")
 
 
 def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:

@@ -135,6 +135,38 @@ def test_a_branch_ends_where_it_passes_the_turning_point_before():
     assert ends[2][0] == pytest.approx(-1.5, abs=0.1)
 
 
+def swung(law, turns):
+    """Force (n) over motions (n) from rest over turning points, each way within the one before."""
+    motion, force, reached = [], [], 0.0
+    for a, b in pairwise(turns):
+        way = np.linspace(a, b, 200, endpoint=False)
+        motion.append(way)
+        force.append(reached + law.change(way, np.full(way.size, a)))
+        reached += float(law.change(np.array([b]), np.array([a]))[0])
+    return np.concatenate(motion), np.concatenate(force)
+
+
+@pytest.mark.parametrize("middle", [0.0, 4e-6])
+def test_the_place_of_rest_is_found_in_loops(middle):
+    """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
+    hardening = Elastic(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
+    law = replace(PARABOLA, elastic=hardening)
+    motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
+    found = branches.cut([("", motion + 3e-5, force - 7e3)])
+    rest = found.rest(law, found.scale)
+    assert rest == pytest.approx(3e-5, rel=1e-6)
+    # steps of 50 nm: the turning points are the outermost samples
+    assert np.max(np.abs(found.fitted(law.about(rest), found.scale)[2])) < 1e-9 * np.ptp(force)
+
+
+def test_a_linear_spring_has_no_place_of_rest():
+    law = replace(PARABOLA, elastic=SPRING)
+    motion, force = swung(law, [5e-6, -5e-6, 5e-6, -5e-6])
+    found = branches.cut([("", motion + 3e-5, force - 7e3)])
+    assert found.rest(law, found.scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
+    assert np.max(np.abs(found.residuals(law, found.scale))) < 1e-9
+
+
 def test_noise_does_not_widen_the_loops():
     """The largest of several noisy samples lies two deviations too far out; the parabola does not."""
     rng = np.random.default_rng(1)

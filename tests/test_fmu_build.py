@@ -14,17 +14,21 @@ from contextlib import redirect_stdout, suppress
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from shutil import copytree, rmtree
+from shutil import copytree, ignore_patterns, rmtree
 
 import pytest
+import pythonfmu
 from browser import PROGRAM, browser
-from conftest import refused_line
+from conftest import refused_line, run_host
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import generate
 from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.python import build as python_build
+from proofs import BOTH
+from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
 from jointfmu import cli, ramp, systems, validation
@@ -140,6 +144,37 @@ def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
     assert after == before
 
 
+BESIDE_AN_INSTANCE = """
+import sys
+from pathlib import Path
+from conftest import Fmu
+instance = Fmu(Path(sys.argv[1])).start()
+import pythonfmu
+assert not list(Path(pythonfmu.__file__).parent.rglob("binaries")), "the FMU has brought no copy"
+from jointfmu_fmu_src.building import build
+path, own = list(sys.path), pythonfmu.__file__
+build(["GearContact"], ["python"], None, Path(sys.argv[2]))
+assert (sys.path, sys.modules["pythonfmu"].__file__) == (path, own)
+instance.at({"f": 1.0})
+instance.free()
+"""
+
+
+def test_a_process_in_which_a_python_fmu_runs_builds_the_same(fmus: Path, tmp_path: Path) -> None:
+    """The FMU's own copy of pythonfmu, which has no libraries, is imported first."""
+    done = run_host(BESIDE_AN_INSTANCE, fmus / "GearContact.fmu", tmp_path)
+    assert done.returncode == 0, done.stderr
+    built = tmp_path / "python" / "GearContact.fmu"
+    contents = []
+    for path in (built, fmus / "GearContact.fmu"):
+        with zipfile.ZipFile(path) as archive:
+            files = {name: archive.read(name) for name in archive.namelist()}
+        del files["modelDescription.xml"]  # pythonfmu puts the date into it
+        contents.append(files)
+    assert contents[0] == contents[1]
+    assert any(name.startswith("binaries/") for name in contents[0])
+
+
 # Refusals
 
 
@@ -210,6 +245,18 @@ def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None
     assert str(out) in line
     assert everything(tmp_path) == [file]
     assert file.read_text() == "mine"
+
+
+def test_a_python_fmu_without_its_libraries_is_refused(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copy = tmp_path / "broken"
+    copytree(Path(pythonfmu.__file__).parent, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
+    monkeypatch.setattr(python_build, "_installed", lambda: str(copy))
+    assert cli.main(["build", "GearContact", "--flavour", "python", "--out", str(tmp_path / "out")]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"pythonfmu in {copy} has no libraries" in line
+    assert not (tmp_path / "out").exists()
 
 
 def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -313,9 +360,13 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     folder, out = job
     assert f"built: {3 * len(NAMES)} FMUs" in out
     assert "missed: 0" in out
+    proved = re.search(r"proved in fmpy: (\d+) FMUs by (\d+) runs", out)
+    assert proved is not None
+    assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
+    assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
     for flavour in ("fmi2", "fmi3", "python"):
-        own = "six_axis_robot_base_drive"  # of a system, for what is baked into it
-        partners = [] if flavour == "python" else [*PARTNERS, own]
+        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        partners = [] if flavour == "python" else [*PARTNERS, *own]
         assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
     archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
     for ssp in ("ssp", "ssp2"):
@@ -389,6 +440,29 @@ def test_the_main_job_fails_when_a_check_misses(
     lines = out.partition(missed)[2].splitlines()
     assert [line.split(":")[0].strip() for line in lines] == NAMES
     assert (tmp_path / "report" / "index.html").exists()  # the report shows what was missed
+
+
+def test_the_main_job_fails_when_an_fmu_does_not_prove_itself(
+    job: tuple[Path, str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An FMU with a reference that is changed, in place of what was built."""
+    copytree(job[0], tmp_path, dirs_exist_ok=True)
+    name = NAMES[0]
+    path = tmp_path / "fmi2" / f"{name}.fmu"
+
+    def change(member: str, data: bytes) -> bytes:
+        is_meant = member.endswith("load_ramp_ref.csv")
+        return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
+
+    changed_copy(job[0] / "fmi2" / f"{name}.fmu", path, change)
+    monkeypatch.setattr(pipeline, "build", lambda *_: [path])
+    monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
+    assert pipeline.main(tmp_path) == 1
+    missed = capsys.readouterr().out.partition("missed: 2\n")[2].splitlines()
+    assert [line.strip().partition(": ")[0] for line in missed] == 2 * [f"fmi2/{name}"]
+    assert [interface in line for interface, line in zip(BOTH, missed, strict=True)] == [True, True]
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    assert '<td class="miss">miss</td>' in page
 
 
 def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:

@@ -202,7 +202,8 @@ VARIANT = f"""
 import sys
 sys.modules.update(dict.fromkeys({EXTRAS!r}))
 from jointfmu.cli import main
-sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3", "--out", sys.argv[3]]))
+sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3", "--out", sys.argv[3]]
+              + sys.argv[4:]))
 """
 
 

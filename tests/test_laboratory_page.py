@@ -9,10 +9,10 @@ import pytest
 from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from joint_cases import JOINTS
-from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.laboratory import write_laboratory
 from jointfmu_fmu_src.laboratory.modules import modules
 
+from jointfmu import cli
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump, load
 
@@ -163,6 +163,39 @@ def test_arrow_keys_and_the_pointer_draw_a_path(shown: Browser) -> None:
 
 
 @needed
+def test_another_input_moves_along_a_path(shown: Browser) -> None:
+    for name in MODELS:
+        choose(shown, name)
+        ways = shown.run("[...document.querySelectorAll('#moved option')].map((o) => o.textContent)") or []
+        for i, way in enumerate(ways):
+            found = shown.run(
+                "laboratory.then((lab) => { const moved = document.getElementById('moved'); "
+                f"moved.value = {i}; moved.dispatchEvent(new Event('change')); "
+                "return [lab.path.inputs.map((v) => v.name), lab.path.trace.force.length, "
+                "document.activeElement.id, document.getElementById('said').textContent] })"
+            )
+            assert found[0] == way.split(" and ")
+            assert found[1] > 100, found[3]
+            assert found[2] == "moved"
+
+
+@needed
+def test_on_a_phone_a_slider_and_its_curve_are_seen_together(shown: Browser) -> None:
+    choose(shown, next(iter(MODELS)))
+    shown.shape(*PHONE, phone=True)
+    ends = shown.run(
+        "new Promise((done) => { const sliders = document.getElementById('sliders'); sliders.open = true; "
+        "document.getElementById('curves').scrollIntoView(); requestAnimationFrame(() => { "
+        "const of = (e) => e.getBoundingClientRect(); "
+        "const plot = of(document.querySelector('#curves svg')); "
+        "done([plot.top, plot.bottom, of(sliders).top, of(sliders).bottom]) }) })"
+    )
+    shown.shape(*DESKTOP)
+    top, bottom, first, last = ends
+    assert 0.0 <= top < bottom <= first < last == PHONE[1]
+
+
+@needed
 def test_a_chart_zooms_by_pointer_and_keys(shown: Browser) -> None:
     choose(shown, next(iter(MODELS)))
     asked = "laboratory.then((lab) => lab.curves.panels[0].chart.zoom)"
@@ -208,8 +241,9 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
         }
         others = set(file.flat) - set(module.model.parameter_fields())
         assert {key: file.flat[key] for key in others} == {key: first.flat[key] for key in others}
-        with pytest.raises(ValueError, match="flavour"):
-            build([name], ["none"], file, tmp_path)  # all but the flavour is taken
+        words = ("build", name, "--params", str(path), "--flavour", "python", "--out", str(tmp_path))
+        assert cli.main(list(words)) == 0
+        assert (tmp_path / "python" / f"{name}.fmu").is_file()
 
 
 @needed

@@ -21,6 +21,7 @@ from jointfmu_fmu_src.joints.bolted_joint.modelica import tight
 from jointfmu_fmu_src.modelica import library, tables
 from jointfmu_fmu_src.modelica.text import identifier
 from numpy.typing import NDArray
+from read_modelica import Read, read, solution
 from scipy.integrate import solve_ivp
 
 from jointfmu.cli import main
@@ -253,7 +254,7 @@ def test_pymoca_reads_every_file_and_flattens_every_model():
         assert read is not None, path
         root.extend(read)
     # variables and equations of the flat model; an if-equation counts as one
-    expected = {"Examples.RobotJoint": (76, 36), "Examples.BoltedColumn": (84, 39)}
+    expected = {"Examples.RobotJoint": (107, 39), "Examples.BoltedColumn": (84, 39)}
     for path in sorted(COMMITTED.rglob("*.mo")):
         folder, name = path.parent.name, path.stem
         if folder in ("Components", "Wrappers", "Examples") and name != "package":
@@ -407,6 +408,22 @@ def test_bolted_component_slips_as_the_package(rumoca: Any, bolted: BoltedJointS
     assert np.abs(found["joint.f[3]"][first] - exact[2]).max() < EXACT * preload * bolted.joint.n_bolts
     assert np.all(np.diff(found["loss"]) >= 0.0)
     assert found["loss"][-1] == pytest.approx(exact[3, -1], rel=0.02)
+
+
+def test_the_bolted_component_read_by_another_parser_holds_along_the_solution(rumoca: Any):
+    """All equations as pymoca reads them, at what rumoca found; states by trapezia over the corners."""
+    pytest.importorskip("pymoca")
+    body = "JointStiffness.Components.BoltedJoint joint;\n  Circle way;"
+    wires = " ".join(f"connect(joint.flange_{a}, way.{a});" for a in "xyz")
+    found = simulate(rumoca, top(body, wires, _CIRCLE), 1.2, 1e-3, rtol=1e-6)
+    times, first = np.unique(found.time, return_index=True)
+    record = identifier(f"{default('bolted_joint').name} 9 kN")
+    seen, root = solution(found, "joint", first), read(STAND_IN, COMMITTED)
+    errors = Read(root, "BoltedJoint", record, times, seen, {}).errors()
+    states = {"der(q)", "der(s_rel)"}
+    assert states < set(errors)
+    assert max(error for name, error in errors.items() if name not in states) < 1e-12  # round-off
+    assert max(errors[name] for name in states) < 0.01
 
 
 def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: Any, tmp_path: Path):

@@ -261,7 +261,10 @@ def test_series_are_written_and_read_alike() -> None:
 
 def test_a_jump_is_taken_where_it_stands() -> None:
     series = parse("time,u\n0,0\n1,1\n1,5\n2,6\n", "x")
-    assert series.at(np.array([0.5, 1.0, 1.5, 3.0]))["u"].tolist() == [0.5, 5.0, 5.5, 6.0]
+    times = np.array([0.5, 1.0, 1.5, 3.0])
+    assert series.at("u", times).tolist() == [0.5, 5.0, 5.5, 6.0]
+    assert series.before("u", times).tolist() == [0.5, 1.0, 5.5, 6.0]
+    assert series.held("u", times).tolist() == [0.0, 5.0, 5.0, 6.0]
 
 
 @pytest.mark.parametrize(

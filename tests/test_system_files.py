@@ -22,6 +22,7 @@ from jointfmu.systems import names, read, system
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parent.parent
 TEXT = (ROOT / "models/systems/robot_joint.toml").read_text(encoding="utf-8")
+DRIVE = 'model = "HarmonicDriveSpring"'
 ARM = (ROOT / "models/systems/six_axis_robot.toml").read_text(encoding="utf-8")
 CHAIN = '["drive.flange2", "link.flange_b"],'
 
@@ -130,6 +131,28 @@ def second(model: str) -> str:
             [('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "none.toml"')],
             "none.toml: cannot be read",
         ),
+        (
+            [(DRIVE, f'{DRIVE}\ncatalogue = "CSG-18-100"')],
+            "drive: catalogue 'CSG-18-100' is unknown; nearest are CSG-",
+        ),
+        (
+            [(DRIVE, f'{DRIVE}\ncatalogue = "CSG-17-100"\nparameters = "my_drive.toml"')],
+            "drive has catalogue and parameters, allowed is one of them",
+        ),
+        ([(DRIVE, f"{DRIVE}\ncatalogue = 17")], "drive.catalogue = 17, expected a text"),
+        (
+            [(DRIVE, 'model = "GearMesh"\ncatalogue = "m3"')],
+            "drive.catalogue = 'm3', expected none of a gear_mesh: it has no catalogue",
+        ),
+        (
+            [
+                (
+                    '[motor]\nmodel = "RotationalInertia"',
+                    '[motor]\nmodel = "RotationalInertia"\ncatalogue = "CSG-17-100"',
+                )
+            ],
+            "motor.catalogue = 'CSG-17-100', expected none of a RotationalInertia",
+        ),
     ],
 )
 def test_a_file_that_is_wrong_is_refused_in_one_line(
@@ -187,9 +210,17 @@ def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> 
     assert (drive.file.flat["ratio"], drive.file.flat["hysteresis_loss"]) == (50.0, 2.9e-4)
     assert fmu_names(read(mine))["drive"] == "mine_drive"
     assert fmu_names(system("robot_joint"))["drive"] == "HarmonicDriveSpring"
-    assert set(fmu_names(system("six_axis_robot")).values()) == {
-        "AngleProfile", "RotationalInertia", "TorqueCurve", "six_axis_robot_base_drive",
-    }  # fmt: skip
+    robot = system("six_axis_robot")
+    own = {f"six_axis_robot_{one}" for one in robot.joints}
+    assert set(fmu_names(robot).values()) == own | {"AngleProfile", "RotationalInertia", "TorqueCurve"}
+
+
+def test_joints_with_the_same_baked_values_share_an_fmu(tmp_path: Path) -> None:
+    """The same drive at two axes, with another damping: that is set in the archive."""
+    path = changed(tmp_path, ('"CSG-40-100"', '"csg 32 100"'), text=ARM)
+    found = fmu_names(read(path))
+    assert found["base_drive"] == found["shoulder_drive"] == "mine_base_drive"
+    assert found["elbow_drive"] == "mine_elbow_drive"
 
 
 # The arm

@@ -2,6 +2,8 @@
 
 import zipfile
 from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,9 @@ from jointfmu_fmu_src.laboratory.modules import Module
 from jointfmu_fmu_src.native.compiler import file_name, libraries
 from jointfmu_fmu_src.native.description import fmi3_xml
 from jointfmu_fmu_src.native.generate import sources, token
+
+from jointfmu.quantity import build as make
+from jointfmu.quantity import flatten
 
 
 def native_fmu(module: Module, folder: Path) -> Path:
@@ -79,18 +84,42 @@ class Instance:
 
 
 def random_values(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
-    """Parameters around those of the first file, some so far off that they are refused; Booleans too if
-    `switched`."""
+    """Parameters around those of the first file, inside their intervals and the limits that they set each
+    other; Booleans too if `switched`."""
+    values = module.files[0].values
+    while True:
+        found = _drawn(module, rng, switched)
+        with suppress(ValueError):
+            make(type(values), flatten(values) | found)
+            return found
+
+
+def refused_values(module: Module, rng: np.random.Generator) -> dict[str, Any]:
+    """The same, but for one number on the wrong side of its interval."""
+    fields = module.model.parameter_fields()
+    bounded = [name for name, item in fields.items() if np.isfinite(_ends(item)[0])]
+    name = str(rng.choice(bounded))
+    return random_values(module, rng, False) | {name: _ends(fields[name])[0] - rng.uniform(0.1, 1.0)}
+
+
+def _ends(item: Field[Any]) -> tuple[float, float]:
+    """Of a parameter's interval; none of a Boolean."""
+    interval = item.metadata.get("interval")
+    return (interval.low, interval.high) if interval else (-np.inf, np.inf)
+
+
+def _drawn(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
     flat = module.files[0].flat
     for name, item in module.model.parameter_fields().items():
-        value, meta = flat[name], item.metadata
+        value, (low, high) = flat[name], _ends(item)
+        width = 0.02 * (high - low)
         if isinstance(value, bool):
             found[name] = bool(rng.integers(2)) if switched else value
-        elif meta["whole"]:
+        elif item.metadata["whole"]:
             found[name] = value
+        elif np.isfinite(width):
+            found[name] = float(rng.uniform(max(low, value - width), min(high, value + width)))
         else:
-            width = 0.02 * (meta["interval"].high - meta["interval"].low)
-            moved = value * np.exp(rng.normal(0.0, 0.15))
-            found[name] = float(value + rng.uniform(-width, width) if np.isfinite(width) else moved)
+            found[name] = float(value * np.exp(rng.normal(0.0, 0.15)))
     return found

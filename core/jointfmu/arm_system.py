@@ -6,6 +6,7 @@
     axis = "y"
     length, mass, centre, J_along, J_across, travel = ...
     model = "HarmonicDriveSpring"
+    catalogue = "CSG-40-100"
     ...
 
 with every number as { value, unit, kind, source }, and the drive as in any section of a component.
@@ -24,9 +25,10 @@ import numpy as np
 
 from .arm import AXES, Arm, Link
 from .joints import MODELS
-from .parameters import default, entries, load
+from .parameters import default, entries
 from .partners import TorqueCurve
 from .quantity import build, flat_fields, problem, quantity
+from .system_joint import joint_file
 
 _MOTION = {
     "start": quantity("s", "begin of the motion", ge=0.0),
@@ -79,7 +81,7 @@ def arm_parts(path: Path, section: Any) -> tuple[Arm, Sections, list[tuple[str, 
 
 
 def _ratio(path: Path, name: str, drive: Mapping[str, Any]) -> float:
-    """Of the drive of an axis: its own, or that of its parameter file."""
+    """Of the drive of an axis: its own, or that of its parameters."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
         able = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) == 4]
@@ -87,8 +89,8 @@ def _ratio(path: Path, name: str, drive: Mapping[str, Any]) -> float:
     entry = drive.get("ratio")
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):
         return float(entry["value"])
-    joint, given = MODELS[model].joint, drive.get("parameters")
-    file = default(joint) if given is None else load(path.parent / str(given), joint)
+    joint = MODELS[model].joint
+    file = joint_file(path.parent, f"arm.{name}", joint, drive) or default(joint)
     return float(file.flat["ratio"])
 
 
@@ -110,9 +112,14 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, Any], ratio: float) -> Sectio
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
         f"{name}_load": _section(
-            "TorqueCurve", times | {key: (value, "N.m") for key, value in points.items()}
+            "TorqueCurve", times | {key: (_clean(value), "N.m") for key, value in points.items()}
         ),
     }
+
+
+def _clean(torque: float) -> float:
+    """To 1e-8 N.m: later digits depend on the processor."""
+    return round(torque, 8) + 0.0
 
 
 def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, Any]:

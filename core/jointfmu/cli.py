@@ -18,7 +18,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         from .commands.parser import parser
 
-        args = parser().parse_args(argv)
+        words = list(sys.argv[1:] if argv is None else argv)
+        args = parser(words).parse_args(words)
         name = f"jointfmu {args.command}"
         return _run(args, name)
     except (KeyboardInterrupt, ImportError) as error:

@@ -13,7 +13,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .interface import MOST_STEPS, SIDE, Law, checked_spots, largest_spot
+from .interface import CLOSE, MOST_STEPS, SIDE, Law, checked_spots, largest_spot
 from .powerlaw import Spots
 from .quantity import Number
 
@@ -84,8 +84,8 @@ class Curve:
         """Load and its first `order` derivatives at displacements x (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(x, nodes[0], nodes[-1])
+        i = _segment(nodes, x)
+        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         first = nodes[i]
         h = nodes[i + 1] - first
         t = (inside - first) / h
@@ -107,16 +107,19 @@ class Curve:
         """Integral (...) of the load from the first node to displacements x (...)."""
         x = np.asarray(x, dtype=np.float64)
         nodes = self.displacement
-        i = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(x, nodes[0], nodes[-1])
+        i = _segment(nodes, x)
+        inside = np.minimum(np.maximum(x, nodes[0]), nodes[-1])
         step = inside - nodes[i]
         t = step / (nodes[i + 1] - nodes[i])
         mean = np.zeros_like(t)
         for part, coefficient in zip(_MEANS[::-1], self._coefficients[::-1, i], strict=True):
             mean = mean * t + part * coefficient
-        load, stiffness = self.derivatives(inside, 1)
+        energy = np.asarray(self._energies[i] + step * mean)
         beyond = x - inside
-        return np.asarray(self._energies[i] + step * mean + beyond * (load + 0.5 * beyond * stiffness))
+        if not np.any(beyond):
+            return energy
+        load, stiffness = self.derivatives(inside, 1)
+        return np.asarray(energy + beyond * (load + 0.5 * beyond * stiffness))
 
     def inverse(self, load: ArrayLike) -> Array:
         """Displacement (...) at which the table carries a load (...), to round-off.
@@ -124,27 +127,39 @@ class Curve:
         Safeguarded Newton inside the segment; on a flat beginning (zero stiffness) the first node.
         """
         y = np.asarray(load, dtype=np.float64)
-        nodes = self.load
-        i = np.clip(np.searchsorted(nodes, y, side="right") - 1, 0, nodes.size - 2)
-        inside = np.clip(y, nodes[0], nodes[-1])
-        low = self.displacement[i].copy()
-        high = self.displacement[i + 1].copy()
-        x = low + (high - low) * (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
+        nodes, places = self.load, self.displacement
+        i = _segment(nodes, y)
+        inside = np.minimum(np.maximum(y, nodes[0]), nodes[-1])
+        first, h = places[i], places[i + 1] - places[i]
+        low, high = np.zeros(y.shape), np.ones(y.shape)
+        t = (inside - nodes[i]) / (nodes[i + 1] - nodes[i])
+        top, *rest = self._coefficients[::-1, i]
         for _ in range(MOST_STEPS):
-            value, slope = self.derivatives(x, 1)
+            value, slope = top, np.zeros(y.shape)
+            for coefficient in rest:
+                slope = slope * t + value
+                value = value * t + coefficient
             residual = inside - value
-            low, high = np.where(residual > 0.0, x, low), np.where(residual < 0.0, x, high)
+            rises = residual > 0.0
+            low, high = np.where(rises, t, low), np.where(rises, high, t)
             with np.errstate(divide="ignore", invalid="ignore"):
-                step = x + residual / slope
-            new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
-            done = np.all((np.abs(new - x) <= 4e-16 * np.abs(x) + 1e-300) | (y <= nodes[0]))
-            x = new
+                step = t + residual / slope
+            newton = (step >= low) & (step <= high)
+            new = np.where(newton, step, 0.5 * (low + high))
+            done = np.all(np.abs(new - t) <= np.where(newton, CLOSE, 4e-16) * t)
+            t = new
             if done:
                 break
+        x = first + t * h
         edge = np.where(y > nodes[-1], self.stiffness[-1], self.stiffness[0])
         flat = edge == 0.0
         x = np.where(y <= nodes[0], self.displacement[0], x)
         return np.asarray(x + np.where(flat, 0.0, (y - inside) / np.where(flat, 1.0, edge)))
+
+
+def _segment(nodes: Array, x: Array) -> NDArray[np.intp]:
+    """Number (...) of the segment between nodes (n) that x (...) lies in, or next to."""
+    return np.minimum(np.maximum(np.searchsorted(nodes, x, side="right") - 1, 0), nodes.size - 2)
 
 
 def assemble(pieces: list[tuple[Array, Array, Array, Array]], error: float = 0.0) -> Curve:

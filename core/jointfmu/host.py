@@ -1,4 +1,4 @@
-"""fmpy's co-simulation slaves of FMI 2.0 and 3.0 behind one face: start, set, get."""
+"""fmpy's instances of FMI 2.0 and 3.0 behind one face: start, set, get."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -9,10 +9,10 @@ Log = Callable[[bytes], None]
 
 
 class Fmi2:
-    """A slave of FMI 2.0."""
+    """An instance of FMI 2.0, for co-simulation or model exchange."""
 
-    def __init__(self, **options: Any) -> None:
-        self.fmu = fmi2.FMU2Slave(**options)
+    def __init__(self, exchange: bool = False, **options: Any) -> None:
+        self.fmu = (fmi2.FMU2Model if exchange else fmi2.FMU2Slave)(**options)
 
     def start(self, log: Log) -> None:
         """Instantiate with logging on; `log` gets what is more than an event."""
@@ -41,12 +41,21 @@ class Fmi2:
         """Values of Real variables."""
         return list(self.fmu.getReal(references))
 
+    @property
+    def rates(self) -> Callable[..., Any]:
+        """What gives the derivatives of the continuous states."""
+        return self.fmu.getDerivatives  # type: ignore[no-any-return]
+
+    def update(self) -> tuple[Any, ...]:
+        """One event iteration: whether another is needed, whether to end, ... the next event's time."""
+        return tuple(self.fmu.newDiscreteStates())
+
 
 class Fmi3:
-    """A slave of FMI 3.0."""
+    """An instance of FMI 3.0, for co-simulation or model exchange."""
 
-    def __init__(self, **options: Any) -> None:
-        self.fmu = fmi3.FMU3Slave(**options)
+    def __init__(self, exchange: bool = False, **options: Any) -> None:
+        self.fmu = (fmi3.FMU3Model if exchange else fmi3.FMU3Slave)(**options)
 
     def start(self, log: Log) -> None:
         """Instantiate; errors and warnings are logged."""
@@ -69,6 +78,15 @@ class Fmi3:
     def get(self, references: Sequence[int]) -> list[float]:
         """Values of Float64 variables."""
         return list(self.fmu.getFloat64(references))
+
+    @property
+    def rates(self) -> Callable[..., Any]:
+        """What gives the derivatives of the continuous states."""
+        return self.fmu.getContinuousStateDerivatives  # type: ignore[no-any-return]
+
+    def update(self) -> tuple[Any, ...]:
+        """One event iteration: whether another is needed, whether to end, ... the next event's time."""
+        return tuple(self.fmu.updateDiscreteStates())
 
 
 def _plain(variable: Any, whole: str = "Integer") -> str:

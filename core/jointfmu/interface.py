@@ -21,7 +21,7 @@ NOTHING = 1e-200
 FLATTEST, STEEPEST = 0.5, 2.5
 """Bounds of the slope of ln F over u [1]; the first in units of m."""
 CLOSE = 1e-8
-"""Relative residual [1] from which one more Newton step reaches round-off: where compiled code stops."""
+"""Relative residual or step [1] from which one more Newton step reaches round-off."""
 MOST_STEPS = 200
 """Steps of an inversion [1], far beyond what any takes."""
 SIDE = 1e-9
@@ -86,9 +86,8 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
     bad = ~(np.isfinite(p) & (p >= 0.0))
     if np.any(bad):
         raise ValueError(f"pressure = {p[bad].flat[0]:g} Pa is outside [0, inf): nominal contact pressure")
-    spots = checked_spots(law)
+    spots, (least, _, most) = _checked(law)
     load = np.where(p < NOTHING, 0.0, p) * law.A_0
-    least, most = (np.exp(spots.log_total("load", u)[0]) for u in (LEAST, MOST))
     if np.any(bad := (load > most) | ((load > 0.0) & (load < least))):
         raise ValueError(
             f"pressure = {np.broadcast_to(p, bad.shape)[bad].flat[0]:g} Pa is outside "
@@ -109,18 +108,25 @@ def checked_spots(law: Law) -> Spots:
 
     Raises ValueError.
     """
+    return _checked(law)[0]
+
+
+def _checked(law: Law) -> tuple[Spots, list[Number]]:
+    """The same, and the loads [N] at the log-areas LEAST, 0 and MOST."""
+    ends = (LEAST, 0.0, MOST)
     with np.errstate(all="ignore"):
         try:
             spots = law.spots()
         except (OverflowError, ZeroDivisionError):
             raise ValueError(_NOT_REPRESENTABLE.format("inf")) from None
-        ends = (LEAST, 0.0, MOST)
-        values = [x for u in ends for x in (*spots.log_total("load", u), spots.total("load", u))]
+        logs = [spots.log_total("load", u) for u in ends]
+        loads = [np.exp(log) for log, _ in logs]
+        values = [*loads, *(x for log in logs for x in log), *(np.exp(spots.m * u) for u in ends)]
         representable = np.all([np.all(np.isfinite(x)) for x in values])
         positive = np.all((spots.reference > 0.0) & np.isfinite(1.0 / spots.reference))
     if not (representable and positive):
         raise ValueError(_NOT_REPRESENTABLE.format(f"{np.max(spots.reference):g}"))
-    return spots
+    return spots, loads
 
 
 def _solve(spots: Spots, load: Array) -> Array:

@@ -20,6 +20,8 @@ import numpy as np
 from .quantity import Number
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(32)
+_FEW = 1024
+"""Numbers of which all nodes at once fit the cache."""
 
 
 def exprel(z: Number) -> Number:
@@ -41,10 +43,17 @@ def exp_integral(x: Number, lower: Number, upper: Number) -> Number:
 
 
 def gauss(function: Callable[[Number], Number], lower: Number, upper: Number) -> Number:
-    """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes."""
+    """Integral of a smooth function over [lower, upper] by 32 Gauss-Legendre nodes.
+
+    The function is called with one node after the other; few numbers go with all nodes at once.
+    """
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-    total: Number = 0.0
-    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+    total = _WEIGHTS[0] * function(middle + half * _NODES[0])
+    if isinstance(total, float | np.ndarray) and np.size(total) <= _FEW:
+        column = (-1, *(1 for _ in np.shape(total)))
+        rest = _WEIGHTS[1:].reshape(column) * function(middle + half * _NODES[1:].reshape(column))
+        return half * (total + np.sum(rest, axis=0))
+    for node, weight in zip(_NODES[1:], _WEIGHTS[1:], strict=True):
         total = total + weight * function(middle + half * node)
     return half * total
 
@@ -97,6 +106,8 @@ class Smooth:
         def integrand(t: Number) -> Number:
             return self.function(np.maximum(t, self.lower)) * np.exp(-m * t)
 
+        if isinstance(u, np.ndarray) and isinstance(self.upper, float) and np.all(u >= self.upper):
+            u = self.upper  # one number for all
         return gauss(integrand, clip(self.lower, u), clip(self.upper, u))
 
 

@@ -93,8 +93,10 @@ def units(fmu: str | Path) -> dict[str, str]:
 
 
 @contextmanager
-def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
+def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any]]:
     """Folder and fmpy model description of an FMU, removed afterwards.
+
+    exchange : whether it may be for model exchange only
 
     Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
     version of FMI, not for co-simulation, or for other platforms.
@@ -116,7 +118,7 @@ def unpacked(fmu: str | Path) -> Iterator[tuple[str, Any]]:
     if not known:
         raise ValueError(f"{path}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
     try:
-        _check_interface(description, path)
+        _check_interface(description, path, exchange)
         _check_python_flavour(Path(folder) / "resources", path)
         yield folder, description
     finally:
@@ -132,11 +134,11 @@ def _fmi_version(path: Path) -> str:
     return root.get("fmiVersion", "none")
 
 
-def _check_interface(description: Any, source: Path) -> None:
-    """Refuse what cannot be driven: no co-simulation, no binary for this platform."""
+def _check_interface(description: Any, source: Path, exchange: bool) -> None:
+    """Refuse what cannot be driven: no such interface, no binary for this platform."""
     from fmpy import platform, supported_platforms
 
-    if description.coSimulation is None:
+    if description.coSimulation is None and not (exchange and description.modelExchange):
         raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
     if platform not in (built_for := supported_platforms(str(source))):
         raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
@@ -196,8 +198,8 @@ def _drive(
 
 
 @contextmanager
-def slave(folder: str, md: Any, messages: list[str], source: str) -> Iterator[Any]:
-    """An instantiated co-simulation slave; what it logs is appended to `messages`.
+def slave(folder: str, md: Any, messages: list[str], source: str, exchange: bool = False) -> Iterator[Any]:
+    """An instance for co-simulation or model exchange; what it logs is appended to `messages`.
 
     Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
     RuntimeError if it does not instantiate.
@@ -205,12 +207,14 @@ def slave(folder: str, md: Any, messages: list[str], source: str) -> Iterator[An
     from . import host
 
     flavour = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
+    interface = md.modelExchange if exchange else md.coSimulation
     before = Path.cwd()
     try:
         fmu = flavour(
+            exchange,
             guid=md.guid,
             unzipDirectory=folder,
-            modelIdentifier=md.coSimulation.modelIdentifier,
+            modelIdentifier=interface.modelIdentifier,
             instanceName="ramp",
         )
     except Exception as error:  # fmpy raises bare Exception, ctypes its own

@@ -12,6 +12,7 @@ approach; they differ by the spread of the springs' limits, which the loss of a 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -106,7 +107,7 @@ class Moved:
         return np.asarray(np.sum(self.force, axis=-1))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Foundation:
     """The sliders of an interface.
 
@@ -157,12 +158,17 @@ class Foundation:
         """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
         return self.height[..., :-1], self.height[..., 1:]
 
+    @cached_property
+    def _ends(self) -> list[Array]:
+        """Load [Pa] and stiffness [Pa/m] of the curve at the heights."""
+        return self.curve.derivatives(self.height, 1)
+
     def carried(self, approach: ArrayLike) -> Carried:
         """What the sliders have at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         low, high = self._ranges()
         full, touches = delta >= high, delta > low
-        now, ends = self.curve.derivatives(delta, 2), self.curve.derivatives(self.height, 1)
+        now, ends = self.curve.derivatives(delta, 2), self._ends
         first, last = ([end[..., part] for end in ends] for part in (slice(-1), slice(1, None)))
         load, springs = (np.where(full, b, a) for a, b in zip(now[:2], last, strict=True))
         springs = np.where(touches, np.maximum(springs - first[1], 0.0), 0.0)
@@ -198,8 +204,9 @@ class Foundation:
         Heat is the work less the change of the elastic energy: exact for sliders whose stiffness stays, see
         `slip_loss`, else of third order in the path.
         """
-        start, end, path = self.carried(before), self.carried(after), _Path.of(before, after, shift)
-        keeps, carries = self._carrying(start, end, path)
+        path, end = _Path.of(before, after, shift), self.carried(after)
+        start = self.carried(before) if np.any(path.change) else end
+        keeps, carries = (1.0, end.stiffness) if start is end else self._carrying(start, end, path)
         old, along = (force[..., 0, :], force[..., 1, :]), (path.along[..., 0, :], path.along[..., 1, :])
         x, y, beyond, *tangent = slide(*old, keeps, carries, *along, end.limit, end.stiffness)
         loss = slip_loss(*old, x, y, beyond, start.limit, end.limit, end.stiffness)

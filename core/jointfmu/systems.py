@@ -7,10 +7,11 @@ A file is `schema = 1`, `name = ...`, `description = ...`, and a section for eve
     parameters = "my_drive.toml"
     hysteresis_loss = { value = 2.9e-4, unit = "rad", kind = "catalogue", source = "1 arcmin" }
 
-with its FMU as `model`, of a joint its parameter file (absent: the default), and values of its own:
-parameters, and of a joint the inputs at which the system holds it. `connect` is a list of pairs: a load and
-the flange that it acts on, two flanges, or a flange of a joint and "ground". A section `[experiment]` has
-`stop_time` and `interval`. A section `[arm]` stands for the components of a serial arm, see `arm_system`.
+with its FMU as `model`, of a joint its parameter file or, as `catalogue`, its name in the catalogue
+(neither: the default), and values of its own: parameters, and of a joint the inputs at which the system
+holds it. `connect` is a list of pairs: a load and the flange that it acts on, two flanges, or a flange of
+a joint and "ground". A section `[experiment]` has `stop_time` and `interval`. A section `[arm]` stands for
+the components of a serial arm, see `arm_system`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,9 +22,10 @@ from typing import Any
 
 from .arm_system import arm_parts
 from .joints import MODELS
-from .parameters import ParameterFile, default, entries, load, read_document
+from .parameters import ParameterFile, default, entries, read_document
 from .partners import PARTNERS
 from .quantity import flat_fields, problem, quantity
+from .system_joint import KEYS, joint_file
 
 GROUND = "ground"
 """What holds a flange of a joint."""
@@ -212,15 +214,19 @@ def _component(path: Path, name: str, section: Any) -> Component:
     model = section.get("model")
     if not isinstance(model, str) or model not in models:
         raise ValueError(f"{name}.model = {model!r}, allowed are {', '.join(models)}")
-    body = {key: value for key, value in section.items() if key not in ("model", "parameters")}
-    given = section.get("parameters")
+    body = {key: value for key, value in section.items() if key not in ("model", *KEYS)}
+    given = None
     if model in PARTNERS:
-        if given is not None:
-            raise ValueError(f"{name}.parameters = {given!r}, expected none of a {model}, only its values")
+        for key in KEYS:
+            if key in section:
+                raise ValueError(
+                    f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
+                )
         file, declared, inputs = None, dict(flat_fields(PARTNERS[model])), {}
     else:
         joint = MODELS[model].joint
-        file = default(joint) if given is None else load(path.parent / str(given), joint)
+        given = joint_file(path.parent, name, joint, section)
+        file = given or default(joint)
         declared = {key: item for key, item in flat_fields(type(file.values)) if key in file.flat}
         inputs = {v.name: quantity(v.unit, v.doc, ge=v.low) for v in MODELS[model].inputs}
         declared |= inputs

@@ -17,7 +17,10 @@ from .describe import described
 from .modules import compiled, modules
 
 _FOLDER = Path(__file__).with_name("web")
-_SCRIPTS = ("engine", "text", "chart", "controls", "views", "files", "main")
+_SCRIPTS = (
+    *("engine", "text", "chart", "sight", "controls"),
+    *("curves", "path", "turn", "contact", "body", "files", "main"),
+)
 """Files of the page, in the order in which they are run."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),

@@ -13,12 +13,11 @@ from jointfmu.reference import ROLES, points
 
 from ..joints import part
 from ..native.page import Panel
+from ..shown import shown_unit
 from ..xml_parts import Listed, listed
 from .modules import Module
 from .part import Bench
 
-_SHOWN = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
-"""One display unit for all stiffnesses; others have that in which they read best."""
 _NOMINALS = 2.0
 """Half the span of an input's slider over its nominal value."""
 _DECADE = 10.0
@@ -47,6 +46,8 @@ def described(module: Module) -> dict[str, Any]:
         "points": list(_points(model, bench)),
         "measured": [m._asdict() for m in bench.measured],
         "map": _map(bench, first),
+        "turn": bench.turn and bench.turn._asdict(),
+        "example": bench.example and bench.example._asdict(),
     }
 
 
@@ -103,7 +104,7 @@ def _row(v: Listed, model: Model, bench: Bench) -> dict[str, Any]:
         row["span"] = span = bench.spans.get(v.name) or _span(v, model, row)
         row["log"] = v.causality == "parameter" and span[0] > 0.0 and span[1] > 5.0 * span[0]
         typical = span[1] if v.causality == "input" or not v.start else float(v.start)
-    shown = _SHOWN.get(unit) or units.display_unit(unit, typical)
+    shown = shown_unit(unit, typical)
     return row | {"unit": unit, "shown": shown, "factor": units.factor(unit, shown)}
 
 

@@ -44,6 +44,36 @@ class Map(NamedTuple):
     marks: Callable[[Any], tuple[Sequence[Sequence[float]], str]]
 
 
+class Turn(NamedTuple):
+    """A shaft that turns while another follows by a ratio against a load.
+
+    driven, speed             : inputs of the shaft
+    follower, follower_speed  : of the other
+    torque, load              : outputs: torque on the first shaft, and on the other
+    error                     : output by which the other runs ahead
+    ratio, rated              : parameters: the first shaft's turns to one of the other, a usual load
+    usual                     : a usual speed [rad/s]
+    """
+
+    driven: str
+    speed: str
+    follower: str
+    follower_speed: str
+    torque: str
+    load: str
+    error: str
+    ratio: str
+    rated: str
+    usual: float
+
+
+class Example(NamedTuple):
+    """Values beside the default ones that show more of the joint, and what they are."""
+
+    doc: str
+    values: Mapping[str, float]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bench:
     """One model on the page.
@@ -54,6 +84,8 @@ class Bench:
     points   : {quantity of a reference file: where the FMU shows it}
     measured : curves of other joints
     picture  : a map of the contact
+    turn     : two shafts that turn
+    example  : values that a button sets
     """
 
     panels: Sequence[Panel] = ()
@@ -62,3 +94,5 @@ class Bench:
     points: Mapping[str, Shown] = field(default_factory=dict)
     measured: Sequence[Measured] = ()
     picture: Map | None = None
+    turn: Turn | None = None
+    example: Example | None = None

@@ -7,7 +7,7 @@ from typing import Any
 from jointfmu.parameters import ParameterFile
 
 from .tables import TOLERANCE, Table
-from .text import matrix, number, text
+from .text import COMPUTED, GIVEN, matrix, number, text
 
 WorkingPoint = tuple[float, ...]
 """Values of the inputs Kind.working_point of a joint, SI; empty for a joint that has none."""
@@ -78,6 +78,11 @@ class Component:
     special: Sequence[str] = ()
 
 
-def numbers(values: Mapping[str, float]) -> dict[str, str]:
-    """Values as expressions."""
-    return {name: number(value) for name, value in values.items()}
+def given(values: Mapping[str, float]) -> dict[str, str]:
+    """Values of a file as expressions."""
+    return {name: number(value, GIVEN) for name, value in values.items()}
+
+
+def computed(values: Mapping[str, float]) -> dict[str, str]:
+    """Values computed from those of a file as expressions."""
+    return {name: number(value, COMPUTED) for name, value in values.items()}

@@ -133,7 +133,8 @@ def _record(
         return [f"data=JointStiffness.Data.{shown.name}()"], own
     (record,) = component.records(file, [point])
     name = f"{part.name[0].upper()}{part.name[1:]}Data"
-    records.append(record.content(component.base) | {"name": name, "title": text(f"Of {part.name}")})
+    title = text(f"{file.name}, of {part.name}")
+    records.append(record.content(component.base) | {"name": name, "title": title})
     return [f"data={name}()"], own
 
 

@@ -7,17 +7,22 @@ import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from numpy.typing import NDArray
 
+GIVEN, COMPUTED = 15, 10
+"""Digits of numbers that a file gives, and of those computed from them: later digits depend on the
+processor, and the tables err by 1e-7."""
 
-def number(value: float) -> str:
-    """A number, to 15 digits, or a Boolean."""
+
+def number(value: float, digits: int = GIVEN) -> str:
+    """A number, or a Boolean."""
     if isinstance(value, bool):
         return str(value).lower()
-    return f"{value + 0.0:.15g}"
+    return f"{value + 0.0:.{digits}g}"
 
 
 def matrix(rows: NDArray[np.float64]) -> str:
-    """A matrix, one row per line."""
-    return "[\n      " + ";\n      ".join(", ".join(number(x) for x in row) for row in rows) + "]"
+    """A matrix of computed numbers, one row per line."""
+    lines = (", ".join(number(x, COMPUTED) for x in row) for row in rows)
+    return "[\n      " + ";\n      ".join(lines) + "]"
 
 
 def text(content: str) -> str:

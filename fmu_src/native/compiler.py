@@ -7,12 +7,10 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
+from importlib import import_module
 from os import cpu_count
 from pathlib import Path
-
-import fmpy
 
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
@@ -28,8 +26,12 @@ _COMPILED = (
     "-fvisibility=hidden", "-DNDEBUG", "-s",
 )  # fmt: skip
 _OPTIONS = (*_COMPILED, "-shared")
-_WEB = ("-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED, "-Wl,--export-dynamic")
-"""A module that takes nothing from its host: what is visible is exported, and `_initialize` comes first."""
+_WEB = (
+    "-target", "wasm32-wasi", "-mexec-model=reactor", *_COMPILED,
+    "-Wl,--export-dynamic", "-Wl,-z,stack-size=131072",
+)  # fmt: skip
+"""A module that takes nothing from its host but what the sources import: what is visible is exported, and
+`_initialize` comes first. No function needs a page of stack; zig would reserve 16 MB."""
 _UCRT = ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
 """Parts of the C runtime that belongs to Windows 10 and newer."""
 
@@ -51,6 +53,8 @@ def libraries(
     Raises ImportError if ziglang is missing, ValueError if its cache cannot be written, RuntimeError
     with the compiler's first error.
     """
+    from concurrent.futures import ThreadPoolExecutor
+
     options = {platform: _options(platform, stem or name) for platform in platforms}
     own = Path(__file__).with_name("windows.c")
     folder = _folder({**_headers(), own.name: own.read_text(encoding="utf-8"), **sources})
@@ -71,12 +75,21 @@ def exported(files: Iterable[str], version: str) -> list[str]:
     return [name for name in files if name.endswith(".c") and name != other]
 
 
-def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
-    """A WebAssembly module of the .c files `units`, a reactor without imports; the rest as `libraries`."""
+def webassembly(
+    name: str, sources: Mapping[str, str], units: Sequence[str], defined: Sequence[str] = ()
+) -> bytes:
+    """A WebAssembly module of the .c files `units`, a reactor; the rest as `libraries`.
+
+    defined : macros, NAME=TEXT
+
+    Raises as `libraries`.
+    """
+    import_module("ziglang")
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{name}.wasm"
-        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
+        macros = [f"-D{macro}" for macro in defined]
+        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *macros, *units, "-o", str(file))
         return file.read_bytes()
 
 
@@ -118,6 +131,8 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
 
 
 def _headers() -> dict[str, str]:
+    import fmpy
+
     folder = Path(fmpy.__file__).parent / "c-code"
     return {p.name: p.read_text(encoding="utf-8") for p in sorted(folder.glob("fmi[23]*.h"))}
 

@@ -51,10 +51,12 @@ class DataPart:
     Without it every real number is data as it is, and all else (choices, series, whole numbers) is code.
 
     stands : (parameter set) -> {structured name: value} of one that stands for it in the generated code
+    of     : (parameter set) -> the class of that one
     tables : (parameter set) -> {name: table} that its C reads, `data.NAME` with `data.n_NAME` rows
     """
 
     stands: Callable[[Any], Mapping[str, Any]] = flatten
+    of: Callable[[Any], type[Any]] = type
     tables: Callable[[Any], Tables] = lambda values: NO_TABLES
 
 
@@ -64,12 +66,14 @@ class Split(NamedTuple):
     exposed : variables, which a tool sets
     fixed   : {name: value} numbers of the block
     code    : {name: value} what the generated code depends on
+    of      : class of the parameter set that the code is generated with
     tables  : {name: table} of the block
     """
 
     exposed: Sequence[str]
     fixed: Mapping[str, float]
     code: Mapping[str, Any]
+    of: type[Any]
     tables: Tables
 
     @property
@@ -83,11 +87,12 @@ def split(model: Model, parameters: ParameterFile) -> Split:
     """The parameters of an FMU."""
     own = part(model, "data")
     how: DataPart = own.DATA if own else DataPart()
-    exposed, fields = list(model.parameter_fields()), dict(flat_fields(type(parameters.values)))
+    exposed, of = list(model.parameter_fields()), how.of(parameters.values)
+    fields = dict(flat_fields(of))
     hidden = {n: v for n, v in how.stands(parameters.values).items() if n not in exposed}
     fixed = {n: float(v) for n, v in hidden.items() if _real(fields[n].metadata)}
     code = {n: v for n, v in hidden.items() if n not in fixed}
-    return Split(exposed, fixed, code, how.tables(parameters.values))
+    return Split(exposed, fixed, code, of, how.tables(parameters.values))
 
 
 def _real(meta: Mapping[str, Any]) -> bool:
@@ -158,7 +163,8 @@ def block(
         room = np.zeros((most, rows.shape[1]))
         room[: len(rows)] = rows
         count = Member("int64_t", f"n_{table}", (), str(len(rows)), len(rows).to_bytes(8, "little"))
-        members += [count, _numbers(table, room)]
+        shown = _numbers(table, room[: max(len(rows), 1)]).text  # C fills up with zeros
+        members += [count, _numbers(table, room)._replace(text=shown)]
         counts[f"MOST_{table.upper()}"] = most
     return Data(token, members, counts)
 

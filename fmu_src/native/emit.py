@@ -1,4 +1,7 @@
-"""CasADi expressions as plain C: one static function of (x, c) -> y per function, libm only."""
+"""CasADi expressions as plain C: one static function of (x, c) -> y per function.
+
+What the laws take of the elementary functions gives the same bits everywhere, by `runtime/elementary.c`.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,8 +13,8 @@ _BINARY = {
     ca.OP_SUB: "{0} - {1}",
     ca.OP_MUL: "{0} * {1}",
     ca.OP_DIV: "{0} / {1}",
-    ca.OP_POW: "pow({0}, {1})",
-    ca.OP_CONSTPOW: "pow({0}, {1})",
+    ca.OP_POW: "same_pow({0}, {1})",
+    ca.OP_CONSTPOW: "same_pow({0}, {1})",
     ca.OP_LT: "{0} < {1} ? 1.0 : 0.0",
     ca.OP_LE: "{0} <= {1} ? 1.0 : 0.0",
     ca.OP_EQ: "{0} == {1} ? 1.0 : 0.0",
@@ -32,18 +35,18 @@ _UNARY = {
     ca.OP_TWICE: "2.0 * {0}",
     ca.OP_INV: "1.0 / {0}",
     ca.OP_SQRT: "sqrt({0})",
-    ca.OP_EXP: "exp({0})",
-    ca.OP_LOG: "log({0})",
+    ca.OP_EXP: "same_exp({0})",
+    ca.OP_LOG: "same_log({0})",
     ca.OP_EXPM1: "exp_less_one({0})",
-    ca.OP_LOG1P: "log1p({0})",
-    ca.OP_SIN: "sin({0})",
-    ca.OP_COS: "cos({0})",
+    ca.OP_LOG1P: "same_log1p({0})",
+    ca.OP_SIN: "same_sin({0})",
+    ca.OP_COS: "same_cos({0})",
     ca.OP_TAN: "tan({0})",
     ca.OP_ASIN: "asin({0})",
     ca.OP_ACOS: "acos({0})",
     ca.OP_ATAN: "atan({0})",
-    ca.OP_TANH: "tanh({0})",
-    ca.OP_ERF: "erf({0})",
+    ca.OP_TANH: "same_tanh({0})",
+    ca.OP_ERF: "same_erf({0})",
     ca.OP_FABS: "fabs({0})",
     ca.OP_FLOOR: "floor({0})",
     ca.OP_NOT: "{0} == 0.0 ? 1.0 : 0.0",
@@ -53,17 +56,20 @@ _UNARY = {
 HELPERS = """/* expm1, at less cost where nothing cancels. */
 static inline double exp_less_one(double x)
 {
-    return x < -0.7 || x > 0.7 ? exp(x) - 1.0 : expm1(x);
+    return x < -0.7 || x > 0.7 ? same_exp(x) - 1.0 : same_expm1(x);
 }
 
-/* hypot, at less cost where the squares stay in range. */
+/* Far from 1 the squares are those of smaller or larger numbers. */
 static inline double root_of_squares(double a, double b)
 {
     const double sum = a * a + b * b;
-    return sum > 1e-280 && sum < 1e280 ? sqrt(sum) : hypot(a, b);
+    if (sum > 1e-280 && sum < 1e280)
+        return sqrt(sum);
+    const double scale = sum < 1.0 ? 0x1p600 : 0x1p-600, x = scale * a, y = scale * b;
+    return sqrt(x * x + y * y) / scale;
 }
 """
-"""What the functions call besides libm."""
+"""What the functions call besides libm and `runtime/elementary.c`."""
 
 
 def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any], derivative: bool = False) -> str:

@@ -12,6 +12,7 @@ from jointfmu.parameters import ParameterFile
 from ..folders import own_folder, part
 from ..partners import PARTNERS
 from .data import GENERATED, Split, data_of, placeholder, split
+from .elementary import tables
 from .graph import graph
 from .law_c import law_c
 from .part import NativePart
@@ -19,6 +20,8 @@ from .variables_c import variables_c
 
 RUNTIME = Path(__file__).parent / "runtime"
 COMMON = ("text", "instance", "evaluate", "values", "continuous", "step", "derivative", "memory", "snapshot")
+
+_GENERATED = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
 
 
 def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
@@ -41,8 +44,9 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
     )
     memory = model.memory_size(parameters.values) if native.memory is None else native.memory
     files |= {"variables.c": variables_c(model), "model.h": _model(model, parameters.values, memory)}
+    files |= {"elementary_tables.h": tables()}
     head = GENERATED.format(version=__version__, of="")
-    files |= {n: head + files[n] for n in ("law.h", "law.c", "variables.c", "model.h")}
+    files |= {n: head + files[n] for n in _GENERATED}
     return dict(sorted((files | {"data.h": placeholder(model, given).header()}).items()))
 
 
@@ -66,7 +70,7 @@ def native_part(model: Model) -> NativePart:
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
     """The C that is not generated: that of every FMU, what the joint shares, its own."""
-    stems = (*COMMON, *native.shared, "joint", "variables", "fmi2", "fmi3")
+    stems = (*COMMON, *native.shared, "joint", "variables", "elementary", "fmi2", "fmi3")
     paths = [path for path in RUNTIME.iterdir() if path.stem in stems]
     own = [path for path in own_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in own if path.suffix == ".h"]

@@ -85,7 +85,7 @@ def graph(model: Model, given: Split, functions: Callable[["Graph", Model], None
     ca.GlobalOptions.setNumpyMode(1)
     try:
         theta = {name: ca.SX.sym(name) for name in (*given.exposed, *given.fixed)}
-        joint = build(model.parameters, {**given.code, **theta})
+        joint = build(given.of, {**given.code, **theta})
         made = Graph(theta, joint, limits(joint))
         functions(made, model)
         if tabulated:

@@ -1,6 +1,7 @@
 """Compiled parts of FMUs, which all parameter files of one structure share: shipped, kept or compiled now.
 
-A part is found by what went into it: the structure, and the content of every source that it is made of.
+A part is found by what went into it: the structure, and the content of every source that it is made of. The
+module of a WebAssembly component lies beside it, in a file of its own, as few ask for one.
 Wheels carry parts beside this file; what is compiled here is kept in the user's cache.
 """
 
@@ -10,14 +11,14 @@ import os
 import sys
 import tarfile
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
@@ -25,6 +26,7 @@ from jointfmu.parameters import ParameterFile
 
 from ..folders import own_folder
 from .compiler import exported, libraries
+from .component import module
 from .data import PLACEHOLDER, Split, placeholder
 from .interrupt import interrupt_after
 
@@ -34,10 +36,11 @@ VERSIONS = ("2", "3")
 CACHE = "JOINTFMU_CACHE"
 """Environment variable with the folder of the parts that are kept."""
 MOST_KEPT = 200
-"""Parts that are kept [1]; older ones go."""
-_SUFFIX = ".tar.xz"
+"""Files that are kept [1]; older ones go."""
+_SUFFIX, _MODULE = ".tar.xz", ".wasm.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
+Kept = TypeVar("Kept")
 
 
 class Part(NamedTuple):
@@ -57,12 +60,38 @@ def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
     Raises ImportError if it has to be compiled and a package is missing, ValueError and RuntimeError as
     `compiler.libraries`.
     """
-    for file in _places(model, given):
+    return _kept(
+        _places(shipped_name(model, given)), read, lambda: compiled(model, parameters, given), written
+    )
+
+
+def module_of(model: Model, given: Split, sources: Mapping[str, str]) -> bytes:
+    """The module of an FMU's WebAssembly component, with the placeholder of its data.
+
+    sources : of its part
+
+    Raises as `part_of`.
+    """
+
+    def made() -> bytes:
+        return module(model.name, {**sources, "data.c": placeholder(model, given).source()})
+
+    return _kept(_places(shipped_module(model, given)), lzma.decompress, made, squeezed)
+
+
+def _kept(
+    places: tuple[Path, Path],
+    read: Callable[[bytes], Kept],
+    make: Callable[[], Kept],
+    written: Callable[[Kept], bytes],
+) -> Kept:
+    """What lies in a file, or is made now and kept in the last one."""
+    for file in places:
         with suppress(OSError, lzma.LZMAError, tarfile.TarError, ValueError):
             return read(file.read_bytes())
-    made = compiled(model, parameters, given)
+    made = make()
     with suppress(OSError):  # nothing is lost but time
-        _keep(_places(model, given)[-1], written(made))
+        _keep(places[-1], written(made))
     return made
 
 
@@ -84,9 +113,14 @@ def shipped_name(model: Model, given: Split) -> str:
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
 
 
-def _places(model: Model, given: Split) -> tuple[Path, Path]:
-    """Where a part may lie: in the wheel, and in the cache, there for each version of the compilers."""
-    name, used = shipped_name(model, given), []
+def shipped_module(model: Model, given: Split) -> str:
+    """The same of a module."""
+    return shipped_name(model, given).removesuffix(_SUFFIX) + _MODULE
+
+
+def _places(name: str) -> tuple[Path, Path]:
+    """Where a file may lie: in the wheel, and in the cache, there for each version of the compilers."""
+    used = []
     for package in _COMPILERS:
         with suppress(PackageNotFoundError):
             used.append(f"{package}-{version(package)}")
@@ -164,12 +198,24 @@ def read(content: bytes) -> Part:
     return Part(sources, built)
 
 
+def squeezed(made: bytes) -> bytes:
+    """A module as a file."""
+    return lzma.compress(made, preset=9)
+
+
 def _keep(file: Path, content: bytes) -> None:
     """Put a file in place in one go, and remove the oldest beside it."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
         new.write(content)
     Path(new.name).replace(file)
-    kept = sorted(file.parent.glob(f"*{_SUFFIX}"), key=lambda path: path.stat().st_mtime)
+    kept = sorted(file.parent.glob("*.xz"), key=_written_at)
     for old in kept[:-MOST_KEPT]:
         old.unlink(missing_ok=True)
+
+
+def _written_at(file: Path) -> float:
+    """Time of a file; infinite if another process has just removed it."""
+    with suppress(FileNotFoundError):
+        return file.stat().st_mtime
+    return float("inf")

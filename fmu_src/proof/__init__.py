@@ -12,21 +12,21 @@ from .files import archive
 __all__ = ["proof"]
 
 
-def proof(model: Model, parameters: ParameterFile, page: bool = True) -> dict[str, bytes]:
+def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[str, bytes]:
     """{path in the FMU: content}; reference results are the package's.
 
-    page : whether the FMU has documentation/index.html
+    native : whether of a native FMU, which has a page and model exchange; else of the python flavour
     """
-    return dict(_proof(_Made(model.name, dump(parameters), page, model, parameters)))
+    return dict(_proof(_Made(model.name, dump(parameters), native, model, parameters)))
 
 
 @dataclass(frozen=True)
 class _Made:
-    """What the files depend on: name, text of the parameter file, page; with the objects behind it."""
+    """What the files depend on: name, text of the parameter file, kind of FMU; with the objects behind it."""
 
     name: str
     text: str
-    page: bool
+    native: bool
     model: Model = field(compare=False)
     parameters: ParameterFile = field(compare=False)
 
@@ -35,4 +35,4 @@ class _Made:
 def _proof(made: _Made) -> dict[str, bytes]:
     """The files, once for the flavours of an FMU."""
     given = made.model, made.parameters
-    return archive(*given, models(*given), experiments(*given), study(*given), made.page)
+    return archive(*given, models(*given), experiments(*given), study(*given), made.native)

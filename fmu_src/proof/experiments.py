@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.resources import files
 from itertools import count, islice
 from pathlib import Path
@@ -70,8 +71,7 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
     if model.joint not in KINDS:
         return found
     fields = model.parameter_fields()
-    for path in _shipped(model.joint):
-        file = load(path, model.joint)
+    for file in _shipped(model.joint, KINDS[model.joint].default_file().parent):
         if type(file.values) is not type(parameters.values) or file.flat.keys() != parameters.flat.keys():
             continue
         differing = {name for name, value in file.flat.items() if value != parameters.flat[name]}
@@ -81,11 +81,13 @@ def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile,
     return found
 
 
-def _shipped(joint: str) -> list[Path]:
-    kind = KINDS[joint]
-    folders = [kind.default_file().parent, Path(str(files("jointfmu_models") / "catalogue"))]
-    paths = sorted(path for folder in folders if folder.is_dir() for path in folder.glob("*.toml"))
-    return [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
+@cache
+def _shipped(joint: str, folder: Path) -> tuple[ParameterFile, ...]:
+    """The parameter files of a joint in a folder, and bought ones."""
+    folders = [folder, Path(str(files("jointfmu_models") / "catalogue"))]
+    paths = sorted(path for one in folders if one.is_dir() for path in one.glob("*.toml"))
+    own = [path for path in paths if read_document(path, "a parameter file").get("joint") == joint]
+    return tuple(load(path, joint) for path in own)
 
 
 def study(model: Model, parameters: ParameterFile) -> dict[str, str]:

@@ -10,11 +10,12 @@ from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.proof import manifest
-from jointfmu.proof.plan import FLOOR
+from jointfmu.proof.plan import SOLVER
 from jointfmu.proof.series import text
+from jointfmu.proof.task import FLOOR
 from jointfmu.quantity import flatten
-from jointfmu.units import UNITS
 
+from ..ssv import Value, parameter_set
 from ..xml_parts import serialized
 from .experiments import Experiment
 from .reference import DIGITS
@@ -22,8 +23,13 @@ from .reference import DIGITS
 TOLERANCE = 1e-5
 """Of a reference result [1]. An importer that prints six digits rounds by 5e-6; the rest is for what differs
 between the package and a compiled law: measured, 1e-8 at neighbours of refusals and 1e-9 elsewhere, with the
-rounding of the files. Platforms differ by 1e-12."""
-_COMMON = "http://ssp-standard.org/SSP1/SystemStructureCommon"
+rounding of the files. Platforms differ by 1e-12; a solver adds 4e-10 where there are states."""
+_INTERFACES = {
+    manifest.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
+    manifest.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
+    "a completed integrator step at each row of inputs and results",
+}
+"""{interface: how an experiment is run in it}."""
 _TITLES = {
     "smoke-test": "Smoke test",
     "validation": "Load ramp, loop, shipped models, neighbours of refusals",
@@ -42,11 +48,15 @@ How to run them
 or by any importer: set the parameters of the experiment (SSV), apply its inputs (CSV), take steps of its
 stepSize and compare the outputs at the times of its results (CSV). Each input is held for a step before these
 times, so it does not matter whether an importer applies it at the begin or at the end of a step.
+In model exchange, where the FMU offers it: a solver with a relative tolerance of {solver:g} or less, inputs
+as straight lines between their rows, and a completed integrator step at each of these, by which a joint with
+memory accepts its path.
 
 Tolerance
   |value - reference| <= {tolerance:g} max(|reference|, {floor:g} nominal value)
 An importer that prints six digits rounds by 5e-6. The compiled law and the package differ by far less: 1e-8
-at neighbours of refusals, 1e-9 elsewhere. Below a millionth of its nominal value an output is round-off.
+at neighbours of refusals, 1e-9 elsewhere; a solver adds 4e-10 where there are states. Below a millionth of
+its nominal value an output is round-off.
 
 What the experiments are
   smoke test: a few loads.
@@ -76,7 +86,7 @@ def archive(
     models: Sequence[tuple[ParameterFile, Mapping[str, Any]]],
     experiments: Sequence[Experiment],
     study: Mapping[str, str],
-    page: bool,
+    native: bool,
 ) -> dict[str, bytes]:
     """{path in the FMU: content}."""
     members: dict[str, bytes] = {}
@@ -87,7 +97,7 @@ def archive(
         related.append(_Related(source, kind, role, doc))
 
     own, exposed = slug(parameters.name), model.parameter_fields()
-    if page:
+    if native:
         address = "../../documentation/index.html"
         related.append(_Related(address, "text/html", "requirement", "what the FMU takes, gives and refuses"))
     add(
@@ -103,7 +113,7 @@ def archive(
     )
     for file, _ in models:
         values = {name: value for name, value in flatten(file.values).items() if name in exposed}
-        content = parameter_set(model, file.name, values)
+        content = _parameter_set(model, file.name, values)
         add(f"parameters/{slug(file.name)}.ssv", manifest.SSV, "parameter", file.name, content)
     if study:
         lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in study.items()]
@@ -122,9 +132,9 @@ def archive(
         for path in series:
             if path.endswith("_ref.csv"):
                 related.append(_Related(path, manifest.CSV, "result", "reference result of the package"))
-    members["fmi-ls-manifest.xml"] = _manifest(related)
+    members["fmi-ls-manifest.xml"] = _manifest(related, native)
     found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
-    return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, page).encode()}
+    return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, native).encode()}
 
 
 def slug(name: str) -> str:
@@ -143,7 +153,7 @@ def _experiment(
     written = {files["Stimuli"]: stimuli, files["References"]: text(one.results, DIGITS).encode()}
     if one.settings:
         files = {"Parameters": f"{stem}.ssv", **files}
-        written[files["Parameters"]] = parameter_set(model, one.name, one.settings)
+        written[files["Parameters"]] = _parameter_set(model, one.name, one.settings)
     node = SubElement(root, "Experiment", name=one.name, description=one.doc, tolerance=repr(TOLERANCE))
     times = {
         "startTime": 0.0,
@@ -156,42 +166,27 @@ def _experiment(
     return {path: content for path, content in written.items() if path not in there}
 
 
-def parameter_set(model: Model, name: str, values: Mapping[str, Any]) -> bytes:
+def _parameter_set(model: Model, name: str, values: Mapping[str, Any]) -> bytes:
     """An SSV file of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
-    units |= {
-        n: item.metadata["unit"] for n, item in model.parameter_fields().items() if "unit" in item.metadata
-    }
-    root = Element(
-        "ssv:ParameterSet",
-        {"xmlns:ssc": _COMMON, "xmlns:ssv": manifest.VALUES, "version": "1.0", "name": name},
-    )
-    parameters = SubElement(root, "ssv:Parameters")
-    for variable, value in values.items():
-        node = SubElement(parameters, "ssv:Parameter", name=variable)
-        if isinstance(value, bool):
-            SubElement(node, "ssv:Boolean", value=str(value).lower())
-        else:
-            SubElement(node, "ssv:Real", value=repr(float(value)), unit=units[variable])
-    used = sorted({units[n] for n, value in values.items() if not isinstance(value, bool)})
-    if used:
-        group = SubElement(root, "ssv:Units")
-        for unit in used:
-            node = SubElement(group, "ssc:Unit", name=unit)
-            SubElement(node, "ssc:BaseUnit", {base: str(n) for base, n in UNITS[unit].base.items()})
-    return serialized(root)
+    units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}
+    return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
 
 
-def _manifest(related: Sequence[_Related]) -> bytes:
+def _manifest(related: Sequence[_Related], native: bool) -> bytes:
     head = {"name": manifest.NAME, "version": manifest.VERSION, "description": manifest.DESCRIPTION}
     root = Element("fmiReferences", {"xmlns:fmi-ls": manifest.ATTRIBUTES})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
     for line in related:
-        SubElement(root, "Related", type=line.type, source=line.source, role=line.role, description=line.doc)
+        attributes = {"type": line.type, "source": line.source, "role": line.role, "description": line.doc}
+        node = SubElement(root, "Related", attributes)
+        if line.type == manifest.EXPERIMENTS:
+            for interface, doc in list(_INTERFACES.items())[: 2 if native else 1]:
+                SubElement(node, "Label", name=manifest.LABELS[interface], description=doc)
     return serialized(root)
 
 
-def _text(own: str, experiments: Sequence[Experiment], page: bool) -> str:
+def _text(own: str, experiments: Sequence[Experiment], native: bool) -> str:
     counts = {p: sum(one.purpose == p for one in experiments) for p in manifest.PURPOSES}
     return _PAGE.format(
         standard=manifest.NAME,
@@ -199,7 +194,8 @@ def _text(own: str, experiments: Sequence[Experiment], page: bool) -> str:
         own=__version__,
         counts="\n".join(f"{count:4d} {purpose}" for purpose, count in counts.items() if count),
         tolerance=TOLERANCE,
+        solver=SOLVER * TOLERANCE,
         floor=FLOOR,
-        page="documentation/index.html" if page else "modelDescription.xml",
+        page="documentation/index.html" if native else "modelDescription.xml",
         file=own,
     )

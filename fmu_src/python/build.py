@@ -6,7 +6,9 @@ import zipfile
 from collections.abc import Collection
 from dataclasses import replace
 from hashlib import sha256
+from importlib.metadata import distribution
 from pathlib import Path
+from types import ModuleType
 
 from jointfmu_fmu_src.archive import pack, workshop
 from jointfmu_fmu_src.proof import proof
@@ -89,9 +91,9 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
     """Write `out/name.fmu`, or `out/alias.fmu` with that name; an existing file is replaced in one go.
 
     Raises ValueError if the parameters are of another joint or the folder cannot be written,
-    ImportError if pythonfmu is missing.
+    ImportError if pythonfmu is missing, RuntimeError if its libraries are.
     """
-    from pythonfmu import FmuBuilder
+    import pythonfmu  # noqa: F401  (missing: before anything is written)
 
     kind = KINDS[MODELS[name].joint]
     model = MODELS[name].of(parameters.joint, parameters.values)
@@ -107,18 +109,34 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
         for inside, text in sources.items():
             root = work / "src" if inside == "parameters.toml" else work / "src" / package
             _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)
-        built = _pythonfmu(FmuBuilder, script, package, work / "out")
+        built = _pythonfmu(script, package, work / "out")
         with zipfile.ZipFile(built) as archive:
             members = {n: archive.read(n) for n in archive.namelist() if "__pycache__" not in n}
-        pack(members | proof(model, parameters, page=False), work / target.name)
+        if not any(name.startswith("binaries/") for name in members):
+            raise RuntimeError(
+                f"{title}: pythonfmu in {_installed()} has no libraries for an FMU; expected them below "
+                "pythonfmu/resources/binaries: install it again"
+            )
+        pack(members | proof(model, parameters, native=False), work / target.name)
     return target
 
 
-def _pythonfmu(builder: type, script: Path, package: str, out: Path) -> Path:
-    """Run pythonfmu and leave the process as it was: its sys.path and modules are taken back."""
-    path, modules = list(sys.path), set(sys.modules)
+def _pythonfmu(script: Path, package: str, out: Path) -> Path:
+    """Run pythonfmu as it is installed, and leave the process as it was: sys.path and modules are put back.
+
+    An FMU that runs in this process brings a copy of pythonfmu without libraries, which may be in the place
+    of the installed one; if its content is equal its modules are there, too.
+    """
+    import pythonfmu
+
+    copied = Path(pythonfmu.__file__).parent != Path(_installed(), "pythonfmu")
+    names = (package, script.stem, *(["pythonfmu"] if copied else []))
+    path, before = list(sys.path), _taken_out(names)
+    sys.path.insert(0, _installed())
     try:
-        built: Path = builder.build_FMU(  # type: ignore[attr-defined]
+        from pythonfmu import FmuBuilder
+
+        built: Path = FmuBuilder.build_FMU(
             script,
             dest=out,
             project_files=[script.parent / package, script.parent / "parameters.toml"],
@@ -128,10 +146,20 @@ def _pythonfmu(builder: type, script: Path, package: str, out: Path) -> Path:
         )
     finally:
         sys.path[:] = path
-        for name in set(sys.modules) - modules:
-            if name.split(".")[0] in (package, script.stem):
-                del sys.modules[name]
+        _taken_out(names)
+        sys.modules.update(before)
     return built
+
+
+def _installed() -> str:
+    """The folder in which pythonfmu is installed."""
+    return str(distribution("pythonfmu").locate_file(""))
+
+
+def _taken_out(names: Collection[str]) -> dict[str, ModuleType]:
+    """Modules of packages, which have to be imported again from now on."""
+    found = [name for name in sys.modules if name.partition(".")[0] in names]
+    return {name: sys.modules.pop(name) for name in found}
 
 
 def _write(path: Path, text: str) -> None:

@@ -22,6 +22,8 @@ PARTS = (0.25, 0.5, 1.0)
 """Amplitudes of the loops over the largest [1]."""
 _FAR, _SURE = 10, 12
 """Doublings of the load ramp in which the end of the law is sought, and halvings to find it."""
+_SETTLED = 0.95
+"""Part of the force of gross slip at which a joint counts as slipping [1]."""
 
 
 class Course:
@@ -65,11 +67,30 @@ class Course:
         loop, driven = self.model.loop, {v.name: v.unit for v in self.model.inputs}
         assert loop
         outputs = {v.name: v.unit for v in self.model.outputs}
-        same = loop.input == self.model.ramp.input
-        amplitudes = [part * loop.amplitude * (self.stretch if same else 1.0) for part in PARTS]
+        output = conjugate(driven, outputs, loop.input, None, self.model.name)
         swing = Swing(about=self.about[loop.input], points=_SWING.points)
+        amplitudes = [part * self._amplitude(output) for part in PARTS]
         results = [self._driven(loop.input, swing.along(a), driven | outputs) for a in amplitudes]
-        return of(results, loop.input, conjugate(driven, outputs, loop.input, None, self.model.name), swing)
+        return of(results, loop.input, output, swing)
+
+    def _amplitude(self, output: str) -> float:
+        """Of the largest loop: the model's, or twice the way on which the output settles if that is less."""
+        loop = self.model.loop
+        assert loop
+        largest = loop.amplitude * (self.stretch if loop.input == self.model.ramp.input else 1.0)
+
+        def reached(amplitude: float) -> float:
+            points = self.about[loop.input] + np.array([0.0, amplitude])
+            return float(np.ptp(self._driven(loop.input, points, {}).columns[output]))
+
+        end = reached(largest)
+        if _SETTLED * reached(2.0 * largest) > end:
+            return largest
+        low, high = 0.0, largest
+        for _ in range(_SURE):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if reached(middle) > _SETTLED * end else (middle, high)
+        return min(largest, float(f"{2.0 * high:.2g}"))
 
     def _driven(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
         evolve, rest = self.model.evolve, self.model.rest

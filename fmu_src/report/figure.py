@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.reference import PROVES_NOTHING, ROLES, Point
 
+from ..shown import spelled_label
+
 Values: TypeAlias = Sequence[float] | NDArray[np.float64]
 _DIGITS = 7
 """Of the numbers of a curve: more than a screen shows."""
@@ -86,8 +88,8 @@ def as_json(figure: Figure) -> str:
     panels = [
         {
             "title": panel.title,
-            "x": panel.x,
-            "y": panel.y,
+            "x": spelled_label(panel.x),
+            "y": spelled_label(panel.y),
             "series": [
                 s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
                 for s in panel.series

@@ -12,11 +12,13 @@ from jointfmu.loops import Loops
 from jointfmu.parameters import ORIGINS, ParameterFile, write_text
 from jointfmu.quantity import flat_fields
 from jointfmu.roughness import DECLARED
-from jointfmu.units import UNITS, display_unit
+from jointfmu.units import factor
 
 from ..folders import asset, part
 from ..native.page import drawings, panels
+from ..shown import shown_unit, spelled
 from ..templates import law_terms, template
+from .beside import Beside
 from .course import Course, kinds_of
 from .figure import Figure, Panel, Series, as_json
 from .looks import script, style
@@ -81,7 +83,10 @@ def _page(model: Model, file: ParameterFile) -> str:
         version=__version__,
         figures=[(figure, as_json(figure)) for figure in figures],
         loops=_loop_rows(loops) if loops else [],
-        drawings=drawings(model, course.spring),
+        beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
+        drawings={
+            name: f'<div class="wide">{svg}</div>' for name, svg in drawings(model, course.spring).items()
+        },
         rows=rows,
         origins=[(kind, MEANT[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
@@ -121,19 +126,19 @@ def _shown(value: Any, unit: str | None) -> tuple[str, str, str]:
     if isinstance(value, bool | str):
         return str(value).lower(), "", ""
     if isinstance(value, tuple):
-        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", unit or "", ""
+        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1"), ""
     if unit is None:
         return f"{value:g}", "", ""
-    shown = display_unit(unit, value)
-    exact = "" if shown == unit else f"{value:.12g} {unit}"
-    return f"{UNITS[unit].display[shown] * value:.6g}", "" if shown == "1" else shown, exact
+    shown = shown_unit(unit, value)
+    exact = "" if shown == unit else f"{value:.12g} {spelled(unit)}"
+    return f"{factor(unit, shown) * value:.6g}", spelled(shown), exact
 
 
 def _scale(values: Any, unit: str) -> tuple[Any, str]:
     """Values in the display unit in which the largest of them reads best, and that unit."""
     largest = float(np.max(np.abs(values), initial=0.0))
-    shown = display_unit(unit, largest)
-    return UNITS[unit].display[shown] * np.asarray(values), shown
+    shown = shown_unit(unit, largest)
+    return factor(unit, shown) * np.asarray(values), spelled(shown)
 
 
 def _curves(course: Course) -> Figure:
@@ -143,9 +148,9 @@ def _curves(course: Course) -> Figure:
     drawn, named = [], dict[str, str]()
     for over, names in panels(course.model):
         x, x_unit = _scale(columns[over], variables[over].unit)
-        unit = display_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
-        factor = UNITS[variables[names[0]].unit].display[unit]
-        series = [Series(name, x, factor * columns[name]) for name in names]
+        unit = shown_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
+        times = factor(variables[names[0]].unit, unit)
+        series = [Series(name, x, times * columns[name]) for name in names]
         title = f"{', '.join(names)} over {over}"
         drawn.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
         named |= {name: variables[name].doc for name in (over, *names)}
@@ -163,18 +168,18 @@ def _looped(course: Course, loops: Loops) -> Figure:
     """The loops of a joint with memory."""
     units = loops.units
     x_unit, y_unit = (
-        display_unit(unit, max(float(np.max(np.abs(values))) for values in series))
+        shown_unit(unit, max(float(np.max(np.abs(values))) for values in series))
         for unit, series in zip(
             units, ([p.motion for p in loops.loops], [p.force for p in loops.loops]), strict=True
         )
     )
-    x, y = UNITS[units[0]].display[x_unit], UNITS[units[1]].display[y_unit]
+    x, y = factor(units[0], x_unit), factor(units[1], y_unit)
     series = [
-        Series(f"amplitude {x * loop.amplitudes[0]:.4g} {x_unit}", x * loop.motion, y * loop.force)
+        Series(f"amplitude {x * loop.amplitudes[0]:.4g} {spelled(x_unit)}", x * loop.motion, y * loop.force)
         for loop in reversed(loops.loops)
     ]
     inputs = {v.name: v.unit for v in course.model.inputs}
-    set_ = [f"{name} = {value:g} {inputs[name]}" for name, value in course.about.items() if value]
+    set_ = [f"{name} = {value:g} {spelled(inputs[name])}" for name, value in course.about.items() if value]
     text = "To and fro from rest at no speed, two cycles each" + (
         f", at {', '.join(set_)}. " if set_ else ". "
     )
@@ -198,6 +203,19 @@ def _loop_rows(loops: Loops) -> list[dict[str, str]]:
         {name: shown(row, name) for name in units} | {"loss_factor": f"{row['loss_factor']:.3g}"}
         for row in loops.rows()
     ]
+
+
+def _beside_rows(rows: list[Beside]) -> list[dict[str, str]]:
+    """The table of what is published of this joint, in the display units of the published numbers."""
+    shown = []
+    for row in rows:
+        unit = shown_unit(row.unit, row.published)
+        times, ending = factor(row.unit, unit), f" {spelled(unit)}".rstrip()
+        numbers = (f"{times * value:.4g}{ending}" for value in (row.published, row.computed))
+        names = ("name", "published", "computed", "role", "source")
+        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        shown.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.bound else ""})
+    return shown
 
 
 def _range(course: Course) -> str:

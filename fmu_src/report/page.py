@@ -45,7 +45,7 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     """What the page shows of a joint."""
     module = part(kind, "figures")
     figures = module.figures(outcome) if module else []
-    figures += [*resonances(outcome.ringing, kind.name), *ring_downs(outcome.decays, kind.name)]
+    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
     figures += motions(outcome.arms, kind.name)
     names = [model.name for model in kind.models]
     kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
@@ -56,4 +56,5 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
         "figures": [(figure, as_json(figure)) for figure in figures],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
+        "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],
     }

@@ -1,32 +1,36 @@
 """Figures of joints in systems."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from ..decays import Decay
-from ..ringing import Body, Ringing, Rung, rings
+from ..ringing import Body, Ringing, Rung, rings, stiffness_line
+from ..shown import spelled
 from .figure import Figure, Panel, Series, drawn
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
 _WAYS = ((1.0, "above"), (-1.0, "below"))
 
 
-def resonances(found: Mapping[str, Sequence[Ringing]], joint: str) -> list[Figure]:
-    """A figure per system of a joint that rings."""
+def resonances(found: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
+    """A figure per system of a joint that rings; `folder` has the FMUs (FMI 2.0)."""
     bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
-    return [_resonance(name, bodies[name], points) for name, points in found.items() if name in bodies]
+    return [
+        _resonance(name, bodies[name], points, folder) for name, points in found.items() if name in bodies
+    ]
 
 
-def _resonance(name: str, one: Rung, points: Sequence[Ringing]) -> Figure:
+def _resonance(name: str, one: Rung, points: Sequence[Ringing], folder: Path) -> Figure:
     body, moving = one.body, one.moving.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load.name}",
         f"The {moving} rings about a working point, {body.doc}. Circles: peak of the simulated signal's "
         f"spectrum; line: square root of {body.stiffness} over the {moving}'s inertia. Then the decay at "
         f"the first {body.load.name}, between the envelopes of the stated damping. Friction is left out.",
-        resonance_panels(points, body),
+        resonance_panels(points, one, folder),
     )
 
 
@@ -39,7 +43,7 @@ def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure
 def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
     body, moving, (point, *_) = one.body, one.moving.name, points
     said = point.law is not None
-    pulled = f"{body.deflection.factor * body.pull.deflection:g} {body.deflection.unit}"
+    pulled = f"{body.deflection.factor * body.pull.deflection:g} {spelled(body.deflection.unit)}"
     return Figure(
         f"In a system: ring-down of the {name.replace('_', ' ')}",
         f"The {moving}, {body.doc}, is pulled by {pulled} ({body.pull.doc}) at "
@@ -53,13 +57,14 @@ def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
     )
 
 
-def resonance_panels(points: Sequence[Ringing], body: Body) -> list[Panel]:
+def resonance_panels(points: Sequence[Ringing], one: Rung, folder: Path) -> list[Panel]:
     """Resonance over the load, and one free decay with the envelope of the stated damping."""
-    points = sorted(points, key=lambda point: point.load)
+    points, body = sorted(points, key=lambda point: point.load), one.body
     x = [body.load.factor * point.load for point in points]
     hertz = 0.5 / np.pi
+    loads, expected = stiffness_line(one, folder, points)
     over = [
-        Series("sqrt(K/J)", x, [hertz * p.expected for p in points]),
+        Series("sqrt(K/J)", body.load.factor * loads, hertz * expected),
         Series("simulated", x, [hertz * p.frequency for p in points], "empty"),
     ]
     first, scale = points[0], body.deflection.factor
@@ -100,9 +105,9 @@ def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
     ]
 
 
-def draw(canvas: Canvas, points: Sequence[Ringing], body: Body) -> None:
-    """Resonance and decay as a picture."""
-    drawn(canvas, resonance_panels(points, body))
+def draw(canvas: Canvas, points: Sequence[Ringing], one: Rung, folder: Path) -> None:
+    """Resonance and decay as a picture; `folder` has the FMUs (FMI 2.0)."""
+    drawn(canvas, resonance_panels(points, one, folder))
 
 
 def draw_decays(canvas: Canvas, points: Sequence[Decay], body: Body) -> None:

@@ -90,24 +90,24 @@ def test_shear_does_not_lift(spring):
 @each_load
 @pytest.mark.parametrize("s_z", [0.0, -1e-6, 2e-6])
 def test_gross_slip_is_mu_times_the_normal_force(spring, preload, moment, s_z):
-    """In every direction; the patches keep share, equal and tilt exactly, not the pulled sums: 0.5 %."""
+    """In every direction; the patches keep share, equal and tilt exactly, not the pulled sums: 0.1 %."""
     for angle in (0.0, 0.7, 2.5):
         place = np.array([2e-5 * np.cos(angle), 2e-5 * np.sin(angle), s_z, 0.0, 0.0, 0.0])
         out = rest(spring, place, preload=preload, moment=moment)
         limit = JOINT.mu * (out["f_z"] + JOINT.n_bolts * preload)
-        assert np.hypot(out["f_x"], out["f_y"]) == pytest.approx(limit, rel=5e-3)
+        assert np.hypot(out["f_x"], out["f_y"]) == pytest.approx(limit, rel=1e-3)
         assert np.arctan2(-out["f_y"], -out["f_x"]) == pytest.approx(angle, abs=1e-9)
-        assert out["slip"] == pytest.approx(1.0, abs=5e-3)
+        assert out["slip"] == pytest.approx(1.0, abs=1e-3)
 
 
 @each_load
 @pytest.mark.parametrize("s_z", [0.0, -1e-6, 2e-6])
 def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
-    """f_x = -mu (F_N(s_z) - F_N(s_z + kappa u/mu)): Jaeger 1995, Ciavarella 1998; within 1 % of mu F_N."""
+    """f_x = -mu (F_N(s_z) - F_N(s_z + kappa u/mu)): Jaeger 1995, Ciavarella 1998; within 0.2 % of mu F_N."""
     loads = {"preload": preload, "moment": moment}
     tight = rest(spring, np.zeros(6), **loads)
     kappa = tight["K_xx"] / tight["K_zz"]
-    assert kappa == pytest.approx(float(shear_ratio(JOINT)), rel=5e-3)  # patches beside all points
+    assert kappa == pytest.approx(float(shear_ratio(JOINT)), rel=1e-3)  # patches beside all points
 
     def normal(z):
         return rest(spring, np.array([0, 0, z, 0, 0, 0]), **loads)["f_z"] + JOINT.n_bolts * preload
@@ -116,7 +116,7 @@ def test_first_shear_follows_the_normal_curve(spring, preload, moment, s_z):
     for u in np.linspace(0.05, 1.3, 12) * 1e-6:
         found = rest(spring, np.array([u, 0, s_z, 0, 0, 0]), **loads)["f_x"]
         expected = -JOINT.mu * (normal(s_z) - normal(s_z + kappa * u / JOINT.mu))
-        assert found == pytest.approx(expected, abs=0.01 * limit)
+        assert found == pytest.approx(expected, abs=2e-3 * limit)
         turned = rest(spring, np.array([0, -u, s_z, 0, 0, 0]), **loads)["f_y"]
         assert turned == pytest.approx(-expected, abs=0.01 * limit)
 
@@ -301,13 +301,13 @@ def test_opening_and_moment_couple_the_directions(spring):
     coupled = (even - np.diag(np.diag(even))) / size
     normal = np.ix_((2, 3, 4), (2, 3, 4))
     np.testing.assert_allclose(coupled[normal], 0.0, atol=1e-6)  # the frame is symmetric and its points are
-    np.testing.assert_allclose(coupled, 0.0, atol=1e-2)  # patches are not: their stiffness is off-centre
+    np.testing.assert_allclose(coupled, 0.0, atol=2e-3)  # patches are not: their stiffness is off-centre
     bent = stiffness(spring, np.zeros(6), 1e-4 * SIZE, preload=9e3, moment=1500.0)
     z, rx, x, rz = 2, 3, 0, 5
     assert bent[z, rx] == pytest.approx(bent[rx, z], rel=1e-6)
     arm = bent[z, rx] / bent[z, z]  # m: of the row y > 0, whose bolts pull more
     assert 0.01 < arm < 0.17
-    assert -bent[x, rz] / bent[x, x] == pytest.approx(arm, rel=0.05)  # of the patches
+    assert -bent[x, rz] / bent[x, x] == pytest.approx(arm, rel=0.02)  # of the patches
     tilt = stiffness(spring, np.array([0, 0, 0, 4e-5, 0, 0]), 1e-4 * SIZE)
     assert tilt[z, rx] / tilt[z, z] < -0.05  # the row y > 0 has opened
     assert -tilt[x, rz] / tilt[x, x] < -0.05

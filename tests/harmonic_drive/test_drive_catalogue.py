@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 from importlib.resources import files
 
 import pytest
@@ -63,8 +64,8 @@ def test_names(name, found):
 
 def test_a_torque_that_is_not_printed_is_a_marked_estimate():
     """The catalogue gives the CSG 30 % more torque than the CSF; an SHG is as strong as a CSG."""
-    strong = catalogue.find("CSG-17-100").numbers["rated_torque"]
-    weak = catalogue.find("CSF-17-100").numbers["rated_torque"]
+    strong = catalogue.find("CSG-20-100").numbers["rated_torque"]
+    weak = catalogue.find("CSF-20-100").numbers["rated_torque"]
     assert (weak.kind, strong.kind) == ("estimate", "catalogue")
     assert weak.value == pytest.approx(strong.value / 1.3)
     like = catalogue.find("SHG-14-50").numbers["rated_torque"]
@@ -83,7 +84,7 @@ def test_the_command(capsys):
         "CSG-17-100",
         "CSG-17-120",
     ]
-    assert lines[3].split()[-3:] == ["31", "70", "~1"]
+    assert lines[3].split()[-8:] == ["31", "70", "~<1", "~<1", "~0.029", "~0.051", "~3.06", "-"]
     assert foot.startswith("~ is an estimate")
 
 
@@ -94,6 +95,51 @@ def test_json(capsys):
     assert all(
         n["kind"] in ("catalogue", "estimate") and n["source"] for d in found for n in d["numbers"].values()
     )
+
+
+def test_every_actuator_with_limits_has_the_stiffness_of_its_row():
+    """Two sources print the lines: 21 rows of them agree, and the limits are those of the actuators."""
+    arcmin = math.pi / 10800.0
+    for row in rows("accuracy"):
+        ratio = "100" if row["ratio"] == "50+" else row["ratio"]
+        numbers = catalogue.find(f"HFUC-{row['size']}-{ratio}").numbers
+        for name, head in (
+            ("T1", "T1_Nm"),
+            ("T2", "T2_Nm"),
+            ("K1", "K1_Nm_per_rad"),
+            ("K2",) * 2,
+            ("K3",) * 2,
+        ):
+            assert numbers[name][:2] == (float(row[head]), "catalogue")
+        for name, head in (("hysteresis_loss", "hysteresis"), ("lost_motion", "lost_motion")):
+            assert numbers[name].bound
+            assert numbers[name].value == pytest.approx(float(row[f"{head}_below_arcmin"]) * arcmin)
+            assert f"CHA-{row['size']}A" in numbers[name].source
+
+
+def test_a_size_without_limits_has_the_widest_of_all():
+    for name, most in (("CSG-45-100", 1.0), ("HFUC-80-50", 1.0), ("RSF-3C-30", 3.0)):
+        number = catalogue.find(name).numbers["hysteresis_loss"]
+        assert number.value == pytest.approx(most * math.pi / 10800.0)
+        assert "none of which has this size" in number.source
+
+
+def test_single_drives_have_what_is_printed_of_them():
+    """What is not is an estimate; other drives of that size and ratio take the friction as one."""
+    units = {"starting_torque": ("starting_mNm", 1e-3), "running_torque": ("running_mNm", 1e-3)}
+    units |= {"back_driving_torque": ("back_driving_Nm", 1.0), "rated_torque": ("rated_Nm", 1.0)}
+    units |= {"peak_torque": ("repeated_peak_Nm", 1.0), "efficiency": ("efficiency", 1.0)}
+    units |= {"K1": ("K1_Nm_per_rad", 1.0), "K3": ("K3_Nm_per_rad", 1.0)}
+    for row in rows("friction"):
+        numbers = catalogue.find(row["drive"]).numbers
+        for name, (head, unit) in units.items():
+            if row[head]:
+                assert numbers[name].value == pytest.approx(unit * float(row[head]), rel=1e-12)
+                assert numbers[name].kind == "catalogue"
+    assert catalogue.find("RT1-H-14-100").numbers["K2"][:2] == (6100.0, "estimate")
+    assert catalogue.find("CSG-25-100").numbers["starting_torque"][:2] == (0.069, "estimate")
+    assert catalogue.find("CSF-17-100").numbers["running_torque"][:2] == (pytest.approx(0.056), "estimate")
+    assert "starting_torque" not in catalogue.find("CSG-25-50").numbers
 
 
 def test_an_unknown_word_is_refused(capsys):

@@ -64,13 +64,15 @@ def test_round_trip(case, tmp_path):
 
 @pytest.mark.slow
 def test_the_command_writes_the_hysteresis(tmp_path, capsys):
-    """Torque and angle are told from force and displacement by their names."""
+    """Torque and angle are told from force and displacement by their names; the zeros are anywhere."""
     rng = np.random.default_rng(1)
     run, angle, torque = measurements.loops(measurements.drive_law(), measurements.TURNS, rng)
     path, out = tmp_path / "loops.csv", tmp_path / "drive.toml"
-    save(path, "run [1], angle [deg], torque [N.m]", (run, np.degrees(angle), torque))
+    save(path, "run [1], angle [deg], torque [N.m]", (run, np.degrees(angle) + 0.5, torque - 1.0))
     assert cli.main(["fit", "loop", str(path), "--out", str(out), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
+    # a hundredth of the amplitude: what the noise of 1e3 samples leaves
+    assert document["facts"]["offset"]["value"] == pytest.approx(np.radians(0.5), abs=1e-5)
     assert document["joint"] == "harmonic_drive"
     assert {row["name"] for row in document["unknowns"]} == set(measurements.DRIVE)
     values = load(out, "harmonic_drive").values

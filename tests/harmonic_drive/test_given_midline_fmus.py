@@ -8,8 +8,10 @@ import pytest
 from conftest import Fmu, made_once
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import kept
 from natives import Host, close
 
+from jointfmu.joints.harmonic_drive.given import MOST_POINTS
 from jointfmu.joints.harmonic_drive.new import NEW
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import changed
@@ -130,6 +132,33 @@ def test_lines_that_cannot_be_are_refused(
     )
     for instance in (native, python):
         assert message in instance.refused(instance.start, values)
+
+
+def table_of(points: int) -> ParameterFile:
+    """A stiffening table of other numbers, with as many points."""
+    torque = tuple(40.0 * (i + 1) / points for i in range(points))
+    angle = tuple(T / (6e3 + 100.0 * T) for T in torque)
+    file = file_of("table")
+    return file.with_values({"table.torque": torque, "table.angle": angle}, "user", "test")
+
+
+@pytest.mark.parametrize("points", [2, 37, MOST_POINTS])
+@pytest.mark.parametrize("name", NAMES)
+def test_another_table_needs_no_compiler(
+    host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
+) -> None:
+    """However many points it has; with the numbers of the package, the largest stiffness among them."""
+
+    def refused(*_: object) -> None:
+        raise AssertionError("compiled")
+
+    monkeypatch.setattr(kept, "compiled", refused)
+    file = table_of(points)
+    build([name], ["fmi3"], file, tmp_path)
+    instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
+    for inputs in random_inputs(name, 10, seed=11):
+        # a place within a short segment has the round-off of the whole wind-up
+        assert instance.at(inputs) == close(expected(inputs), max(SAME, 1e-14 * points))
 
 
 def test_beyond_the_table_the_last_line_goes_on_with_one_warning(host: Host, built: Path) -> None:

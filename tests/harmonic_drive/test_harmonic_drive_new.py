@@ -50,7 +50,8 @@ def test_a_drive_by_its_name(capsys, tmp_path):
     path = tmp_path / "my.toml"
     assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-17-100", "--out", str(path)]) == 0
     out, err = capsys.readouterr()
-    assert "catalogues state below 1 arcmin" in out
+    assert "limit for the actuators CHA-17A" in out
+    assert "lost_motion" in out
     assert "estimates, not of the catalogue's row: d" in err
     file = load(path)
     d = file.values

@@ -6,6 +6,7 @@ area a spot is plastic, then in the second and the first elastic-plastic stage, 
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -66,6 +67,10 @@ class Yu2022:
 
     def spots(self) -> Spots:
         """Regimes of one spot over the size distribution of Eqs. 44 and 46, reference area a_nec."""
+        return self._spots
+
+    @cached_property
+    def _spots(self) -> Spots:
         return spots(self)
 
     def state(self, u: Number) -> dict[str, Number]:

@@ -38,7 +38,7 @@ def _catalogue(args: argparse.Namespace) -> int:
             shown = joint
         print(f"{item.name:13}  {'  '.join(map(_cell(item), columns))}".rstrip())
     if any(number.kind == "estimate" for _, _, item in found for number in item.numbers.values()):
-        print("~ is an estimate; --json tells where each number comes from")
+        print("~ is an estimate, < an upper limit; --json tells where each number comes from")
     return 0
 
 
@@ -49,7 +49,7 @@ def _cell(item: Item) -> Any:
         width = len(f"{column.name}{'' if column.shown == '1' else f' [{column.shown}]'}")
         if (number := item.numbers.get(column.name)) is None:
             return f"{'-':{width}}"
-        mark = "~" if number.kind == "estimate" else ""
+        mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
         return f"{mark + format(number.value * factor(column.unit, column.shown), '.4g'):{width}}"
 
     return cell

@@ -12,6 +12,8 @@ from ..parameters import parse_setting
 from .examples import BEFORE, EXAMPLES
 
 Run = Callable[[argparse.Namespace], int]
+IMPLIED = {"surface": ("identify", "synthesize")}
+"""{command: its sub-commands}, of which the first runs where none is named."""
 
 
 class Parser(argparse.ArgumentParser):

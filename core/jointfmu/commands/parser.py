@@ -1,60 +1,39 @@
-"""The parser of all commands."""
+"""The parser of the commands."""
 
 import sys
+from collections.abc import Sequence
+from importlib import import_module
 from typing import Any
 
 from .. import __version__
-from . import (
-    build,
-    catalogue,
-    export,
-    fit,
-    footprint,
-    law,
-    modelica,
-    modes,
-    new,
-    parameters,
-    prove,
-    ramp,
-    report,
-    ring,
-    surface,
-    sweep,
-    system,
-    uncertainty,
-    validate,
-)
-from .common import Parser
+from .common import IMPLIED, Parser
 
 COMMANDS = (
-    new,
-    catalogue,
-    law,
-    parameters,
-    build,
-    modelica,
-    export,
-    footprint,
-    modes,
-    report,
-    ramp,
-    prove,
-    ring,
-    system,
-    surface,
-    fit,
-    uncertainty,
-    sweep,
-    validate,
+    "new",
+    "catalogue",
+    "law",
+    "parameters",
+    "build",
+    "modelica",
+    "export",
+    "footprint",
+    "modes",
+    "report",
+    "ramp",
+    "prove",
+    "ring",
+    "system",
+    "surface",
+    "fit",
+    "uncertainty",
+    "sweep",
+    "validate",
 )
-
-IMPLIED = {"surface": surface.SUBCOMMANDS}
-"""{command: its sub-commands}, of which the first runs where none is named."""
+"""Each is declared by the module of its name."""
 
 
 class CommandLine(Parser):
-    """The parser of all commands; a sub-command may be left out."""
+    """The parser of commands; a sub-command may be left out."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As argparse does, with the sub-command that the words imply."""
@@ -69,11 +48,11 @@ def _explicit(words: list[str]) -> list[str]:
     return [words[0], names[0], *words[1:]]
 
 
-def parser() -> CommandLine:
-    """The parser of all commands."""
+def parser(words: Sequence[str] = ()) -> CommandLine:
+    """The parser of the command that words begin with; without one of all commands, which takes longer."""
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
-    for command in COMMANDS:
-        command.add(commands)
+    for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
+        import_module(f".{name}", __package__).add(commands)
     return top

@@ -73,7 +73,7 @@ def _ring(args: argparse.Namespace) -> int:
         from jointfmu_fmu_src.report.systems import SIZE, draw
 
         with plots.drawing(args.plot, SIZE) as figure:
-            draw(figure, points, example.body)
+            draw(figure, points, example, args.fmus)
     misses = [line for point in points for line in point.misses]
     if args.json:
         print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))

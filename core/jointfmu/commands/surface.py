@@ -12,9 +12,9 @@ from ..topography.heights import FORMS
 from ..topography.reading import read
 from ..topography.series import METHODS, SIDES
 from . import synthesize
-from .common import Parser, command, written
+from .common import IMPLIED, Parser, command, written
 
-SUBCOMMANDS = ("identify", "synthesize")
+SUBCOMMANDS = IMPLIED["surface"]
 """The first is what the command does where none is named."""
 
 

@@ -1,7 +1,11 @@
-"""Measured loops, cut into branches at their turning points, against a law with memory."""
+"""Measured loops, cut into branches at their turning points, against a law with memory.
+
+Where the measurement has its zero is not known: of the force each branch has a level of its own, and of the
+motion the place of rest, about which the elastic force is odd, is found for each law.
+"""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -25,6 +29,8 @@ CREATED = 4.0
 ROUNDING = 1e-9
 """The same over the energy of the loop's box [1], for data without noise."""
 _GRID = 200
+_SEARCH, _WIDTH = 6, 1e-4
+"""Steps to the place of rest, and half the width of its differences over the range of the motion [1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +64,8 @@ class Loops:
 
     @property
     def nuisances(self) -> int:
-        """Force and motion at the turning point of each branch."""
-        return 2 * self.start.size
+        """Force and motion at the turning point of each branch, and the place of rest."""
+        return 2 * self.start.size + 1
 
     @property
     def rest_stiffness(self) -> float:
@@ -80,9 +86,33 @@ class Loops:
         shift = -self._sums(weight * rest * lever) / (self._sums(weight * lever**2) + self.doubt**-2.0)
         return force + level * shift, self.start + shift, rest + lever * shift[self.branch]
 
+    def rest(self, law: Hysteresis, scale: Array) -> float:
+        """Motion at which the elastic force is zero: the least squares of the misfit, by Gauss and Newton.
+
+        Begins at zero or in the middle of the motion. A law that is linear there leaves it where it begins.
+        """
+        if law.elastic is None:
+            return 0.0
+        force = law.elastic.force
+        slipped = self._shifted(replace(law, elastic=None), 0.0)
+        size = float(np.ptp(self.motion))
+
+        def misfit(rest: float) -> Array:
+            left = slipped - force(self.motion - rest) + force(self.start - rest)[self.branch]
+            return np.asarray((left - self._means(left)[self.branch]) / scale)
+
+        middle = 0.5 * float(np.max(self.motion) + np.min(self.motion))
+        found = min((0.0, middle), key=lambda rest: float(np.sum(misfit(rest) ** 2)))
+        for _ in range(_SEARCH):
+            high, low = (misfit(found + way * _WIDTH * size) for way in (1.0, -1.0))
+            slope = (high - low) / (2.0 * _WIDTH)
+            step = -float(misfit(found) @ slope) / (float(slope @ slope) + 1.0)
+            found += size * float(np.clip(step, -0.5, 0.5))
+        return found
+
     def residuals(self, law: Hysteresis, scale: Array) -> Array:
         """Misfit over the scale (n), then the shifts of the turning points over their doubt (branches)."""
-        _, start, rest = self.fitted(law, scale)
+        _, start, rest = self.fitted(law.about(self.rest(law, scale)), scale)
         return np.concatenate([rest / scale, (start - self.start) / self.doubt])
 
     def _shifted(self, law: Hysteresis, doubts: float) -> Array:

@@ -10,7 +10,7 @@ point before: there the smaller loop closes.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +54,13 @@ class Hysteresis:
         if self.elastic is None:
             return change
         return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
+
+    def about(self, rest: float) -> "Hysteresis":
+        """The same with the elastic force at rest at another motion."""
+        if self.elastic is None:
+            return self
+        force, energy = self.elastic.force, self.elastic.energy
+        return replace(self, elastic=Elastic(lambda u: force(u - rest), lambda u: energy(u - rest)))
 
     def equivalent(self, amplitude: Array) -> tuple[Array, Array]:
         """Stiffness (n) and loss factor (n) [1] of the loops about rest with amplitudes (n).

@@ -158,13 +158,17 @@ def _best(
     return best
 
 
-def facts(measurement: Measurement, solution: Solution, law: Hysteresis) -> dict[str, tuple[float, str, str]]:
-    """What was read off the data beside the parameters."""
+def facts(
+    measurement: Measurement, solution: Solution, law: Hysteresis, scale: Array
+) -> dict[str, tuple[float, str, str]]:
+    """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
     data, (_, unit) = measurement.data, measurement.heads.unit
     found = {
         "points": (float(data.scale.size), "1", "data points used"),
         "amplitude": (measurement.amplitude, unit, f"largest {measurement.heads.motion}"),
     }
+    if isinstance(data, Loops) and law.elastic:
+        found["offset"] = (data.rest(law, scale), unit, f"{measurement.heads.motion} at rest, taken off")
     if isinstance(data, Loops) and data.areas:
         area, size = max(data.areas, key=lambda loop: loop[1])
         found["loop_area"] = (area, "J", "measured, of the widest loop")

@@ -36,6 +36,7 @@ def _loops(measurement: Measurement, loops: Loops, law: Hysteresis, scale: Array
         for unit, values in zip(measurement.heads.unit, (loops.force, loops.motion), strict=True)
     )
     lines = []
+    law = law.about(loops.rest(law, scale))
     forces, starts, misfit = loops.fitted(law, scale)
     for k, (force, start) in enumerate(zip(forces, starts, strict=True)):
         motion = np.linspace(start, loops.motion[loops.branch == k][-1], _LINE)

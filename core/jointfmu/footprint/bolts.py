@@ -1,6 +1,7 @@
 """Pressure of a bolted frame: every bolt spreads its force over the contact by one decay law."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
@@ -115,6 +116,7 @@ PressureSource: TypeAlias = BoltPattern | BoltedPlate | NodalField
 """What gives the pressure of a bolted joint."""
 
 
+@lru_cache(maxsize=8)
 def pressure_shape(source: PressureSource) -> PressureShape:
     """The baked-in table of the bolted joint: shares, positions and pressure shapes."""
     return source.shape()

@@ -54,6 +54,16 @@ def independent(vectors: Array, most: int) -> tuple[Nodes, Array]:
     return places, base
 
 
+def solved(matrix: Array, right: Array) -> Array:
+    """Solution (n) of equations with a positive definite matrix (n, n), by Gauss's elimination."""
+    rows, out = np.column_stack([matrix, right]), np.zeros_like(right)
+    for k in range(len(out) - 1):
+        rows[k + 1 :, k:] -= (rows[k + 1 :, k] / rows[k, k])[:, None] * rows[k, k:]
+    for k in range(len(out))[::-1]:
+        out[k] = (rows[k, -1] - np.einsum("i,i->", rows[k, k:-1], out[k:])) / rows[k, k]
+    return out
+
+
 def _inverse(triangle: Array) -> Array:
     """Inverse of a lower triangular matrix (r, r)."""
     out = np.zeros_like(triangle)

@@ -1,4 +1,4 @@
-"""Few patches that stand for the nodes of a bolted contact, whatever law the interface has.
+"""Few points that stand for the nodes of a bolted contact, whatever law the interface has.
 
 Force and stiffness of a joint are sums over its nodes of share times a function of the node's approach, with
 its position as a factor. Whatever the law, these functions are near to powers of the node's pressure, which
@@ -55,7 +55,9 @@ def few_points(shape: PressureShape, count: int) -> PressureShape:
         group = np.arange(shape.share.size)
     size, share = np.bincount(group), _sums(group, shape.share)
     root = np.sqrt(share)
-    exact = independent(root * _means(_balanced(shape), shape, group), share.size)[1]
+    steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
+    sums = balanced(*_scaled(shape), shape.equal, shape.tilt / steep)
+    exact = independent(root * _means(sums, shape, group), share.size)[1]
     rest = root * _means(_functions(shape), shape, group)
     rest -= np.einsum("mk,kn->mn", np.einsum("mn,kn->mk", rest, exact), exact)
     kept = np.concatenate([exact, independent(rest, count)[1]]).T / root[:, None]
@@ -132,15 +134,13 @@ def _scaled(shape: PressureShape) -> tuple[Array, Array]:
     return x, y
 
 
-def _balanced(shape: PressureShape) -> Array:
-    """(12, n) the functions whose sums are exact."""
-    (x, y), equal, tilt = _scaled(shape), shape.equal, shape.tilt
-    tilt = tilt / max(float(np.max(np.abs(tilt))), 1.0)
+def balanced(x: Array, y: Array, equal: Array, tilt: Array) -> Array:
+    """(12, n) the functions of points (n) whose sums are exact."""
     one = np.ones_like(x)
     return np.stack([one, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
 
 
-def _largest_moment(shape: PressureShape) -> float:
+def largest_moment(shape: PressureShape) -> float:
     """Factor of tilt [1] at which nodes are open that carried the part OPENED of the force of equal."""
     low, high = 0.0, 2.0 / float(np.max(np.abs(shape.share * shape.tilt)))
     for _ in range(50):
@@ -158,7 +158,7 @@ def _functions(shape: PressureShape) -> Array:
     Those of the pressure are of the normal force and, with the distance from the centre, of the friction in
     a turn about the normal; of the stiffness they are the first and second ones.
     """
-    (x, y), limit = _scaled(shape), _largest_moment(shape)
+    (x, y), limit = _scaled(shape), largest_moment(shape)
     distance = np.hypot(*shape.position.T)
     of_pressure = np.stack([np.ones_like(x), x, y, distance / np.max(distance)])
     of_stiffness = np.stack([*of_pressure[:3], x * x, x * y, y * y])

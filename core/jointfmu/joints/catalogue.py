@@ -6,11 +6,15 @@ from typing import NamedTuple
 
 
 class Printed(NamedTuple):
-    """A number [SI], where it comes from (one of parameters.ORIGINS), and the source."""
+    """A number [SI], where it comes from (one of parameters.ORIGINS), and the source.
+
+    bound : it is printed as an upper limit, not as a value
+    """
 
     value: float
     kind: str
     source: str
+    bound: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,72 +1,34 @@
 """The importers that execute an experiment: fmpy, ecos, libcosim; each in a process of its own, see `worker`.
 
-A step holds the inputs of its begin; outputs are read at its end.
+In co-simulation a step holds the inputs of its begin; outputs are read at its end.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-
-@dataclass(frozen=True, slots=True)
-class Task:
-    """An experiment, ready to be executed.
-
-    fmu, folder : path of the FMU, and of the folder where it is unpacked
-    settings : {variable: start value}
-    times    : (n) communication points [s]
-    inputs   : {variable: (n) values}
-    outputs  : real variables that are read
-    """
-
-    fmu: str
-    folder: str
-    settings: Mapping[str, Any]
-    times: Sequence[float]
-    inputs: Mapping[str, Sequence[float]]
-    outputs: Sequence[str]
-
-    def given(self, i: int) -> dict[str, float]:
-        """Inputs at a communication point."""
-        return {name: values[i] for name, values in self.inputs.items()}
-
-    @property
-    def step(self) -> float:
-        """The step [s], for importers that know one step only.
-
-        Raises ValueError if steps differ or do not begin at zero.
-        """
-        if self.times[0] != 0.0:
-            raise ValueError(f"begins at {self.times[0]:g} s, this importer begins at 0")
-        size = (self.times[-1] - self.times[0]) / max(len(self.times) - 1, 1)
-        if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.times)):
-            raise ValueError("has steps of different size, this importer has one")
-        return size
-
-
-Rows = list[list[float] | None]
-"""Outputs at each communication point; None where the importer does not show them."""
-Execute = Callable[[Task, list[str]], Rows]
-"""(task, messages, to which those of the FMU are added) -> outputs."""
+from . import exchange
+from .manifest import CO_SIMULATION, MODEL_EXCHANGE
+from .task import Execute, Rows, Task, description_of, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy, FMI 2.0 and 3.0."""
     from .. import ramp
 
-    description, variables = _description(task.fmu)
-    references = [variables[name].valueReference for name in task.outputs]
+    description, variables = description_of(task.fmu)
     with ramp.slave(task.folder, description, messages, task.fmu) as slave:
         slave.begin(task.times[0])
         for name, value in {**task.settings, **task.given(0)}.items():
             slave.set(variables[name], value)
         slave.fmu.exitInitializationMode()
-        rows: Rows = [slave.get(references)]
+        read = reader(slave, variables, task.outputs)
+        rows: Rows = [read()]
         for i, time in enumerate(task.times[:-1]):
             for name, value in task.given(i).items():
                 slave.set(variables[name], value)
             slave.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=task.times[i + 1] - time)
-            rows.append(slave.get(references))
+            rows.append(read())
     return rows
 
 
@@ -74,8 +36,9 @@ def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
     """What the FMU starts the variables `task.outputs` of any type with, by fmpy; one row."""
     from .. import ramp
 
-    description, variables = _description(task.fmu)
-    with ramp.slave(task.folder, description, messages, task.fmu) as slave:
+    description, variables = description_of(task.fmu)
+    exchanged = task.interface == MODEL_EXCHANGE
+    with ramp.slave(task.folder, description, messages, task.fmu, exchanged) as slave:
         slave.begin()
         return [[slave.read(variables[name]) for name in task.outputs]]
 
@@ -86,6 +49,7 @@ def ecos(task: Task, messages: list[str]) -> Rows:
     from ecospy.EcosParameterSet import EcosParameterSet
 
     size = task.step
+    _known(task)
     EcosLib.set_log_level("debug")
     structure, start = EcosSimulationStructure(), EcosParameterSet()
     structure.add_model("fmu", task.fmu)
@@ -96,14 +60,17 @@ def ecos(task: Task, messages: list[str]) -> Rows:
         add(f"fmu::{name}", value)
     structure.add_parameter_set("start", start)
     with EcosSimulation(structure=structure, step_size=size) as simulation:
+        short = {"real": "real", "integer": "integer", "boolean": "bool"}
+        give = {name: getattr(simulation, f"set_{short[task.kinds[name]]}") for name in task.inputs}
+        read = {name: getattr(simulation, f"get_{short[task.kinds[name]]}") for name in task.outputs}
         if not simulation.init(parameter_set="start"):
             raise RuntimeError(EcosLib.get_last_error())
-        rows: Rows = [[simulation.get_real(f"fmu::{name}") for name in task.outputs]]
+        rows: Rows = [[float(get(f"fmu::{name}")) for name, get in read.items()]]
         for i in range(len(task.times) - 1):
             for name, value in task.given(i).items():
-                simulation.set_real(f"fmu::{name}", value)
+                give[name](f"fmu::{name}", value)
             simulation.step(1)
-            rows.append([simulation.get_real(f"fmu::{name}") for name in task.outputs])
+            rows.append([float(get(f"fmu::{name}")) for name, get in read.items()])
         simulation.terminate()
     return rows
 
@@ -116,6 +83,7 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
+    _known(task)
     nanoseconds = round(task.step * 1e9)
     if nanoseconds < 1 or abs(nanoseconds - task.step * 1e9) > 1e-3:
         raise ValueError(f"has a step of {task.step!r} s, libcosim takes whole nanoseconds")
@@ -132,23 +100,49 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
             raise RuntimeError(f"{name} = {value!r}: {get_last_error_message()}")
     rows: Rows = [None]
     for i in range(len(task.times) - 1):
-        if given := task.given(i):
-            manipulator.slave_real_values(one, [reference[name] for name in given], list(given.values()))
+        given = task.given(i)
+        for kind in set(task.kinds.values()):
+            if chosen := [name for name in given if task.kinds[name] == kind]:
+                give = getattr(manipulator, f"slave_{kind}_values")
+                give(one, [reference[name] for name in chosen], [given[name] for name in chosen])
         if not execution.step():
             raise RuntimeError(get_last_error_message())
-        rows.append(list(observer.last_real_values(one, [reference[name] for name in task.outputs])))
+        row: dict[str, float] = {}
+        for kind in set(task.kinds.values()):
+            if chosen := [name for name in task.outputs if task.kinds[name] == kind]:
+                read = getattr(observer, f"last_{kind}_values")
+                row |= zip(chosen, map(float, read(one, [reference[name] for name in chosen])), strict=True)
+        rows.append([row[name] for name in task.outputs])
     return rows
 
 
-def _description(fmu: str) -> tuple[Any, dict[str, Any]]:
-    from fmpy import read_model_description
+def _known(task: Task) -> None:
+    """Raise ValueError for a variable of a type that ecos leaves as it is and libcosim does not list."""
+    _, variables = description_of(task.fmu)
+    for name in (*task.settings, *task.inputs, *task.outputs):
+        if variables[name].type in ("Enumeration", "Int64"):
+            raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")
 
-    description = read_model_description(fmu, validate=False)
-    return description, {v.name: v for v in description.modelVariables}
 
-
-IMPORTERS: dict[str, Execute] = {"fmpy": fmpy, "ecos": ecos, "libcosim": libcosim}
+IMPORTERS: Mapping[str, Mapping[str, Execute]] = {
+    "fmpy": {CO_SIMULATION: fmpy, MODEL_EXCHANGE: exchange.fmpy},
+    "ecos": {CO_SIMULATION: ecos},
+    "libcosim": {CO_SIMULATION: libcosim},
+}
+"""{importer: {interface: what executes an experiment}}."""
 PACKAGES = {"fmpy": "fmpy", "ecos": "ecospy", "libcosim": "libcosimpy"}
 """{importer: its package}."""
 VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 """{importer: versions of FMI, first digits}; libcosim crashes on others."""
+
+
+def interfaces(importer: str) -> list[str]:
+    """Interfaces in which an importer runs FMUs here: fmpy has its solver not for every platform."""
+    found = list(IMPORTERS[importer])
+    if MODEL_EXCHANGE in found:
+        from fmpy import __file__ as package
+        from fmpy import platform_tuple
+
+        if not (Path(package).parent / "sundials" / platform_tuple).is_dir():
+            found.remove(MODEL_EXCHANGE)
+    return found

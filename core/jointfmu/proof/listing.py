@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..parameters import made_folder, write_bytes
-from .manifest import FOLDER, Experiment
+from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
 from .series import Series, text
@@ -41,7 +41,7 @@ def write(proof: Proof, out: Path) -> list[Path]:
 
 def _chosen(proof: Proof) -> Outcome:
     """Of an experiment with results from its start to its end, whose settings its inputs hold, too."""
-    fitting = [outcome for outcome in proof.outcomes if _fits(outcome.experiment)]
+    fitting = [o for o in proof.outcomes if o.interface == CO_SIMULATION and _fits(o.experiment)]
     if not fitting:
         raise ValueError(
             f"{proof.fmu}: no experiment without parameters has results from start to end to list"

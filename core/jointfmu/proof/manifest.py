@@ -5,8 +5,8 @@ Older drafts have the times of an experiment as attributes of `Experiment`; they
 
 import posixpath
 import zipfile
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -27,7 +27,13 @@ VALUES = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 """Namespace of SSV files."""
 EXPERIMENTS, SSV, CSV = "application/x-ma-hs-experiments", "application/x-ssp-parameter-set", "text/csv"
 """Types of related files that are read."""
+_OTHER_NAMES = ("application/x-ma-ls-experiments", "application/octet-stream")
+"""Of the type of experiments: in the standard's example, and its default."""
 TRANSIENT = "TransientSimulation"
+CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
+"""Interfaces of FMUs."""
+LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
+"""{interface: label of a file of experiments for it}; without such a label it is for all."""
 PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
 """What an experiment is for; the first where a manifest does not say."""
 
@@ -49,29 +55,34 @@ class Experiment:
     tolerance : relative, of the reference results; None: not stated
     settings  : {variable: start value}
     stimuli, references : inputs and expected results over time
+    interfaces : for which it is
     unfit     : why it cannot be executed here; empty: it can
     """
 
     name: str
     purpose: str
-    start: float | None
-    stop: float | None
-    step: float | None
-    tolerance: float | None
-    settings: Mapping[str, Setting]
-    stimuli: Series | None
-    references: Series | None
+    start: float | None = None
+    stop: float | None = None
+    step: float | None = None
+    tolerance: float | None = None
+    settings: Mapping[str, Setting] = field(default_factory=dict)
+    stimuli: Series | None = None
+    references: Series | None = None
+    interfaces: Sequence[str] = INTERFACES
     unfit: str = ""
 
 
 class Related:
     """The related files of an FMU, by the addresses that its manifest and experiments give.
 
+    members : those to be read instead of the FMU's own
+
     Raises ValueError, one line that names FMU and file, wherever one is missing or broken.
     """
 
-    def __init__(self, fmu: Path) -> None:
+    def __init__(self, fmu: Path, members: Mapping[str, bytes] | None = None) -> None:
         self.fmu = fmu
+        self.members: Mapping[str, bytes] = {}
         try:
             with zipfile.ZipFile(fmu) as archive:
                 self.members = {
@@ -85,6 +96,7 @@ class Related:
             raise ValueError(
                 f"{fmu}: is no FMU ({error}); expected a zip with modelDescription.xml"
             ) from None
+        self.members = members or self.members
         if MANIFEST not in self.members:
             raise ValueError(f"{fmu}: has no {MANIFEST}; expected an FMU with experiments after FMI-LS-REF")
 
@@ -97,20 +109,33 @@ class Related:
         for related in root.iter("Related"):
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
-                path = self._path(MANIFEST, related.get("source", ""))
-                nodes = self._xml(path).iter("Experiment")
-                read += [self._experiment(path, node, purpose or PURPOSES[0]) for node in nodes]
+                read += self._experiments(related, purpose or PURPOSES[0])
         if not read:
             raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
         return read
 
-    def _experiment(self, path: str, node: Element, purpose: str) -> Experiment:
+    def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
+        """The experiments of a file; one as its name if it cannot be read here."""
+        source, kind = related.get("source", ""), related.get("type", EXPERIMENTS)
+        if kind not in (EXPERIMENTS, *_OTHER_NAMES):
+            return [Experiment(source, purpose, unfit=f"is of type {kind}, {EXPERIMENTS} is read")]
+        if urlsplit(source).scheme:
+            return [Experiment(source, purpose, unfit="lies outside of the FMU")]
+        path = self._path(MANIFEST, source)
+        labels = {label.get("name") for label in related.iter("Label")}
+        meant = [name for name, label in LABELS.items() if label in labels] or INTERFACES
+        return [self._experiment(path, node, purpose, meant) for node in self._xml(path).iter("Experiment")]
+
+    def _experiment(self, path: str, node: Element, purpose: str, interfaces: Sequence[str]) -> Experiment:
         name = node.get("name", "")
         kinds = [child.tag for child in node if child.tag not in ("Annotations", *_FILES)]
         unfit = f"is a {kinds[0]}" if kinds and kinds[0] != TRANSIENT else ""
         files: dict[str, str] = {}
         for tag, kind in _FILES.items():
-            if (child := node.find(tag)) is not None and not unfit:
+            children = node.findall(tag)
+            if len(children) > 1:
+                unfit = unfit or f"has {len(children)} {tag}, one is read"
+            for child in children if not unfit else ():
                 if child.get("type", kind) != kind:
                     unfit = f"has {tag} of type {child.get('type')}, {kind} is read"
                 else:
@@ -125,7 +150,8 @@ class Related:
             for tag in ("Stimuli", "References")
         )
         settings = self._settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
-        return Experiment(name, purpose, start, stop, step, tolerance, settings, stimuli, references, unfit)
+        numbers = start, stop, step, tolerance
+        return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, unfit)
 
     def _number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
         try:

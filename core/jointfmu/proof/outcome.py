@@ -42,12 +42,27 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of an experiment: the worst point of each output, or an error, or why it was left out."""
+    """What became of an experiment: the worst point of each output, or an error, or why it was left out.
+
+    interface : of the FMU; empty if it was left out
+    """
 
     experiment: Experiment
+    interface: str
     points: Sequence[Point] = ()
     compared: int = 0
     error: str = ""
+
+    @property
+    def name(self) -> str:
+        """Of the experiment and the interface."""
+        return f"{self.experiment.name}, {self.interface}" if self.interface else self.experiment.name
+
+    @property
+    def left_out(self) -> str:
+        """Why it was not executed; empty if it was."""
+        text = self.experiment.unfit or f"is for {' and '.join(self.experiment.interfaces)}"
+        return "" if self.interface else text
 
     @property
     def worst(self) -> Point | None:
@@ -64,15 +79,28 @@ class Outcome:
 class Proof:
     """All of an FMU.
 
+    interfaces : in which it was run
     starts : start values compared
     differing : a line for each that differs from modelDescription.xml
     """
 
     fmu: Path
     importer: str
+    interfaces: Sequence[str]
     starts: int
     differing: Sequence[str]
     outcomes: Sequence[Outcome]
+
+    @property
+    def runs(self) -> int:
+        """Runs of experiments."""
+        return sum(bool(outcome.interface) for outcome in self.outcomes)
+
+    @property
+    def worst(self) -> Point | None:
+        """The output that is furthest off, measured by what is allowed."""
+        points = [outcome.worst for outcome in self.outcomes if outcome.worst]
+        return max(points, key=lambda point: point.share, default=None)
 
     @property
     def passed(self) -> bool:
@@ -81,16 +109,20 @@ class Proof:
 
     @property
     def misses(self) -> list[str]:
-        """A line for everything that failed."""
+        """A line for everything that failed, of an experiment with its worst output."""
         lines = list(self.differing)
+        if self.outcomes and not self.runs:
+            lines.append(f"{self.importer} executes none of the experiments")
         for outcome in self.outcomes:
-            name = outcome.experiment.name
+            name = outcome.name
             if outcome.error:
                 lines.append(f"{name}: {outcome.error}")
-            lines += [
-                f"{name}: {p.output} = {p.value:.10g} at {p.time:g} s, reference {p.reference:.10g}, "
-                f"off by {p.error:.2g}, allowed {p.allowed:.2g}"
-                for p in outcome.points
-                if not p.passed
-            ]
+            missed = sorted((p for p in outcome.points if not p.passed), key=lambda p: -p.share)
+            if missed:
+                worst, *others = missed
+                lines.append(
+                    f"{name}: {worst.output} = {worst.value:.10g} at {worst.time:g} s, reference "
+                    f"{worst.reference:.10g}, off by {worst.error:.2g}, allowed {worst.allowed:.2g}"
+                    + (f"; also {', '.join(p.output for p in others)}" if others else "")
+                )
         return lines

@@ -1,6 +1,6 @@
 """An experiment on its way to an importer, and the importer's answer on its way back."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,77 +8,87 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .manifest import Experiment
+from .manifest import MODEL_EXCHANGE, Experiment
 from .outcome import Outcome, Point
+from .task import FLOOR
+from .values import course, kind, setting
 
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-3
 """Where an experiment states no tolerance [1]."""
-FLOOR = 1e-6
-"""Part of an output's nominal value [1] below which its round-off counts, not its own size."""
+SOLVER = 1e-3
+"""Relative tolerance of a solver over that of the experiment [1]: its errors add up along the way, and
+what was large may be small after an event."""
+MEETING = 1e-6
+"""Part of a step [1] below which two times are one."""
 STEPS, MOST_STEPS = 500, 10_000_000
 """Of an experiment: where nothing states a step, and at most."""
-REAL = ("Real", "Float64")
-"""Types of real numbers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """An experiment with what an importer needs; if it cannot be executed, `task` is empty.
 
+    interface : of the FMU; empty if it is left out
     nominal : {output: its nominal value}
     refused : why it cannot, although the FMU asks for it
     """
 
     experiment: Experiment
+    interface: str
     nominal: Mapping[str, float]
     task: dict[str, Any]
     refused: str = ""
 
     @classmethod
-    def of(
-        cls, fmu: Path, folder: str, experiment: Experiment, description: Any, variables: Mapping[str, Any]
-    ) -> "Plan":
+    def of(cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: Any) -> "Plan":
         """The plan of an experiment with an unpacked FMU."""
-        if experiment.unfit:
-            return cls(experiment, {}, {})
+        if not interface:
+            return cls(experiment, interface, {}, {})
+        variables = {v.name: v for v in description.modelVariables}
         inputs = experiment.stimuli.columns if experiment.stimuli else {}
         outputs = list(experiment.references.columns) if experiment.references else []
+        stimuli = experiment.stimuli
         try:
+            for name in (*experiment.settings, *inputs, *outputs):
+                if name not in variables:
+                    raise ValueError(f"the FMU has no variable {name!r}")
             times = _times(experiment, description)
-            _check(experiment, [*experiment.settings, *inputs, *outputs], variables)
-            for name in (*inputs, *outputs):
-                if variables[name].type not in REAL:
-                    raise ValueError(f"{name} is of type {variables[name].type}, real numbers are compared")
+            if stimuli and interface == MODEL_EXCHANGE:
+                times = _with_corners(times, stimuli.time)
+            values: dict[str, Any] = {
+                "settings": {n: setting(variables[n], given) for n, given in experiment.settings.items()},
+                "kinds": {n: kind(variables[n]) for n in (*inputs, *outputs)},
+            }
+            if stimuli:
+                for key, before in (("inputs", False), ("before", True)):
+                    values[key] = {n: course(variables[n], stimuli, times, before) for n in inputs}
         except ValueError as error:
-            return cls(experiment, {}, {}, str(error))
-        settings = {
-            name: float(setting.value) if variables[name].type in REAL else setting.value
-            for name, setting in experiment.settings.items()
-        }
-        given = experiment.stimuli.at(times) if experiment.stimuli else {}
-        ready = task(fmu, folder, settings, times, given, outputs)
-        nominal = {name: abs(float(variables[name].nominal or 1.0)) for name in outputs}
-        return cls(experiment, nominal, ready)
+            return cls(experiment, interface, {}, {}, str(error))
+        values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
+        nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
+        return cls(experiment, interface, nominal, task(fmu, folder, interface, **values))
 
     def outcome(self, answer: Mapping[str, Any] | None) -> Outcome:
         """What an importer's answer means."""
         if answer is None:
-            return Outcome(self.experiment, error=self.refused)
+            return Outcome(self.experiment, self.interface, error=self.refused)
         if "error" in answer:
-            return Outcome(self.experiment, error=answer["error"])
+            return Outcome(self.experiment, self.interface, error=answer["error"])
         expected = self.experiment.references
         if expected is None:
-            return Outcome(self.experiment)
+            return Outcome(self.experiment, self.interface)
         shown = [i for i, row in enumerate(answer["rows"]) if row is not None]
         times = np.array([self.task["times"][i] for i in shown])
         table = np.array([answer["rows"][i] for i in shown])
+        once = np.diff(expected.time) > 0.0
         inside = (expected.time >= times[0]) & (expected.time <= times[-1] * (1.0 + 1e-12))
+        inside &= np.append(True, once) & np.append(once, True)  # where it jumps, either side would do
         if not np.any(inside):
-            return Outcome(self.experiment, error="no reference result lies at a time that was computed")
-        at = expected.time[inside]
-        tolerance = TOLERANCE if self.experiment.tolerance is None else self.experiment.tolerance
+            error = "no reference result lies at a time that was computed"
+            return Outcome(self.experiment, self.interface, error=error)
+        at, tolerance = expected.time[inside], _tolerance(self.experiment)
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             found, due = np.interp(at, times, column), reference[inside]
@@ -87,18 +97,21 @@ class Plan:
                 share = np.where(np.isfinite(found), np.abs(found - due) / allowed, np.inf)
             i = int(np.argmax(share))
             points.append(Point(name, float(at[i]), float(found[i]), float(due[i]), float(allowed[i])))
-        return Outcome(self.experiment, points, int(np.sum(inside)))
+        return Outcome(self.experiment, self.interface, points, int(np.sum(inside)))
 
 
-def _check(experiment: Experiment, names: Sequence[str], variables: Mapping[str, Any]) -> None:
-    """Raise ValueError for a name that the FMU does not have, or a foreign unit of a start value."""
-    for name in names:
-        if name not in variables:
-            raise ValueError(f"the FMU has no variable {name!r}")
-    for name, setting in experiment.settings.items():
-        own = variables[name].unit or "1"
-        if setting.unit and setting.unit != own:
-            raise ValueError(f"{name} is given in {setting.unit!r}, expected {own!r}")
+def _tolerance(experiment: Experiment) -> float:
+    return TOLERANCE if experiment.tolerance is None else experiment.tolerance
+
+
+def _with_corners(times: Array, corners: Array) -> Array:
+    """Times together with those between them where inputs have a corner; it replaces a time that it meets."""
+    meet = MEETING * float(np.min(np.diff(times)))
+    inner = np.unique(corners[(corners > times[0] + meet) & (corners < times[-1] - meet)])
+    places = np.searchsorted(inner, times)
+    around = np.concatenate([[-np.inf], inner, [np.inf]])
+    far = np.minimum(times - around[places], around[places + 1] - times) > meet
+    return np.sort(np.append(times[far], inner))
 
 
 def _times(experiment: Experiment, description: Any) -> Array:
@@ -118,23 +131,9 @@ def _times(experiment: Experiment, description: Any) -> Array:
     return np.append(start + step * np.arange(count), stop)
 
 
-def task(
-    fmu: Path,
-    folder: str,
-    settings: Mapping[str, Any] | None = None,
-    times: Sequence[float] | Array = (),
-    inputs: Mapping[str, Array] | None = None,
-    outputs: Sequence[str] = (),
-) -> dict[str, Any]:
-    """The fields of an `importers.Task` as JSON takes them."""
-    return {
-        "fmu": str(fmu),
-        "folder": str(folder),
-        "settings": dict(settings or {}),
-        "times": [float(time) for time in times],
-        "inputs": {name: column.tolist() for name, column in (inputs or {}).items()},
-        "outputs": list(outputs),
-    }
+def task(fmu: Path, folder: str, interface: str, **more: Any) -> dict[str, Any]:
+    """The fields of a `Task`."""
+    return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **more}
 
 
 def _first(*values: Any) -> float:

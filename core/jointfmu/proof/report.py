@@ -7,28 +7,30 @@ from .manifest import PURPOSES
 from .outcome import Outcome, Point, Proof
 
 _NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
-_EXPERIMENT = ("experiment", "verdict", "points", "worst output", *_NUMBERS)
-_OUTPUT = ("output", "worst in", *_NUMBERS)
+_EXPERIMENT = ("experiment", "interface", "verdict", "points", "worst output", *_NUMBERS)
+_OUTPUT = ("output", "worst in", "interface", *_NUMBERS)
 
 
 def lines(proof: Proof) -> Iterator[str]:
     """Two tables, of experiments and of outputs, each with its worst point; then what missed."""
     experiments: list[tuple[str, ...]] = [_EXPERIMENT]
-    worst: dict[str, tuple[str, Point]] = {}
+    worst: dict[str, tuple[Outcome, Point]] = {}
     for outcome in proof.outcomes:
-        name, point = outcome.experiment.name, outcome.worst
-        cells = _cells(point) if point else ("",) * 5
-        count = str(outcome.compared or "")
-        experiments.append((name, _verdict(outcome), count, point.output if point else "", *cells))
+        point = outcome.worst
+        verdict = _verdict(outcome), str(outcome.compared or ""), point.output if point else ""
+        cells = _cells(point) if point else ("",) * len(_NUMBERS)
+        experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
         for own in outcome.points:
             if own.output not in worst or own.share > worst[own.output][1].share:
-                worst[own.output] = name, own
-    yield f"{proof.fmu} in {proof.importer}: {count_of(proof)}"
-    yield ""
-    yield from _table(experiments)
+                worst[own.output] = outcome, own
+    yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
+    if proof.outcomes:
+        yield ""
+        yield from _table(experiments)
     if worst:
         yield ""
-        yield from _table([_OUTPUT, *((o, name, *_cells(p)) for o, (name, p) in worst.items())])
+        rows = [(n, o.experiment.name, o.interface, *_cells(p)) for n, (o, p) in worst.items()]
+        yield from _table([_OUTPUT, *rows])
     yield ""
     yield from (f"missed: {text}" for text in proof.misses)
     yield summary(proof)
@@ -36,19 +38,21 @@ def lines(proof: Proof) -> Iterator[str]:
 
 def count_of(proof: Proof) -> str:
     """How many experiments there are of each kind, and start values."""
-    kinds = [outcome.experiment.purpose for outcome in proof.outcomes]
+    kinds = [one.purpose for one in {id(o.experiment): o.experiment for o in proof.outcomes}.values()]
     parts = [f"{kinds.count(p)} {p}" for p in (*PURPOSES, *sorted({*kinds} - {*PURPOSES})) if p in kinds]
     return f"{', '.join(parts) or 'no experiment executed'}; {proof.starts} start values"
 
 
 def summary(proof: Proof) -> str:
-    """One line: how many experiments passed, missed, were left out."""
-    left = sum(bool(outcome.experiment.unfit) for outcome in proof.outcomes)
+    """One line: how many runs of experiments passed, missed, were left out."""
+    left = sum(bool(outcome.left_out) for outcome in proof.outcomes)
     missed = sum(not outcome.passed for outcome in proof.outcomes)
+    if not proof.outcomes:
+        return "it does not start, nothing was executed"
     passed = len(proof.outcomes) - left - missed
     words = [f"{passed} passed", f"{missed} missed", *([f"{left} not executed"] if left else [])]
-    if proof.differing:
-        words.append(f"{len(proof.differing)} of the start failed")
+    if count := len(proof.differing):
+        words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
     return ", ".join(words)
 
 
@@ -57,6 +61,7 @@ def document(proof: Proof) -> dict[str, Any]:
     return {
         "fmu": str(proof.fmu),
         "importer": proof.importer,
+        "interfaces": list(proof.interfaces),
         "passed": proof.passed,
         "start_values": {"compared": proof.starts, "differing": list(proof.differing)},
         "experiments": [_experiment(outcome) for outcome in proof.outcomes],
@@ -68,9 +73,10 @@ def _experiment(outcome: Outcome) -> dict[str, Any]:
     one = outcome.experiment
     return {
         "name": one.name,
+        "interface": outcome.interface or None,
         "purpose": one.purpose,
         "verdict": _verdict(outcome),
-        "error": outcome.error or one.unfit or None,
+        "error": outcome.error or outcome.left_out or None,
         "points": outcome.compared,
         "outputs": [_point(point) for point in outcome.points],
     }
@@ -90,8 +96,8 @@ def _point(point: Point) -> Mapping[str, Any]:
 
 
 def _verdict(outcome: Outcome) -> str:
-    if outcome.experiment.unfit:
-        return f"not executed: {outcome.experiment.unfit}"
+    if outcome.left_out:
+        return f"not executed: {outcome.left_out}"
     if not outcome.passed:
         return "missed"
     return "passed" if outcome.points else "runs, no reference"

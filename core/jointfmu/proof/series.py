@@ -20,12 +20,21 @@ class Series:
     time: Array
     columns: Mapping[str, Array]
 
-    def at(self, times: Array) -> dict[str, Array]:
-        """Columns at times (m), linear in between and held beyond the ends.
+    def at(self, name: str, times: Array) -> Array:
+        """A column at times (m), linear in between and held beyond the ends.
 
         Where a time stands twice, the value jumps: there it is the last one.
         """
-        return {name: np.interp(times, self.time, column) for name, column in self.columns.items()}
+        return np.asarray(np.interp(times, self.time, self.columns[name]))
+
+    def before(self, name: str, times: Array) -> Array:
+        """The same, but where it jumps the first one."""
+        return np.asarray(np.interp(-times, -self.time[::-1], self.columns[name][::-1]))
+
+    def held(self, name: str, times: Array) -> Array:
+        """A column at times (m), each value held until the next row."""
+        rows = np.searchsorted(self.time, times, side="right") - 1
+        return self.columns[name][np.maximum(rows, 0)]
 
 
 def text(series: Series, digits: int | None = None) -> str:
@@ -45,16 +54,18 @@ def parse(content: str, where: str) -> Series:
     """
     rows = [row for row in csv.reader(io.StringIO(content)) if row]
     head = [name.strip() for name in rows[0]] if rows else []
-    if not head or head[0] != TIME or len(rows) < 2:
+    if not head or head[0].lower() != TIME or len(rows) < 2:
         raise ValueError(f"{where}: begins with {','.join(head)[:60]!r}; expected {TIME!r} first, and rows")
     if len(set(head)) < len(head):
         raise ValueError(f"{where}: a column is given twice, allowed is once")
+    for row in rows[1:]:
+        if len(row) != len(head):
+            raise ValueError(f"{where}: {','.join(row)[:60]!r}: expected rows of {len(head)} numbers")
     try:
         table = np.array([[float(cell) for cell in row] for row in rows[1:]])
-        times, columns = table[:, 0], table[:, 1:].T
-        named = dict(zip(head[1:], columns, strict=True))
-    except (ValueError, IndexError):
-        raise ValueError(f"{where}: expected rows of {len(head)} numbers") from None
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}; expected rows of {len(head)} numbers") from None
+    times, named = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
     if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
         raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
     return Series(times, named)

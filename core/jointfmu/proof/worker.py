@@ -13,6 +13,7 @@ import tempfile
 from typing import Any, TextIO
 
 from . import importers
+from .task import Task
 
 _REFUSED = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
 """How ecos logs what an FMU refuses."""
@@ -26,9 +27,11 @@ def main() -> None:
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as log:
         for handle in (1, 2):  # also what libraries print
             os.dup2(log.fileno(), handle)
+        known = importers.IMPORTERS[document["importer"]]
         for task in document["tasks"]:
-            execute = importers.start_values if task.pop("start", False) else None
-            reply = _reply(execute or importers.IMPORTERS[document["importer"]], task, log)
+            started = task.pop("start", False)
+            execute = importers.start_values if started else known[task["interface"]]
+            reply = _reply(execute, task, log)
             replies.write(json.dumps(reply) + "\n")
             replies.flush()
 
@@ -39,7 +42,7 @@ def _reply(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
     error = ""
     rows: Any = []
     try:
-        rows = execute(importers.Task(**task), messages)
+        rows = execute(Task(**task), messages)
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
     log.seek(begin)

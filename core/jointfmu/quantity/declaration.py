@@ -72,6 +72,8 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
         return f"{name} = {value!r} is not one of {', '.join(str(a).lower() for a in meta['allowed'])}"
     if "series" in meta:
         return _series_problem(name, value, item)
+    if type(value) is float and not meta["whole"] and meta["interval"].contains(value):
+        return None
     unit = "" if meta["unit"] == "1" else f" {meta['unit']}"
     number = isinstance(value, int | float | np.ndarray | np.number) and not isinstance(value, bool)
     array = np.asarray(value)

@@ -2,12 +2,19 @@
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
+from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
 from .declaration import label, problem
 from .interval import Interval, Number
 
 T = TypeVar("T")
+
+
+@cache
+def _hints(cls: Any) -> dict[str, Any]:
+    """Types of the fields of a class."""
+    return get_type_hints(cls)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,17 +49,30 @@ def flat_fields(
 
     names : of a parameter set that has one of a group's alternatives; without them all are opened
     """
-    hints = get_type_hints(cls)
+    if names is None:
+        yield from ((prefix + name, item) for name, item in _every_field(cls))  # type: ignore[arg-type]
+        return
+    hints = _hints(cls)  # type: ignore[arg-type]
     for item in fields(cls):
         if "group" in item.metadata:
             sections = _sections(item, hints[item.name])
-            if names is not None:
-                section = _section(sections, prefix, names)
-                sections = {section: sections[section]}
-            for name, inner in sections.items():
-                yield from flat_fields(inner, f"{prefix}{name}.", names)
+            section = _section(sections, prefix, names)
+            yield from flat_fields(sections[section], f"{prefix}{section}.", names)
         elif item.metadata:
             yield prefix + label(item), item
+
+
+@cache
+def _every_field(cls: Any) -> tuple[tuple[str, Field[Any]], ...]:
+    """`flat_fields` with all alternatives."""
+    hints, found = _hints(cls), list[tuple[str, Field[Any]]]()
+    for item in fields(cls):
+        if "group" in item.metadata:
+            for name, inner in _sections(item, hints[item.name]).items():
+                found += flat_fields(inner, f"{name}.")
+        elif item.metadata:
+            found.append((label(item), item))
+    return tuple(found)
 
 
 def flatten(obj: Any) -> dict[str, Any]:
@@ -111,7 +131,7 @@ def assemble(
 
     make : (class, {name of a field: value}) -> instance
     """
-    hints = get_type_hints(cls)
+    hints = _hints(cls)  # type: ignore[arg-type]
     arguments: dict[str, Any] = {}
     for item in fields(cls):  # type: ignore[arg-type]
         name = prefix + label(item)

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt, median_filter
 
 from .heights import FORMS, Array, Heights
 
@@ -35,6 +34,8 @@ def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     The median is over 5 points along a profile and 5 x 5 on a map; the standard deviation is a robust one,
     the 0.9 quantile of the deviation over that of a normal distribution.
     """
+    from scipy.ndimage import median_filter
+
     z = heights.z
     valid = np.isfinite(z)
     deviation = np.abs(z - median_filter(_nearest(z, valid), size=5, mode="nearest"))
@@ -112,6 +113,8 @@ def _harmonic(z: Array, missing: Mask) -> Array:
 def _nearest(z: Array, valid: Mask) -> Array:
     if valid.all():
         return z
+    from scipy.ndimage import distance_transform_edt
+
     index = distance_transform_edt(~valid, return_distances=False, return_indices=True)
     return np.asarray(z[tuple(index)])
 

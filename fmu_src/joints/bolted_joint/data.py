@@ -39,4 +39,4 @@ def _rows(shape: PressureShape) -> Any:
     return np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
 
 
-DATA = DataPart(_stands, _tables)
+DATA = DataPart(_stands, tables=_tables)

@@ -69,6 +69,6 @@ def pressure_maps() -> list[str]:
             ax.set_ylabel("y [mm]")
             canvas.colorbar(points, ax=ax, label="pressure [MPa]", shrink=0.8)
 
-        return svg(draw, _SIZE, _TEXT)
+        return svg(draw, _SIZE, _TEXT, layout="tight")
 
     return [drawn(*case) for case in _CASES]

@@ -19,7 +19,7 @@ static void lay_heights(Foundation *f, double reference)
     double y[2], *h = f->height;
     curve_at(f->curve, reference, 0, y);
     const bool touches = y[0] > SLIDER_LOWEST * end, given = touches && y[0] < SLIDER_HIGHEST * end;
-    const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = log(end / load);
+    const double load = touches ? fmin(y[0], SLIDER_HIGHEST * end) : SLIDER_USUAL * end, over = same_log(end / load);
     *h++ = f->curve->first.x;
     for (int k = N_BELOW - 1; k >= 0; k--) {
         const double part = (k + f->offset) / (double)N_BELOW, rest = (1.0 - part) * (1.0 - part);
@@ -28,7 +28,7 @@ static void lay_heights(Foundation *f, double reference)
     *h++ = given ? reference : inverse(f, load);
     for (int k = 0; k < N_ABOVE; k++) {
         const double part = (k + f->offset) / (double)N_ABOVE;
-        *h++ = inverse(f, load * exp(over * (part * part)));
+        *h++ = inverse(f, load * same_exp(over * (part * part)));
     }
     *h = f->curve->end.x;
 }

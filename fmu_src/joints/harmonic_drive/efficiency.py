@@ -1,16 +1,17 @@
 """What friction costs a drive, found by running it: efficiency, starting and back-driving torque."""
 
 import math
-import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Protocol
 
 from scipy.optimize import brentq
 
+from jointfmu.joints.catalogue import Item
+from jointfmu.joints.harmonic_drive.catalogue import items
+from jointfmu.joints.harmonic_drive.quoted_friction import friction
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
@@ -24,35 +25,15 @@ _STEADY: Mapping[str, float] = {"hysteresis_loss": 0.0, "error_1": 0.0, "error_2
 """Without what changes along a turn or remembers the load."""
 
 
-@dataclass(frozen=True, slots=True)
-class CatalogueDrive:
-    """What a catalogue says of a drive's friction; the running torque is an estimate.
-
-    ratio [1]; torques [N.m], speed [rad/s]; the first and the last two at the wave generator
-    """
-
-    name: str
-    ratio: float
-    rated_torque: float
-    starting_torque: float
-    back_driving_torque: float
-    running_torque: float
-    running_speed: float
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """Friction of the FMU: from starting, running and back-driving torque, where the latter says more."""
-        start, slope = self.starting_torque, (self.running_torque - self.starting_torque) / self.running_speed
-        loss = max(1.0 - self.ratio * start / self.back_driving_torque, 0.0)
-        own = {"friction_coulomb": start, "friction_viscous": slope, "load_loss": loss}
-        return {"ratio": self.ratio, **own}
+def printed_drives() -> list[Item]:
+    """The catalogue's drives whose starting torque is printed."""
+    return [item for item in items() if (n := item.numbers.get("starting_torque")) and n.kind == "catalogue"]
 
 
-def catalogue() -> list[CatalogueDrive]:
-    """The drives of models/reference/harmonic_drive_friction.toml."""
-    path = files("jointfmu_models") / "reference" / "harmonic_drive_friction.toml"
-    rows = tomllib.loads(path.read_text(encoding="utf-8"))["drive"]
-    return [CatalogueDrive(**{k: v for k, v in row.items() if k not in ("source", "read")}) for row in rows]
+def parameters(item: Item) -> dict[str, float]:
+    """Ratio and friction of a drive of the catalogue, for the FMU."""
+    numbers = {"ratio": item.numbers["ratio"], **friction(item.numbers)}
+    return {name: number.value for name, number in numbers.items()}
 
 
 class Driven(Protocol):

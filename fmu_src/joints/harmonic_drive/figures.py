@@ -33,10 +33,11 @@ def figures(outcome: Any) -> list[Figure]:
         ),
         Figure(
             "What friction costs",
-            "By the FMU with the friction of catalogue drives: efficiency over load, whose speed dependence "
-            "follows from an estimated running torque, and no catalogue's curve is compared; and the torque "
-            "at the output that moves a drive without motor. The starting torque fixes friction_coulomb, the "
-            "back-driving torque load_loss where that is not below 0.",
+            "By the FMU with the friction of catalogue drives: efficiency over load, with what is published "
+            "at rated torque and 2000 rev/min, and the torque at the output that moves a drive without "
+            "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
+            "load_loss. Of the CSF drives the running torque is an estimate, and the back-driving torque "
+            "fixes load_loss where that is not below 0.",
             friction(_spring(outcome)),
         ),
     ]
@@ -51,17 +52,20 @@ def _spring(outcome: Any) -> Path:
 def friction(fmu: Path) -> list[Panel]:
     """Efficiency over load at some speeds, and the torques that move the catalogue's drives backwards."""
     panels, published_torques, found_torques = [], [], []
-    drives, share = efficiency.catalogue(), np.linspace(0.02, 1.0, 25)
+    drives, share = efficiency.printed_drives(), np.linspace(0.1, 1.0, 41) ** 2
     for drive in drives:
-        with efficiency.bench(fmu, drive.parameters) as bench:
-            loads = drive.rated_torque * share
+        rated, back = drive.numbers["rated_torque"].value, drive.numbers["back_driving_torque"].value
+        with efficiency.bench(fmu, efficiency.parameters(drive)) as bench:
             rows = {
-                rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in loads]
+                rpm: [bench.efficiency(rpm * np.pi / 30.0, load) for load in rated * share]
                 for rpm in (500, 2000, 3500)
             }
-            found_torques.append(bench.back_driving_torque(10.0 * drive.back_driving_torque))
-        published_torques.append(drive.back_driving_torque)
-        series = [Series(f"{rpm} rpm", loads, row) for rpm, row in rows.items()]
+            found_torques.append(bench.back_driving_torque(10.0 * back))
+        published_torques.append(back)
+        series = [Series(f"{rpm} rev/min", rated * share, row) for rpm, row in rows.items()]
+        if "efficiency" in drive.numbers:
+            known = [drive.numbers["efficiency"].value]
+            series.append(Series("published, 2000 rev/min", [rated], known, "empty", titles=[drive.name]))
         panels.append(Panel(f"Efficiency of {drive.name}", "load [N m]", "efficiency", series))
     ends = [0.0, max(published_torques)]
     names = [drive.name for drive in drives]

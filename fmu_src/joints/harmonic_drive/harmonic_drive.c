@@ -1,24 +1,20 @@
 /* Repeats `torque_curve` of the package: the table that is made for every parameter set; the laws in it are
- * generated. A law that gives the table's nodes defines GIVEN_NODES, how many. */
+ * generated. A law that gives the table's nodes defines GIVEN_NODES, how many; those of a measured midline are
+ * data. */
 #include "harmonic_drive.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "data.h"
 #include "tabulated.h"
 
-#ifdef GIVEN_NODES
-enum { N_GIVEN_NODES = (int)GIVEN_NODES };
-_Static_assert(CURVE_NODES >= N_GIVEN_NODES, "all of them");
-
+#if defined GIVEN_NODES || defined MIDLINE_IS_DATA
 /* Each segment is a piece of its own: its bend may jump at the nodes. */
-static bool midline_of(Joint *joint, Text *why)
+static bool through(Joint *joint, const double (*given)[5], int nodes)
 {
-    double given[N_GIVEN_NODES][5];
-    (void)why;
-    given_nodes(0, joint->c, given[0]);
     curve_begin(&joint->curve, 0.0);
-    for (int k = 0; k + 1 < N_GIVEN_NODES; k++) {
+    for (int k = 0; k + 1 < nodes; k++) {
         const double *left = given[k], *right = given[k + 1];
         curve_piece(&joint->curve, (Node){.x = left[0], .y = left[1], .s = left[2], .bend = left[4]});
         if (!curve_add(&joint->curve, (Node){.x = right[0], .y = right[1], .s = right[2], .bend = right[3]}))
@@ -26,6 +22,27 @@ static bool midline_of(Joint *joint, Text *why)
     }
     curve_finish(&joint->curve);
     return true;
+}
+#endif
+
+#ifdef MIDLINE_IS_DATA
+_Static_assert((int)CURVE_NODES >= (int)MOST_MIDLINE, "all of them");
+
+static bool midline_of(Joint *joint, Text *why)
+{
+    (void)why;
+    return through(joint, data.midline, (int)data.n_midline);
+}
+#elif defined GIVEN_NODES
+enum { N_GIVEN_NODES = (int)GIVEN_NODES };
+_Static_assert(CURVE_NODES >= N_GIVEN_NODES, "all of them");
+
+static bool midline_of(Joint *joint, Text *why)
+{
+    double given[N_GIVEN_NODES][5];
+    (void)why;
+    given_nodes(0, joint->c, given[0]);
+    return through(joint, (const double (*)[5])given, N_GIVEN_NODES);
 }
 #else
 enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_HEAD }; /* of the pair's numbers */
@@ -51,10 +68,10 @@ static bool windup(Joint *joint, int steps, Text *why)
     double head[N_HEAD], phi = 0.0, K[2];
     pair_head(0, joint->c, head);
     const double smoothing = head[SMOOTHING];
-    const double step = asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
+    const double step = same_asinh(head[MAX_TORQUE] / smoothing) / steps, half = 0.5 * step;
     curve_begin(&joint->curve, 0.0);
     for (int k = 0; k <= steps; k++) {
-        const double xi = k * step, torque = smoothing * sinh(xi);
+        const double xi = k * step, torque = smoothing * same_sinh(xi);
         stiffness(&torque, joint->c, K);
         if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * head[K_FTS0])) {
             stiffness(&head[MAX_TORQUE], joint->c, K);
@@ -68,9 +85,9 @@ static bool windup(Joint *joint, int steps, Text *why)
             return false;
         double rise = 0.0;
         for (int i = 0; i < N_DRIVE_GAUSS && k < steps; i++) {
-            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * sinh(at);
+            const double at = xi + half * (1.0 + DRIVE_GAUSS[i]), inner = smoothing * same_sinh(at);
             stiffness(&inner, joint->c, K);
-            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * cosh(at) / K[0];
+            rise += DRIVE_GAUSS_WEIGHTS[i] * smoothing * same_cosh(at) / K[0];
         }
         phi += half * rise;
     }

@@ -2,9 +2,11 @@
 
 import math
 
+from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 
-from ...laboratory.part import Bench, Shown
+from ...laboratory.part import Bench, Example, Shown, Turn
+from .efficiency import parameters, printed_drives
 
 _SPANS = {
     "hysteresis_loss": (0.0, 1e-3),
@@ -14,6 +16,8 @@ _SPANS = {
     "friction_stribeck": (0.0, 0.1),
     "friction_viscous": (0.0, 1e-3),
     "load_loss": (0.0, 0.5),
+    "temperature_factor": (0.5, 5.0),
+    "phi1": (-0.1, 0.1),
     **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
 }
@@ -23,8 +27,29 @@ _ARGUMENTS = {
     "eccentricity": "eccentricity",
 }
 
+_TURN = Turn(
+    driven="phi1",
+    speed="w1",
+    follower="phi2",
+    follower_speed="w2",
+    torque="tau1",
+    load="tau",
+    error="phi_error",
+    ratio="ratio",
+    rated="rated_torque",
+    usual=200.0,
+)
+_LOOP = MODELS["HarmonicDriveSpring"].loop
+_PRINTED = printed_drives()[0]
+_EXAMPLE = Example(
+    f"friction of the catalogue's {_PRINTED.name}, 1 arcmin of hysteresis and of kinematic error",
+    {k: v for k, v in parameters(_PRINTED).items() if k != "ratio"}
+    | {k: float(v) for k, v in (_LOOP.settings if _LOOP else {}).items()}
+    | {"error_2": 1.5e-4},
+)
+
 LABORATORY = {
-    "HarmonicDriveSpring": Bench(spans=_SPANS, path=("phi2",)),
+    "HarmonicDriveSpring": Bench(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
     "HarmonicDriveCompliance": Bench(
         spans=_SPANS,
         path=("tau",),

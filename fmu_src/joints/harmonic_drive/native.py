@@ -3,7 +3,8 @@
 import casadi as ca
 
 from jointfmu.joints.harmonic_drive import friction, hysteresis, kinematic_error, lost_motion, spring
-from jointfmu.joints.harmonic_drive.given import Given, Node
+from jointfmu.joints.harmonic_drive.given import CatalogueDrive, Measured, Node
+from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.joints.model import Model
 
 from ...native.graph import Graph, Symbols, symbols
@@ -12,10 +13,10 @@ from ...native.part import CURVE, Definitions, Named, NativePart, column, named,
 
 def _functions(g: Graph, model: Model) -> None:
     drive = g.joint
-    if isinstance(drive, Given):
+    if isinstance(drive, CatalogueDrive):
         doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after"
         g.add("given_nodes", doc, [], [number for node in drive.nodes() for number in node])
-    else:
+    elif isinstance(drive, PairDrive):
         (torque,) = symbols("x", 1)
         doc = "torque -> K_WTS, its slope"
         g.add("stiffness", doc, [torque], lost_motion.stiffness_with_play(drive, torque))
@@ -80,6 +81,8 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
     given = named(NUMBERS, COUNTS) | Definitions(counts) | sliders
     every = given | quadrature("DRIVE_GAUSS", spring.GAUSS)
+    if isinstance(g.joint, Measured):
+        return every | Definitions({}, {"MIDLINE_IS_DATA": 1})
     nodes = sum(len(f.y) for f in g.functions if f.name == "given_nodes") // len(Node._fields)
     return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 

@@ -2,7 +2,7 @@
 
 from ...native.page import Panel
 
-_STIFFNESS = Panel("tau", ("K_WTS", "K_TS", "K_FTS"))
+_STIFFNESS = Panel("tau", ("K_WTS", "K_TS"))
 PANELS = {
     "HarmonicDriveSpring": (Panel("phi_rel", ("tau",)), _STIFFNESS),
     "HarmonicDriveCompliance": (Panel("tau", ("phi_rel",)), _STIFFNESS),

@@ -1,6 +1,6 @@
 /* A chart: lines and marks over two axes as SVG, read by pointer, by keyboard and as a table. */
 
-const COLOURS = ["var(--blue)", "var(--red)", "var(--green)", "var(--violet)"];
+const COLOURS = ["blue", "red", "green", "violet", "ochre", "grey"].map((name) => `var(--${name})`);
 const MARGIN = { left: 72, right: 14, top: 10, bottom: 44 };
 
 /** About n round numbers from low to high. */
@@ -191,7 +191,7 @@ class Chart {
 
 function legendRow(s, k) {
   const colour = s.colour || COLOURS[k % COLOURS.length];
-  const sign = element("span", { class: s.marks ? "sign dot" : s.dashed ? "sign dashes" : "sign", style: `--colour:${colour}`, "aria-hidden": "true" });
+  const sign = element("span", { class: s.marks ? `sign dot ${s.marks}` : s.dashed ? "sign dashes" : "sign", style: `--colour:${colour}`, "aria-hidden": "true" });
   return element("li", {}, sign, s.name);
 }
 

@@ -55,13 +55,17 @@ class Switch {
   }
 }
 
+/** Whether a variable stands for a temperature. */
+const warm = (v) => v.unit === "K" || v.unit === "degC" || /^temperature/.test(v.name);
+
 /** What a variable is sorted under: [title, whether it is open at first]. */
 function groupOf(v, about) {
   if (v.causality === "input") return /\/s$/.test(v.unit) ? ["Speeds", false] : ["Load and motion", true];
-  if (v.unit === "K" || v.unit === "degC") return ["Temperature", true];
+  if (warm(v)) return ["Temperature", true];
   const section = v.name.includes(".") ? v.name.split(".")[0] : "";
   if (about.surfaces.includes(section) || /rough|height of|surface/.test(v.doc) && !section) return ["Surface", true];
-  if (/friction|slip|hysteresis|damp/.test(v.doc) && !section) return ["Friction and damping", true];
+  if (/kinematic|^error/.test(`${v.name} ${v.doc}`) && !section) return ["Kinematic error", true];
+  if (/friction|slip|hysteresis|lost motion|damp/.test(`${v.name.replaceAll("_", " ")} ${v.doc}`) && !section) return ["Friction, play and damping", true];
   return section ? [section, false] : ["Joint", false];
 }
 
@@ -76,7 +80,7 @@ function controls(place, about, values, change) {
     made[v.name] = control;
     groups.get(title).append(control.node);
   }
-  const order = ["Load and motion", "Temperature", "Surface", "Friction and damping"];
+  const order = ["Load and motion", "Temperature", "Surface", "Friction, play and damping", "Kinematic error"];
   const rank = (title) => (order.includes(title) ? order.indexOf(title) : order.length);
   const sorted = [...groups].sort(([a], [b]) => rank(a) - rank(b));
   place.replaceChildren(...sorted.map(([, node]) => node));

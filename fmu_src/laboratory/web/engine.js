@@ -23,6 +23,7 @@ class Joint {
     this.instance = c.lab_new();
     this.variables = new Map(about.variables.map((v, i) => [v.name, { ...v, reference: i + 1 }]));
     this.messages = new Set();
+    this.starts = 0;
   }
 
   static async of(about) {
@@ -40,6 +41,7 @@ class Joint {
 
   /** At rest with these values of parameters and inputs (a Map); false if they are refused. */
   begin(values) {
+    this.starts++;
     this.c.lab_reset(this.instance);
     for (const [name, value] of values) this.set(name, value);
     return this.told(this.c.lab_begin(this.instance));
@@ -67,7 +69,7 @@ class Joint {
   /** Whether a call went well; what the joint said goes to `messages`. */
   told(status) {
     const bytes = new Uint8Array(this.c.memory.buffer, this.c.lab_said());
-    const text = new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
+    const text = bytes[0] ? new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0))) : "";
     for (const line of text.split("\n")) if (line) this.messages.add(line.slice(1));
     return status === 0;
   }

@@ -1,20 +1,27 @@
 /* The page: one joint at a time, its values, and what is redrawn when they change. */
 
+/** How long a slider rests before what is out of sight is drawn, and how long that takes before the page listens again [ms]. */
+const [PAUSE, SLICE] = [120, 6];
 const at = (id) => document.getElementById(id);
 
 class Laboratory {
   constructor(known) {
     this.known = known;
     this.file = null;
+    this.said = new Set();
     const models = [...new Set(known.modules.map((m) => m.name))];
     at("model").append(...models.map((name) => element("option", { value: name }, `${known.modules.find((m) => m.name === name).title}: ${name}`)));
     at("model").onchange = () => this.choose(at("model").value, 0);
     at("set").onchange = () => this.choose(at("model").value, Number(at("set").value));
     at("reset").onclick = () => this.take(this.set);
+    at("example").onclick = () => this.change(this.about.example.values, this.about.example.doc);
     at("copy").onclick = () => this.copy();
     at("save").onclick = () => this.save();
     at("open").onchange = () => at("open").files[0] && this.read(at("open").files[0]);
     at("forget").onclick = () => { this.file = null; at("forget").hidden = true; this.redraw(); };
+    const wide = matchMedia("(min-width: 980px)"), beside = () => (at("sliders").open = wide.matches);
+    wide.addEventListener("change", beside);
+    beside();
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) this.read(event.dataTransfer.files[0]); });
     addEventListener("resize", () => this.redraw());
@@ -34,20 +41,25 @@ class Laboratory {
     this.set = set;
     this.joint = await (about.running ??= Joint.of(about));
     at("doc").textContent = `${about.doc}. Interface law ${about.law}.`;
-    const views = ["curves", "path", "map", "body"].map((id) => at(id));
+    this.said = new Set();
+    this.path = null;
+    const views = ["curves", "path", "map", "body", "turn"].map((id) => at(id));
     views.forEach((view) => view.replaceChildren());
     this.values = this.start(set);
     this.end = about.ramp.end;
     this.controls = controls(at("controls"), about, this.values, (name, value) => { this.values.set(name, value); this.redraw(); });
     this.rampControl(about);
-    const warm = about.variables.some((v) => v.causality !== "output" && ["K", "degC"].includes(v.unit));
     const bound = about.variables.filter((v) => v.bound).map((v) => v.name);
-    at("left-out").textContent = [warm ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
+    at("left-out").textContent = [about.variables.some((v) => v.causality !== "output" && warm(v)) ? "" : "Nothing of this joint depends on temperature, so there is no slider for it.", bound.length ? `Set by the place of the bolts or other numbers that are baked in: ${bound.join(", ")}.` : ""].join(" ");
     this.curves = new Curves(views[0], this.joint);
     at("map-part").hidden = !about.map;
     this.map = about.map && new PressureMap(views[2], this.joint);
+    at("example").hidden = !about.example;
+    at("turn-part").hidden = !about.turn;
+    this.turn = about.turn && new Turn(views[4], this.joint, this);
     this.body = new Body(views[3], this.joint, this);
-    this.path = new Path(views[1], this.joint, this);
+    this.path = new Path(views[1], this.joint, this, about.path);
+    this.sight = new Sight();
     this.draw();
   }
 
@@ -56,6 +68,14 @@ class Laboratory {
     const { input, end } = this.about.ramp, values = new Map([...Object.entries(set.values), ...Object.entries(set.inputs)]);
     if (!values.get(input) && !this.about.path.includes(input)) values.set(input, end / 3);
     return values;
+  }
+
+  /** A path along other inputs. */
+  follow(names) {
+    at("path").replaceChildren();
+    this.path = new Path(at("path"), this.joint, this, names);
+    this.draw();
+    at("moved").focus();
   }
 
   rampControl(about) {
@@ -72,29 +92,60 @@ class Laboratory {
     this.redraw();
   }
 
-  redraw() {
-    this.asked ??= requestAnimationFrame(() => { this.asked = null; this.draw(); });
+  /** Some other values, shown at the controls. */
+  change(values, doc) {
+    for (const [name, value] of Object.entries(values)) {
+      this.values.set(name, value);
+      this.controls[name].show(value);
+    }
+    this.say(`Set: ${doc}.`);
+    this.redraw();
   }
 
-  /** Everything again; the path comes last, as the joint stays at its end. */
-  draw() {
+  /** After a change: what is in sight with the next frame, its ramps coarse; then the rest, and fine ones. */
+  redraw() {
+    this.asked ??= requestAnimationFrame(() => { this.asked = null; this.draw(true); });
+  }
+
+  /** Everything again; only what is `seen` at once, and the rest when there is time, unless it changes before. */
+  draw(seen = false) {
     if (!this.joint) return;
     const began = performance.now();
+    clearTimeout(this.rest);
     this.joint.messages.clear();
     this.good = this.joint.begin(this.values);
     document.body.classList.toggle("refused", !this.good);
-    if (this.good) {
-      const now = Object.fromEntries(this.about.variables.filter((v) => v.causality !== "parameter").map((v) => [v.name, this.joint.get(v.name)]));
-      this.map?.draw();
-      const said = new Set(this.joint.messages), stiffness = [], found = ramp(this.joint, this.values, this.end, () => stiffness.push(this.body.stiffness()));
-      this.curves.draw(this, found, now);
-      this.body.draw(found, stiffness);
-      this.published();
-      this.joint.messages = said; // of the sliders and of the path, not of a ramp that begins without load
-      this.path.draw();
-    }
+    this.now = this.good && Object.fromEntries(this.about.variables.filter((v) => v.causality !== "parameter").map((v) => [v.name, this.joint.get(v.name)]));
+    this.said = new Set(this.joint.messages); // of the sliders and of the path, not of a ramp that begins without load
+    if (this.good && seen) {
+      const near = this.views(COARSE).filter(({ place }) => this.sight.sees(place));
+      for (const { show } of near) show();
+      const done = new Set(near.filter((v) => !v.ramp).map((v) => v.place));
+      this.rest = setTimeout(() => this.later(this.views(STEPS).filter(({ place }) => !done.has(place))), PAUSE);
+    } else if (this.good) for (const { show } of this.views(STEPS)) show();
     this.tell();
     this.took = performance.now() - began;
+  }
+
+  /** { place, show, ramp } of everything that depends on the values; the ramp is gone once for all its curves. */
+  views(steps) {
+    let gone;
+    const found = () => (gone ??= ramp(this.joint, this.values, this.end, steps));
+    return [
+      ...this.curves.panels.map((panel) => ({ place: panel.chart.figure, show: () => this.curves.draw(panel, this, found()), ramp: true })),
+      ...this.path.views(),
+      ...(this.turn ? this.turn.views() : []),
+      ...(this.map ? [{ place: this.map.figure, show: () => this.map.draw(this.values) }] : []),
+      ...this.body.views(steps),
+      { place: at("points"), show: () => this.published() },
+    ];
+  }
+
+  /** Views one after the other, a slice at a time, so that the next change need not wait. */
+  later(due) {
+    for (const end = performance.now() + SLICE; due.length && performance.now() < end; ) due.shift().show();
+    this.tell();
+    if (due.length) this.rest = setTimeout(() => this.later(due));
   }
 
   /** Published points beside what the joint gives with the present parameters and the point's own. */
@@ -112,8 +163,9 @@ class Laboratory {
 
   /** What the joint said. */
   tell() {
-    const lines = [...this.joint.messages];
-    at("said").replaceChildren(...lines.slice(0, 4).map((line) => element("p", {}, line)));
+    const lines = new Set([...this.said, ...(this.path && this.good ? this.path.messages : [])]);
+    const told = [...lines].slice(0, 4).map((line) => element("p", {}, line)), text = told.map((p) => p.outerHTML).join("");
+    if (at("said").innerHTML !== text) at("said").replaceChildren(...told);
     at("said").classList.toggle("error", !this.good);
   }
 

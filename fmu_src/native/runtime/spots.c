@@ -70,14 +70,14 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
 
 bool spots_solve(const Spots *spots, const double *c, double pressure, double *u, double *slope, Text *why)
 {
-    const double target = log(pressure * spots->area);
+    const double target = same_log(pressure * spots->area);
     if (!(target >= spots->least && target <= spots->most)) {
         text_add(why, "pressure = ");
         text_number(why, pressure, 6);
         text_add(why, " Pa is outside [");
-        text_number(why, exp(spots->least) / spots->area, 3);
+        text_number(why, same_exp(spots->least) / spots->area, 3);
         text_add(why, ", ");
-        text_number(why, exp(spots->most) / spots->area, 3);
+        text_number(why, same_exp(spots->most) / spots->area, 3);
         text_add(why, "]: its largest spot is not representable beside the critical area ");
         text_number(why, spots->reference, 3);
         text_add(why, " m2 of this surface");

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...curve import Curve, approach_curve
 from ...footprint.bolts import PressureSource, pressure_shape
+from ...footprint.friction import friction_patches
 from ...footprint.patches import few_points
 from ...footprint.shape import PressureShape
 from ...interface import largest_spot
@@ -46,7 +47,7 @@ def points(pattern: PressureSource) -> PressureShape:
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
-    return few_points(pressure_shape(pattern), PATCHES)
+    return friction_patches(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,18 @@ class BoltedJointSpring:
         """Approach (n) [m] of the nodes at tightening."""
         return self.curve.inverse(pressures(self.joint, self.shape, preload, moment))
 
+    @cached_property
+    def _tightened(self) -> Callable[[float, float], tuple[Array, ...]]:
+        """Approach [m] at tightening of the points, the pressure [Pa] there, and the approach of the patches;
+        the last ones are kept."""
+
+        def build(preload: float, moment: float) -> tuple[Array, ...]:
+            start = self.tightened(preload, moment)
+            patches = self.curve.inverse(pressures(self.joint, self.patches, preload, moment))
+            return start, self.curve.derivatives(start, 0)[0], patches
+
+        return lru_cache(maxsize=2)(build)
+
     def within_law(self, preload: float, moment: float) -> Array:
         """As `tightened`; ValueError if nothing is in contact or the hardness is reached."""
         start = self.tightened(preload, moment)
@@ -141,10 +154,8 @@ class BoltedJointSpring:
     ) -> tuple[dict[str, Number], Array]:
         """Outputs at a place with rates (v_rel, omega), and the memory after the straight path there."""
         joint, shape = self.joint, self.shape
-        start = self.tightened(preload, moment)
-        tight = self.curve.derivatives(start, 0)[0]
+        start, tight, approach = self._tightened(float(preload), float(moment))
         derivatives = self.curve.derivatives(start - place.apart(shape), 3)
-        approach = self.curve.inverse(pressures(joint, self.patches, preload, moment))
         approach = approach - place.apart(self.patches)
         if joint.memory:
             shear, after = self._friction(approach, place, memory)

@@ -1,8 +1,9 @@
-"""Harmonic drives of the maker's catalogues: models/reference/harmonic_drive_catalogue_*.csv.
+"""Harmonic drives of the makers' catalogues: models/reference/harmonic_drive_catalogue_*.csv.
 
 A row of stiffness holds for the series that it names, and from ratio 80 on for all ratios. Torques are
 printed for some series and ratios; where a series lacks them, those of the same size and ratio in another
-one are an estimate.
+one are an estimate. Limits of hysteresis and lost motion are printed for actuators with the same stiffness,
+starting and back-driving torque for single drives.
 """
 
 import csv
@@ -26,6 +27,11 @@ COLUMNS = (
     Column("rated_torque", "N.m", "rated torque", "N.m"),
     Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
     Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
+    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque", "arcmin"),
+    Column("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
+    Column("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
+    Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
+    Column("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
 )
 RATIOS = ("80", "100", "120", "160")
 """What a row for ratio 80 and more stands for, where any series has a torque at that size."""
@@ -35,8 +41,6 @@ STRONGER = 1.3
 """Torque of a CSG over that of a CSF of the same size and ratio [1]."""
 ALIKE = ("CSG", "SHG", "HFUC", "HFUS")
 """Series with torques, in the order in which others take them from."""
-BOUNDS = ((30.0, 3.0), (50.0, 2.0), (80.0, 1.0))
-"""Least ratio [1] and hysteresis loss [arcmin] that catalogues give as a bound."""
 Torques: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
 """{(series, size, ratio): row}."""
 _NAMES = 3
@@ -62,9 +66,15 @@ def find(name: str) -> Item:
 
 @cache
 def items() -> tuple[Item, ...]:
-    """All drives with a row of stiffness."""
-    torques = _torques()
-    return tuple(item for row in _table("stiffness") for item in _of_row(row, torques))
+    """All drives with a row of stiffness, and those that share one with them."""
+    torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
+    found = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
+    single = {}
+    for row in _table("friction"):
+        found[row["drive"]] = _single(row, found[row["like"]])
+        if row["running_mNm"]:
+            single[row["like"].split("-", 1)[1]] = found[row["drive"]]
+    return tuple(_estimated(item, single) for item in found.values())
 
 
 def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
@@ -82,18 +92,32 @@ def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
     for series in group.split("/"):
         own = series if group == series else f"{series}-{row['size']}"
         for ratio in ratios:
+            name = f"{own}-{ratio}"
             numbers = {
-                "ratio": Printed(float(ratio), "catalogue", source),
+                "ratio": Printed(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
                 **_torque(torques, series, row["size"], ratio),
-                "hysteresis_loss": _hysteresis(float(ratio)),
+                **_limits(row["size"], float(ratio)),
             }
-            yield Item(f"{own}-{ratio}", numbers)
+            yield Item(name, numbers)
 
 
 _STIFFNESS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
 """{column: its heading in the file}."""
 _TORQUE = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
+_LIMITS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
+_SINGLE = {
+    "ratio": ("ratio", 1.0),
+    "K1": ("K1_Nm_per_rad", 1.0),
+    "K3": ("K3_Nm_per_rad", 1.0),
+    "rated_torque": ("rated_Nm", 1.0),
+    "peak_torque": ("repeated_peak_Nm", 1.0),
+    "starting_torque": ("starting_mNm", 1e-3),
+    "running_torque": ("running_mNm", 1e-3),
+    "back_driving_torque": ("back_driving_Nm", 1.0),
+    "efficiency": ("efficiency", 1.0),
+}
+"""{column: its heading in the file of single drives, SI unit over that of the file}."""
 
 
 def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
@@ -115,15 +139,56 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
     return {}
 
 
-def _hysteresis(ratio: float) -> Printed:
-    """The bound of catalogues for a ratio."""
-    bound = max((b for b in BOUNDS if b[0] <= ratio), default=BOUNDS[0])[1]
-    text = f"not of this drive: catalogues state below {bound:g} arcmin at such a ratio"
-    return Printed(bound * factor("arcmin", "rad"), "estimate", text)
+def _limits(size: str, ratio: float) -> dict[str, Printed]:
+    """Upper limits of hysteresis and lost motion: of actuators with the same stiffness, else of them all."""
+    step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
+    rows = [row for row in _table("accuracy") if row["ratio"] == step]
+    alike = [row for row in rows if row["size"] == size]
+    found = {}
+    for column, head in _LIMITS.items():
+        row = max(alike or rows, key=lambda row: float(row[head]))
+        text = f"limit for the actuators {row['series']}-{row['size']}A, whose stiffness is the same"
+        if not alike:
+            text = f"limit for all actuators {row['series']}, none of which has this size"
+        value = float(row[head]) * factor("arcmin", "rad")
+        found[column] = Printed(value, "estimate", f"{text} ({row['source']})", bound=True)
+    return found
 
 
-def _torques() -> Torques:
-    return {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
+def _single(row: Mapping[str, str], like: Item) -> Item:
+    """A drive whose friction is printed; what else is not is that of `like`, which may be itself."""
+    name, numbers = row["drive"], dict(like.numbers)
+    if name != like.name:
+        text = f"that of {like.name}, of the same size, ratio and stiffness; "
+        numbers = {c: Printed(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()}
+    source = f"{name}: {row['source']}"
+    for column, (head, unit) in _SINGLE.items():
+        if row[head] and (name != like.name or column not in ("ratio", "K1", "K3")):
+            numbers[column] = Printed(unit * float(row[head]), "catalogue", source)
+    return Item(name, numbers)
+
+
+def _estimated(item: Item, single: Mapping[str, Item]) -> Item:
+    """The drive with estimates of the friction that is not printed of it.
+
+    single : {size-ratio: drive whose starting and running torque are printed}
+
+    All of it is that of such a drive; the running torque alone is above the starting torque by as much as at
+    that size.
+    """
+    size, _, ratio = item.name.split("-", 1)[1].partition("-")
+    own, start = dict(item.numbers), item.numbers.get("starting_torque")
+    if start is None and (other := single.get(f"{size}-{ratio}")):
+        text = f"that of {other.name}, of the same size, ratio and stiffness; "
+        for column in ("starting_torque", "running_torque", "back_driving_torque"):
+            number = other.numbers[column]
+            own[column] = Printed(number.value, "estimate", text + number.source)
+    elif start is not None and "running_torque" not in own:
+        other = next(drive for key, drive in single.items() if key.startswith(f"{size}-"))
+        rise = other.numbers["running_torque"].value - other.numbers["starting_torque"].value
+        text = f"starting torque, and the rise to running torque of {other.name}, of the same size"
+        own["running_torque"] = Printed(start.value + rise, "estimate", text)
+    return Item(item.name, own)
 
 
 def _table(name: str) -> list[dict[str, str]]:

@@ -178,8 +178,17 @@ class TorqueAngle:
                 )
 
 
+class Measured(Given):
+    """A drive whose midline was measured."""
+
+    def limits(self) -> list[Limit]:
+        """Intervals that other parameters decide."""
+        none = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
+        return [*super().limits(), none]
+
+
 @dataclass(frozen=True, kw_only=True)
-class TableDrive(Given):
+class TableDrive(Measured):
     """Parameters of a harmonic drive with a measured midline.
 
     Between the points the torque follows a monotone spline: stiffnesses at the points by Fritsch and Butland
@@ -187,11 +196,6 @@ class TableDrive(Given):
     """
 
     table: TorqueAngle = group("measured midline: the point without load is left out")
-
-    def limits(self) -> list[Limit]:
-        """Intervals that other parameters decide."""
-        none = Limit("lost_motion", Interval.of(ge=0.0, le=0.0), "a measured midline has it already")
-        return [*super().limits(), none]
 
     @property
     def reach(self) -> float:

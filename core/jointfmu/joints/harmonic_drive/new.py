@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 from ...drawing.part import Drawing, Given, NewJoint, Option
 from ...drawing.reading import flag, number
 from ..catalogue import Printed
+from .quoted_friction import QUOTED, efficiency, friction
 
 if TYPE_CHECKING:
     from .fit.row import Row
 
 _ROW: Mapping[str, str] = {"K1": "N.m/rad", "K2": "N.m/rad", "K3": "N.m/rad", "T1": "N.m", "T2": "N.m"}
-_UNITS: Mapping[str, str] = {"ratio": "1", **_ROW, "rated_torque": "N.m"}
+_FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]: "1"}
+_UNITS: Mapping[str, str] = {"ratio": "1", **_ROW, "rated_torque": "N.m", **_FRICTION}
 DAMPING = 1e-4
 """d over K1 [s]: 2 % of critical where the drive swings with 60 Hz."""
 PEAK = 4.0
@@ -34,7 +36,29 @@ def _drive(given: Given) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
-    return _of_pair(printed, source) if given["law"] == "hu2023" else _of_lines(printed, source)
+    brakes = _brakes(given, printed)
+    printed = {name: number for name, number in printed.items() if name not in QUOTED}
+    return (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
+
+
+def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
+    """Friction parameters: of what is stated, else of a drive whose starting torque is printed."""
+    stated = [name for name in QUOTED if given[name] is not None]
+    start = printed.get("starting_torque")
+    if start is None or start.kind == "estimate":
+        if stated:
+            raise ValueError(
+                f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts"
+            )
+        return {}
+    if "efficiency" in stated and not printed["efficiency"].value < 1.0:
+        raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
+    if {"efficiency", "back_driving_torque"} <= set(stated):
+        raise ValueError("--efficiency and --back-driving-torque both fix load_loss; expected one of them")
+    dropped = {"efficiency"} if "back_driving_torque" in stated else set()
+    if stated:
+        dropped |= {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
+    return friction({name: number for name, number in printed.items() if name not in dropped})
 
 
 def _bought(name: str) -> dict[str, Printed]:
@@ -54,9 +78,10 @@ def _unit(given: Given, name: str) -> str:
     return given["stiffness_unit"] or _UNITS[name] if name.startswith("K") else _UNITS[name]
 
 
-def _of_lines(printed: dict[str, Printed], name: str) -> NewJoint:
+def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
     """The drive with the stiffness of the row itself."""
     from .fit import lines
+    from .quoted import LOST_MOTION, lost_motion
     from .spring import HarmonicDriveSpring
 
     _row(printed)  # refuses what cannot be
@@ -67,20 +92,28 @@ def _of_lines(printed: dict[str, Printed], name: str) -> NewJoint:
     facts = {}
     if "hysteresis_loss" in printed and printed["hysteresis_loss"].kind == "estimate":
         bound = printed["hysteresis_loss"]
-        facts["hysteresis_bound"] = (bound.value, "rad", f"{bound.source}; off unless --hysteresis is stated")
+        text = f"{_short(bound)}; off unless --hysteresis is stated"
+        facts["hysteresis_bound"] = (bound.value, "rad", text)
         printed["hysteresis_loss"] = Printed(0.0, "user", f"default choice: none; {bound.source}")
+    play = printed.pop("lost_motion", None)
     text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
     printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
+    printed |= brakes
     file = lines.made(name, printed)
     spring = HarmonicDriveSpring.of(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
+    text = f"of this drive, between +-{LOST_MOTION:g} times the rated torque"
+    text += f"; below {play.value:.4g} rad: {_short(play)}" if play else ""
+    facts["lost_motion"] = (lost_motion(spring), "rad", text)
+    if brakes:
+        facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in printed.items() if name in file.flat}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
     return NewJoint(file, facts, [f"estimates, not of the catalogue's row: {guessed}"])
 
 
-def _of_pair(printed: Mapping[str, Printed], name: str) -> NewJoint:
+def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
     """The drive with the law of Hu 2023 fitted to the row."""
     from dataclasses import replace
 
@@ -91,8 +124,15 @@ def _of_pair(printed: Mapping[str, Printed], name: str) -> NewJoint:
     file = replace(found.parameters, name=name)
     loss = printed.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
-        file = file.with_values({"hysteresis_loss": loss.value}, loss.kind, loss.source)
+        brakes = {"hysteresis_loss": loss, **brakes}
+    for label, stated in brakes.items():
+        file = file.with_values({label: stated.value}, stated.kind, stated.source)
     return NewJoint(file, found.facts, found.warnings())
+
+
+def _short(number: Printed) -> str:
+    """Where a number comes from, without the place where it is printed."""
+    return number.source.split(" (", 1)[0]
 
 
 def _row(printed: Mapping[str, Printed]) -> "Row":
@@ -124,6 +164,22 @@ NEW = Drawing(
             text="hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
             metavar="H",
         ),
+        Option(
+            name="starting_torque",
+            text="at the wave generator without load [N.m] (the catalogue's, else no friction)",
+            metavar="T",
+        ),
+        Option(
+            name="running_torque",
+            text="the same in motion, at 2000 rev/min [N.m] (as starting torque)",
+            metavar="T",
+        ),
+        Option(
+            name="back_driving_torque",
+            text="at the output, that turns the drive without motor [N.m]",
+            metavar="T",
+        ),
+        Option(name="efficiency", text="at rated torque and 2000 rev/min [1]", metavar="E"),
         Option(name="source", text="where the row is printed", metavar="TEXT"),
         Option(
             name="law",

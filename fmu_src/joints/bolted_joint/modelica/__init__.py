@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import Component, Record, WorkingPoint, numbers
+from ....modelica.records import Component, Record, WorkingPoint, computed, given
 from ....modelica.text import identifier, matrix
 from .tight import ABOVE, BELOW, DAMPING_TOLERANCE, STRONGEST, tightened
 
@@ -21,25 +21,24 @@ def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record
 def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> Record:
     tight = tightened(spring, preload, moment)
     rest = spring.motion(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    values = {
-        "preload": preload,
-        "moment": moment,
-        "mass": spring.joint.mass,
-        "bolts": float(spring.joint.n_bolts * spring.joint.bolt_stiffness),
-        "plastic_damping": spring.joint.plastic_damping,
-        "memory": spring.joint.memory,
-        "damping": spring.joint.damping,
-        "mu": spring.joint.mu,
-        "tight": tight.force,
-        "shear": tight.shear,
-        "eta_t": float(rest["eta_t"]),
-    }
+    values = given(
+        {
+            "preload": preload,
+            "moment": moment,
+            "mass": spring.joint.mass,
+            "bolts": float(spring.joint.n_bolts * spring.joint.bolt_stiffness),
+            "plastic_damping": spring.joint.plastic_damping,
+            "memory": spring.joint.memory,
+            "damping": spring.joint.damping,
+            "mu": spring.joint.mu,
+        }
+    ) | computed({"tight": tight.force, "shear": tight.shear, "eta_t": float(rest["eta_t"])})
     force = f"{preload / 1e3:g} kN"
     return Record(
         name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.table,
-        values=numbers(values) | {"heights": matrix(tight.heights), "eta_n": matrix(tight.damping)},
+        values=values | {"heights": matrix(tight.heights), "eta_n": matrix(tight.damping)},
         more="; where the force is below the one at tightening, relative to that",
     )
 

@@ -5,17 +5,17 @@ from collections.abc import Sequence
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import Component, Record, WorkingPoint, numbers
+from ....modelica.records import Component, Record, WorkingPoint, computed, given
 from ....modelica.tables import curve_of, thinned
-from ....modelica.text import identifier, number
+from ....modelica.text import COMPUTED, identifier, number
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
     spring = GearMeshSpring.of(file.values)
     table = thinned(spring.curve)
     energy = curve_of(table).energy(table.rows[:, 0])
-    values = numbers(_wheels(spring.joint) | {"closing": spring.closing})
-    nodes = "{\n      " + ",\n      ".join(map(number, energy.tolist())) + "}"
+    values = given(_wheels(spring.joint)) | computed({"closing": spring.closing})
+    nodes = "{\n      " + ",\n      ".join(number(x, COMPUTED) for x in energy.tolist()) + "}"
     return [
         Record(name=identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes})
     ]

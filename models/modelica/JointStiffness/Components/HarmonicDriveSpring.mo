@@ -4,8 +4,24 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (choicesAllMatching=true);
   parameter Real ratio = data.ratio "speed ratio of wave generator and output; negative: they turn in opposite senses; not 0";
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "viscous damping at the output";
-  parameter Modelica.Units.SI.Torque friction(min=0) = data.friction "Friction of its hysteresis; 0: none";
-  parameter Modelica.Units.SI.RotationalSpringConstant stick(min=0) = data.stick "Stiffness of its sliders while all of them stick";
+  parameter Modelica.Units.SI.Torque hysteresis_friction(min=0) = data.hysteresis_friction "Friction of its hysteresis; 0: none"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.RotationalSpringConstant hysteresis_stiffness(min=0) = data.hysteresis_stiffness "extra stiffness of tiny motions, before friction slips"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_coulomb(min=0) = data.friction_coulomb "dry friction at the wave generator"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_stribeck(min=0) = data.friction_stribeck "further dry friction at rest, which speed takes away"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small) = data.stribeck_speed "speed of the wave generator that leaves 1/e of friction_stribeck"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0) = data.friction_viscous "friction at the wave generator over its speed"
+    annotation (Dialog(tab="Friction"));
+  parameter Real load_loss(min=0, unit="1") = data.load_loss "dry friction at the wave generator over the torque transmitted to it"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "angle of the wave generator over which dry friction builds up to 1 - 1/e"
+    annotation (Dialog(tab="Friction"));
+  parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "friction over that of the reference temperature"
+    annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle error_1 = data.error_1 "kinematic error at the output, amplitude, one period per turn of the wave generator"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "phase of error_1 at phi1 = 0"
@@ -18,7 +34,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_4_phase = data.error_4_phase "phase of error_4 at phi1 = 0"
     annotation (Dialog(tab="Kinematic error"));
-  parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia and damping"
+  parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia, damping, hysteresis and friction"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
   parameter StateSelect stateSelect=StateSelect.prefer "Priority to use phi_rel and w_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
@@ -33,18 +49,49 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.Torque tau_c(nominal=5) "Torque of the spring";
   Modelica.Units.SI.Torque tau_h(nominal=0.1) "Torque of the hysteresis";
   Modelica.Units.SI.Torque tau(nominal=5) "Torque at the output (= flange_b.tau)";
+  Modelica.Units.SI.AngularVelocity w1(nominal=100) "Speed of the wave generator; 0 with use_damping=false";
+  Modelica.Units.SI.Torque tau_friction(nominal=0.01) "friction of the wave generator, positive where it turns so";
   Modelica.Units.SI.RotationalSpringConstant K_WTS(nominal=5e3) "tangent stiffness dT/dphi of the midline at the present wind-up";
   Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS";
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
-  constant Real layer=1e-3 "Width over friction of the layer beyond it in which a slider ceases to stick";
-  parameter Integer n=size(data.sliders, 1) "Sliders";
-  parameter Real K_h[n]=stick*data.sliders[:, 1] "Their stiffness [N.m/rad]";
-  parameter Real M_h[n]=friction*data.sliders[:, 2] "Their friction [N.m]";
-  Real q[n](each start=0, each fixed=true, each nominal=0.01) "Their torques [N.m]";
-  Real rate[n] "Their rates [N.m/s]";
+  constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
+  constant Modelica.Units.SI.Time turned=0.1 "Time for which a drive that turns at initialization has turned before";
+  constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
+  constant Real width=0.01 "Torque at the output over rated torque within which |tau| is smooth";
+  constant Real brakes[:, 2]=[
+      0.234375, 0.02990505504;
+      0.203125, 0.08395261345;
+      0.171875, 0.1283269962;
+      0.140625, 0.1612417451;
+      0.109375, 0.1800903629;
+      0.078125, 0.1806964323;
+      0.046875, 0.155179247;
+      0.015625, 0.08060754818] "Springs and friction of the wave generator's sliders, each over the sum of all";
+  parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_h[n]=(if hysteresis_friction > 0 then hysteresis_stiffness else 0)*data.sliders[:, 1] "Their stiffness";
+  parameter Modelica.Units.SI.Torque M_h[n]=hysteresis_friction*data.sliders[:, 2] "Their friction";
+  Modelica.Units.SI.Torque q_h[n](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
+  Modelica.Units.SI.Torque held_h[n] "What of it friction holds";
+  Real rate_h[n](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
+  parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
+  parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + load_loss*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
+  Modelica.Units.SI.Torque M_w "Limit of dry friction at the wave generator";
+  Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
+  Modelica.Units.SI.Torque held_w[m] "What of it friction holds";
+  Real rate_w[m](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_w[m] "What they turn into heat";
   Real errorSlope "Derivative of phi_error in flange_a.phi";
-  Real windUp "Absolute value of the wind-up";
+  Modelica.Units.SI.Angle windUp "Absolute value of the wind-up";
+initial equation
+  for i in 1:n loop
+    q_h[i] = if use_damping then min(max(K_h[i]*phi_rel, -M_h[i]), M_h[i]) else 0;
+  end for;
+  for i in 1:m loop
+    q_w[i] = min(max(turned*K_w[i]*w1, -M_w*brakes[i, 2]), M_w*brakes[i, 2]);
+  end for;
 equation
   assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
   phi_error = error_1*sin(flange_a.phi + error_1_phase) + error_2*sin(2*flange_a.phi + error_2_phase) + error_4*sin(4*flange_a.phi + error_4_phase);
@@ -52,24 +99,36 @@ equation
   phi_rel = flange_b.phi - flange_a.phi/ratio - phi_error;
   if use_damping then
     w_rel = der(phi_rel);
+    w1 = der(flange_a.phi);
     tau = tau_c + tau_h + d*w_rel;
   else
     w_rel = 0;
+    w1 = 0;
     tau = tau_c + tau_h;
   end if;
+  // sliders: a spring each, that follows the motion until its friction holds no more
   for i in 1:n loop
-    // a spring each, that follows the wind-up until its friction holds no more
-    rate[i] = noEvent(if abs(q[i]) > M_h[i] and q[i]*w_rel > 0 then K_h[i]*w_rel*max(1 - (abs(q[i]) - M_h[i])/(layer*M_h[i] + 1e-12), 0) else K_h[i]*w_rel);
-    der(q[i]) = rate[i];
+    held_h[i] = noEvent(min(max(q_h[i], -M_h[i]), M_h[i]));
+    rate_h[i] = K_h[i]*(w_rel - noEvent(abs(w_rel))*(q_h[i] - held_h[i])/(layer*M_h[i] + Modelica.Constants.small));
+    der(q_h[i]) = rate_h[i];
+    heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
-  tau_h = sum(noEvent(min(max(q[i], -M_h[i]), M_h[i])) for i in 1:n);
+  tau_h = sum(held_h);
+  M_w = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + load_loss*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  for i in 1:m loop
+    held_w[i] = noEvent(min(max(q_w[i], -M_w*brakes[i, 2]), M_w*brakes[i, 2]));
+    rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
+    der(q_w[i]) = rate_w[i];
+    heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);
+  end for;
+  tau_friction = sum(held_w) + temperature_factor*friction_viscous*w1;
   windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
   tau_c = noEvent(if phi_rel < 0 then -1 else 1)*JointStiffness.Functions.load(windUp, data.table);
   K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
-  flange_a.tau = -(tau/ratio + errorSlope*tau);
-  lossPower = d*w_rel^2 + sum(q[i]*(w_rel - rate[i]/max(K_h[i], Modelica.Constants.small)) for i in 1:n);
+  flange_a.tau = -(tau/ratio + errorSlope*tau) + tau_friction;
+  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
   annotation (
     defaultComponentName="harmonicDrive",
     Icon(graphics={
@@ -87,10 +146,12 @@ equation
 <h4>Flanges</h4>
 <p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange. With a flange held, the other at a given torque and no inertia, the damper decides the speed, which is a division by zero if <code>d</code> is 0: set <code>use_damping=false</code> then, and the wind-up follows the torque at once.</p>
 <h4>Law</h4>
-<p>τ = T(φ<sub>rel</sub>) + d dφ<sub>rel</sub>/dt, &emsp; T the inverse of φ(T)</p>
-<p>φ<sub>rel</sub> = φ<sub>2</sub> − φ<sub>1</sub>/ratio − φ<sub>e</sub>(φ<sub>1</sub>), &emsp; τ<sub>1</sub> = τ (1/ratio + dφ<sub>e</sub>/dφ<sub>1</sub>), &emsp; τ<sub>2</sub> = −τ</p>
+<p>τ = T(φ<sub>rel</sub>) + T<sub>h</sub> + d dφ<sub>rel</sub>/dt, &emsp; T the inverse of φ(T)</p>
+<p>φ<sub>rel</sub> = φ<sub>2</sub> − φ<sub>1</sub>/ratio − φ<sub>e</sub>(φ<sub>1</sub>), &emsp; τ<sub>1</sub> = τ (1/ratio + dφ<sub>e</sub>/dφ<sub>1</sub>) − τ<sub>friction</sub>, &emsp; τ<sub>2</sub> = −τ</p>
 <p>φ<sub>e</sub> = Σ error_n sin(n φ<sub>1</sub> + error_n_phase), &emsp; n = 1, 2, 4</p>
 <p>φ<sub>e</sub>, the output <code>phi_error</code>, is the kinematic error at the output. φ<sub>1</sub> counts from the housing: both lobes of the wave generator pass every tooth once per turn, so two periods per turn come first, <code>error_2</code>. The torque on the wave generator follows by virtual work. At a steady speed the output ripples, most at that speed of the wave generator which is half the natural frequency.</p>
+<p>M = temperature_factor [friction_coulomb + friction_stribeck exp(−(w<sub>1</sub>/stribeck_speed)<sup>2</sup>) + load_loss |τ/ratio|]</p>
+<p>Friction at the wave generator, the output <code>tau_friction</code>, is dry friction with the limit M, and <code>temperature_factor · friction_viscous · w1</code>. Dry friction builds up over the angle φ<sub>1</sub>, from rest as M [1 − exp(−φ<sub>1</sub>/presliding)], by 8 sliders with memory: a drive at rest holds a torque below M where it is. At initialization a drive has turned before as its speed says, wherever it is. Smooth through τ = 0: |τ| is τ tanh(τ/(0.01 T<sub>r</sub>)).</p>
 <p>φ(T) = ∫<sub>0</sub><sup>T</sup> dT′ / K<sub>WTS</sub>(T′), &emsp; odd in T</p>
 <p>1/K<sub>WTS</sub> = 1/K<sub>FTS</sub> + 1/K<sub>TS</sub> (Hu 2023, Eq. 46)</p>
 <p>K<sub>TS</sub> = drive_scale · (A<sub>0</sub>/node_area) · K<sub>T</sub>(p) · 2 radius, &emsp; p = mean_over_peak · P(T) (Eq. 45 as printed)</p>
@@ -102,8 +163,9 @@ equation
 <p>p = F<sub>r</sub>/S<sub>r</sub> = (3−D)/(4−D) · 4E/(3π<sup>3/2</sup>R) · s<sub>l</sub><sup>1/2</sup> (Eqs. 17, 28)</p>
 <p>K<sub>N</sub> = (D−1)/(D/2−1) · E π<sup>−1/2</sup> ψ<sup>(3−D)/2</sup> s<sub>l</sub><sup>1/2</sup>, &emsp; K<sub>T</sub>/K<sub>N</sub> = (4G′/E) (1 − x)<sup>1/3</sup> (Eqs. 30, 39)</p>
 <p><code>lost_motion</code> adds <code>lost_motion</code>/2 · tanh(T/(0.01 T<sub>r</sub>)) to φ(T): smooth, in series, counted to K<sub>TS</sub>. Catalogues state as lost motion the angle between ± 4 % of the rated torque T<sub>r</sub>, midway between the branches of the loop; the parameter is what of it is beyond the wind-up 2 φ(0.04 T<sub>r</sub>) without it.</p>
+<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. The sliders of the friction at the wave generator are the FMU's too, and their limit M follows speed and load. A slider ceases to stick within a layer of a thousandth of its friction; what is beyond its friction never acts, so a drive at rest holds.</p>
 <h4>Not in this table</h4>
-<p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
+<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. With <code>use_damping=false</code> the drive has neither hysteresis nor friction. The table is odd in the wind-up and ends at 30 N m; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 <ul>
 <li><b>Validated</b> with the default parameters (CD-14-100): K_TS of the paper at 1 and 3 N m within 2.0 %, its change by eccentricity within 0.7 percentage points. The other published points fixed the calibration parameters.</li>
@@ -111,7 +173,8 @@ equation
 <li><b>Estimates.</b> Base radius, mean over peak pressure, yield strengths and damping are not published. All spots are taken as elastic; parameters for which some would yield are refused.</li>
 <li><b>Beyond rated torque</b> the stiffness settles at that of twice the rated torque, as that of catalogue drives does: an extrapolation.</li>
 <li><b>Range.</b> The table ends at <code>max_torque</code>. Parameters for which the pair loses contact without torque are refused.</li>
-<li><b>Not inside:</b> friction at the wave generator, temperature. Other than in the FMU.</li>
+<li><b>Friction and kinematic error</b> are forms, not derived: their parameters come from a catalogue (starting torque, no-load running torque over speed, efficiency, back-driving torque) or a measurement. A catalogue's transmission accuracy is the peak to peak of all harmonics.</li>
+<li><b>Not inside:</b> temperature but as the factor on the friction; wear.</li>
 </ul>
 <p>Q. Hu, H. Li, G. Wang, L. Li: <em>Research on torsional stiffness of flexspline-flexible bearing contact pair in harmonic drive based on macro-micro scale modeling.</em> Frontiers in Materials 10, 2023. <a href=\"https://doi.org/10.3389/fmats.2023.1211019\">doi:10.3389/fmats.2023.1211019</a></p>
 </html>"));

@@ -145,7 +145,9 @@ def fit(
     return Outcome(
         result,
         solution,
-        described | _reached(data, law, described["friction_limit"][0]) | memory.facts(data, solution, law),
+        described
+        | _reached(data, law, described["friction_limit"][0])
+        | memory.facts(data, solution, law, scale),
         picture,
         notes=memory.notes(data, solution),
         beside=beside,

@@ -101,7 +101,7 @@ def fit(
     return Outcome(
         result,
         solution,
-        described | memory.facts(data, solution, found),
+        described | memory.facts(data, solution, found, scale),
         picture,
         notes=memory.notes(data, solution),
         beside=beside,

@@ -4,8 +4,24 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (choicesAllMatching=true);
   parameter Real ratio = data.ratio "<< meta.ratio >>";
   parameter Modelica.Units.SI.RotationalDampingConstant d(min=0) = data.d "<< meta.d >>";
-  parameter Modelica.Units.SI.Torque friction(min=0) = data.friction "Friction of its hysteresis; 0: none";
-  parameter Modelica.Units.SI.RotationalSpringConstant stick(min=0) = data.stick "Stiffness of its sliders while all of them stick";
+  parameter Modelica.Units.SI.Torque hysteresis_friction(min=0) = data.hysteresis_friction "Friction of its hysteresis; 0: none"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.RotationalSpringConstant hysteresis_stiffness(min=0) = data.hysteresis_stiffness "<< meta.hysteresis_stiffness.split(";")[0] >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_coulomb(min=0) = data.friction_coulomb "<< meta.friction_coulomb >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Torque friction_stribeck(min=0) = data.friction_stribeck "<< meta.friction_stribeck >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small) = data.stribeck_speed "<< meta.stribeck_speed >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0) = data.friction_viscous "<< meta.friction_viscous >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Real load_loss(min=0, unit="1") = data.load_loss "<< meta.load_loss >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "<< meta.presliding >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "<< meta.temperature_factor >>"
+    annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle error_1 = data.error_1 "<< meta.error_1 >>"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "<< meta.error_1_phase >>"
@@ -18,7 +34,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_4_phase = data.error_4_phase "<< meta.error_4_phase >>"
     annotation (Dialog(tab="Kinematic error"));
-  parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia and damping"
+  parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia, damping, hysteresis and friction"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
   parameter StateSelect stateSelect=StateSelect.prefer "Priority to use phi_rel and w_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
@@ -33,18 +49,41 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.Torque tau_c(nominal=5) "Torque of the spring";
   Modelica.Units.SI.Torque tau_h(nominal=0.1) "Torque of the hysteresis";
   Modelica.Units.SI.Torque tau(nominal=5) "Torque at the output (= flange_b.tau)";
+  Modelica.Units.SI.AngularVelocity w1(nominal=100) "Speed of the wave generator; 0 with use_damping=false";
+  Modelica.Units.SI.Torque tau_friction(nominal=0.01) "<< docs.tau_friction >>";
   Modelica.Units.SI.RotationalSpringConstant K_WTS(nominal=5e3) "<< docs.K_WTS >>";
   Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "<< docs.K_TS >>";
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
-  constant Real layer=1e-3 "Width over friction of the layer beyond it in which a slider ceases to stick";
-  parameter Integer n=size(data.sliders, 1) "Sliders";
-  parameter Real K_h[n]=stick*data.sliders[:, 1] "Their stiffness [N.m/rad]";
-  parameter Real M_h[n]=friction*data.sliders[:, 2] "Their friction [N.m]";
-  Real q[n](each start=0, each fixed=true, each nominal=0.01) "Their torques [N.m]";
-  Real rate[n] "Their rates [N.m/s]";
+  constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
+  constant Modelica.Units.SI.Time turned=<< turned >> "Time for which a drive that turns at initialization has turned before";
+  constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
+  constant Real width=<< width >> "Torque at the output over rated torque within which |tau| is smooth";
+  constant Real brakes[:, 2]=<< brakes >> "Springs and friction of the wave generator's sliders, each over the sum of all";
+  parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_h[n]=(if hysteresis_friction > 0 then hysteresis_stiffness else 0)*data.sliders[:, 1] "Their stiffness";
+  parameter Modelica.Units.SI.Torque M_h[n]=hysteresis_friction*data.sliders[:, 2] "Their friction";
+  Modelica.Units.SI.Torque q_h[n](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
+  Modelica.Units.SI.Torque held_h[n] "What of it friction holds";
+  Real rate_h[n](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
+  parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
+  parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + load_loss*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
+  parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
+  Modelica.Units.SI.Torque M_w "Limit of dry friction at the wave generator";
+  Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
+  Modelica.Units.SI.Torque held_w[m] "What of it friction holds";
+  Real rate_w[m](each unit="N.m/s") "Their rates";
+  Modelica.Units.SI.Power heat_w[m] "What they turn into heat";
   Real errorSlope "Derivative of phi_error in flange_a.phi";
-  Real windUp "Absolute value of the wind-up";
+  Modelica.Units.SI.Angle windUp "Absolute value of the wind-up";
+initial equation
+  for i in 1:n loop
+    q_h[i] = if use_damping then min(max(K_h[i]*phi_rel, -M_h[i]), M_h[i]) else 0;
+  end for;
+  for i in 1:m loop
+    q_w[i] = min(max(turned*K_w[i]*w1, -M_w*brakes[i, 2]), M_w*brakes[i, 2]);
+  end for;
 equation
   assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
   phi_error = error_1*sin(flange_a.phi + error_1_phase) + error_2*sin(2*flange_a.phi + error_2_phase) + error_4*sin(4*flange_a.phi + error_4_phase);
@@ -52,24 +91,36 @@ equation
   phi_rel = flange_b.phi - flange_a.phi/ratio - phi_error;
   if use_damping then
     w_rel = der(phi_rel);
+    w1 = der(flange_a.phi);
     tau = tau_c + tau_h + d*w_rel;
   else
     w_rel = 0;
+    w1 = 0;
     tau = tau_c + tau_h;
   end if;
+  // sliders: a spring each, that follows the motion until its friction holds no more
   for i in 1:n loop
-    // a spring each, that follows the wind-up until its friction holds no more
-    rate[i] = noEvent(if abs(q[i]) > M_h[i] and q[i]*w_rel > 0 then K_h[i]*w_rel*max(1 - (abs(q[i]) - M_h[i])/(layer*M_h[i] + 1e-12), 0) else K_h[i]*w_rel);
-    der(q[i]) = rate[i];
+    held_h[i] = noEvent(min(max(q_h[i], -M_h[i]), M_h[i]));
+    rate_h[i] = K_h[i]*(w_rel - noEvent(abs(w_rel))*(q_h[i] - held_h[i])/(layer*M_h[i] + Modelica.Constants.small));
+    der(q_h[i]) = rate_h[i];
+    heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
-  tau_h = sum(noEvent(min(max(q[i], -M_h[i]), M_h[i])) for i in 1:n);
+  tau_h = sum(held_h);
+  M_w = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + load_loss*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  for i in 1:m loop
+    held_w[i] = noEvent(min(max(q_w[i], -M_w*brakes[i, 2]), M_w*brakes[i, 2]));
+    rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
+    der(q_w[i]) = rate_w[i];
+    heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);
+  end for;
+  tau_friction = sum(held_w) + temperature_factor*friction_viscous*w1;
   windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
   tau_c = noEvent(if phi_rel < 0 then -1 else 1)*JointStiffness.Functions.load(windUp, data.table);
   K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
-  flange_a.tau = -(tau/ratio + errorSlope*tau);
-  lossPower = d*w_rel^2 + sum(q[i]*(w_rel - rate[i]/max(K_h[i], Modelica.Constants.small)) for i in 1:n);
+  flange_a.tau = -(tau/ratio + errorSlope*tau) + tau_friction;
+  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
   annotation (
     defaultComponentName="harmonicDrive",
     Icon(graphics={
@@ -87,8 +138,9 @@ equation
 <p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange. With a flange held, the other at a given torque and no inertia, the damper decides the speed, which is a division by zero if <code>d</code> is 0: set <code>use_damping=false</code> then, and the wind-up follows the torque at once.</p>
 <h4>Law</h4>
 << html.law >>
+<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. The sliders of the friction at the wave generator are the FMU's too, and their limit M follows speed and load. A slider ceases to stick within a layer of a thousandth of its friction; what is beyond its friction never acts, so a drive at rest holds.</p>
 <h4>Not in this table</h4>
-<p>Friction at the wave generator (<code>tau_friction</code> of the FMU): take <code>Modelica.Mechanics.Rotational.Components.BearingFriction</code> on <code>flange_a</code>, which knows no load. The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. The hysteresis is the FMU's: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. With <code>use_damping=false</code> the drive has none. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
+<p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. With <code>use_damping=false</code> the drive has neither hysteresis nor friction. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>
 << html.trust >>
 << html.paper >>

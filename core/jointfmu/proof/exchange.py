@@ -1,0 +1,156 @@
+"""Model exchange in fmpy: its CVode leads an FMU through continuous time, with events of all kinds.
+
+Between two communication points inputs go along straight lines. An event is where one jumps, at a time that
+the FMU announces, where an indicator changes its sign, and where a completed step asks for it.
+"""
+
+import ctypes
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from .task import FLOOR, Rows, Task, description_of, reader
+
+MOST_STEPS = 100_000
+"""Of the solver between two communication points."""
+NEAR = 1e-9
+"""Part of an interval [1] by which an event may differ from a communication point that it meets."""
+
+
+def fmpy(task: Task, messages: list[str]) -> Rows:
+    """By fmpy and CVode, FMI 2.0 and 3.0."""
+    from .. import ramp
+
+    description, variables = description_of(task.fmu)
+    with ramp.slave(task.folder, description, messages, task.fmu, exchange=True) as instance:
+        instance.begin(task.times[0])
+        for name, value in {**task.settings, **task.given(0)}.items():
+            instance.set(variables[name], value)
+        instance.fmu.exitInitializationMode()
+        motion = _Motion(instance, description, variables, task)
+        read = reader(instance, variables, task.outputs)
+        rows: Rows = [read()]
+        for i in range(len(task.times) - 1):
+            motion.over(i)
+            rows.append(read())
+    return rows
+
+
+class _Motion:
+    """An FMU in continuous time."""
+
+    def __init__(self, instance: Any, description: Any, variables: Mapping[str, Any], task: Task) -> None:
+        from fmpy.sundials import CVodeSolver
+
+        self.instance, self.fmu, self.variables, self.task = instance, instance.fmu, variables, task
+        self.accepts = description.modelExchange.needsCompletedIntegratorStep
+        self.continuous = [
+            name
+            for name in task.inputs
+            if task.kinds[name] == "real" and variables[name].variability != "discrete"
+        ]
+        self.interval, self.time = 0, task.times[0]
+        self.failure: Exception | None = None
+        self._settle()
+        self.solver = CVodeSolver(
+            nx=description.numberOfContinuousStates,
+            nz=description.numberOfEventIndicators,
+            get_x=self._kept(self.fmu.getContinuousStates),
+            set_x=self._kept(self.fmu.setContinuousStates),
+            get_dx=self._kept(instance.rates),
+            get_z=self._kept(self.fmu.getEventIndicators),
+            get_nominals=self._nominals,
+            set_time=self._kept(self._at),
+            input=_Nothing,
+            startTime=task.times[0],
+            relativeTolerance=task.tolerance,
+            maxNumSteps=MOST_STEPS,
+        )
+
+    def over(self, interval: int) -> None:
+        """From a communication point to the next one, and over the events there."""
+        self.interval = interval
+        begin, end = self.task.times[interval : interval + 2]
+        near = NEAR * (end - begin)
+        while end - self.time > near:
+            if self.event <= self.time:
+                raise RuntimeError(f"announces an event at {self.event:g} s when it is {self.time:g} s")
+            until = self.event if self.event < end + near else end
+            _stop_at(self.solver, until)
+            _, roots, self.time = self.solver.step(self.time, until)
+            if self.failure:
+                raise self.failure
+            self._at(self.time)
+            wanted, ends = self.fmu.completedIntegratorStep() if self.accepts else (False, False)
+            self._check(ends)
+            jumps = end - self.time <= near and self._jumps(interval + 1)
+            if wanted or jumps or np.any(roots) or self.time >= self.event:
+                self.fmu.enterEventMode()
+                for name, value in self.task.given(interval + 1).items() if jumps else ():
+                    self.instance.set(self.variables[name], value)
+                self._settle()
+                self.solver.reset(self.time)
+
+    def _check(self, ends: bool) -> None:
+        if ends:
+            raise RuntimeError(f"the FMU ends the simulation at {self.time:g} s")
+
+    def _settle(self) -> None:
+        """Iterate an event until nothing changes, and go on in continuous time."""
+        again = True
+        while again:
+            again, ends, *_, announced, event = self.instance.update()
+            self._check(ends)
+        self.event = float(event) if announced else np.inf
+        self.fmu.enterContinuousTimeMode()
+
+    def _jumps(self, i: int) -> bool:
+        """Whether an input that moves in events only has another value, or any one jumps."""
+        old, new = self.task.given(i - 1), self.task.given(i)
+        before = {**old, **{name: self.task.before[name][i] for name in self.continuous}}
+        return before != new
+
+    def _at(self, time: float) -> None:
+        """Set time and continuous inputs."""
+        self.fmu.setTime(time)
+        i = self.interval
+        begin, end = self.task.times[i : i + 2]
+        part = (time - begin) / (end - begin)
+        for name in self.continuous:
+            first, last = self.task.inputs[name][i], self.task.before[name][i + 1]
+            value = first if first == last else (1.0 - part) * first + part * last
+            self.instance.set(self.variables[name], value)
+
+    def _nominals(self, values: Any, count: int) -> None:
+        """Sizes below which round-off counts, as for what is compared."""
+        self.fmu.getNominalsOfContinuousStates(values, count)
+        np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
+
+    def _kept(self, call: Callable[..., Any]) -> Callable[..., None]:
+        """A call whose first failure is kept: C, which calls it, does not hand on exceptions."""
+
+        def kept(*arguments: Any) -> None:
+            try:
+                call(*arguments)
+            except Exception as failure:  # fmpy raises bare Exception
+                self.failure = self.failure or failure
+
+        return kept
+
+
+class _Nothing:
+    """Inputs are set together with the time."""
+
+    @staticmethod
+    def apply(time: float) -> None:
+        pass
+
+
+def _stop_at(solver: Any, time: float) -> None:
+    """Let the solver not go beyond a time: there the inputs are others."""
+    from fmpy.sundials.libraries import sundials_cvode
+
+    set_stop = sundials_cvode.CVodeSetStopTime
+    set_stop.argtypes = [ctypes.c_void_p, ctypes.c_double]
+    set_stop(solver.cvode_mem, time)

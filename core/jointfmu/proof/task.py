@@ -1,0 +1,77 @@
+"""What an importer is given: an experiment as plain numbers, which go to its process as JSON."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from .values import REAL
+
+FLOOR = 1e-6
+"""Part of an output's nominal value [1] below which its round-off counts, not its own size."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """An experiment, ready to be executed.
+
+    fmu, folder : path of the FMU, and of the folder where it is unpacked
+    interface : one of manifest.INTERFACES
+    settings : {variable: start value}
+    times    : (n) communication points [s]
+    inputs   : {variable: (n) values}, where one jumps the later
+    before   : the same, where one jumps the earlier
+    outputs  : variables that are read
+    kinds    : {variable: its kind} of inputs and outputs, see values.KINDS
+    tolerance : relative, of a solver [1]
+    """
+
+    fmu: str
+    folder: str
+    interface: str
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    times: Sequence[float] = ()
+    inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    before: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    outputs: Sequence[str] = ()
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    tolerance: float = 1e-5
+
+    def given(self, i: int) -> dict[str, float]:
+        """Inputs at a communication point."""
+        return {name: values[i] for name, values in self.inputs.items()}
+
+    @property
+    def step(self) -> float:
+        """The step [s], for importers that know one step only.
+
+        Raises ValueError if steps differ or do not begin at zero.
+        """
+        if self.times[0] != 0.0:
+            raise ValueError(f"begins at {self.times[0]:g} s, this importer begins at 0")
+        size = (self.times[-1] - self.times[0]) / max(len(self.times) - 1, 1)
+        if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.times)):
+            raise ValueError("has steps of different size, this importer has one")
+        return size
+
+
+Rows = list[list[float] | None]
+"""Outputs at each communication point; None where the importer does not show them."""
+Execute = Callable[[Task, list[str]], Rows]
+"""(task, messages, to which those of the FMU are added) -> outputs."""
+
+
+def reader(instance: Any, variables: Mapping[str, Any], outputs: Sequence[str]) -> Callable[[], list[float]]:
+    """What reads outputs of an instance in fmpy, real numbers in one call."""
+    chosen = [variables[name] for name in outputs]
+    if all(v.type in REAL for v in chosen):
+        references = [v.valueReference for v in chosen]
+        return lambda: list(instance.get(references))
+    return lambda: [float(instance.read(v)) for v in chosen]
+
+
+def description_of(fmu: str) -> tuple[Any, dict[str, Any]]:
+    """fmpy's model description of an FMU, and its variables by name."""
+    from fmpy import read_model_description
+
+    description = read_model_description(fmu, validate=False)
+    return description, {v.name: v for v in description.modelVariables}

@@ -1,0 +1,127 @@
+"""Tables of `runtime/elementary.c`, in decimal arithmetic of more digits than a double holds."""
+
+from collections.abc import Iterator, Sequence
+from decimal import Decimal, localcontext
+from functools import cache
+from math import factorial
+
+from .c_text import array, number
+
+PLACES = 128
+"""Of the tables of exponential and logarithm."""
+LOG_BEGIN = 0x3FE6955500000000
+"""Bits of the number with which a binade of the logarithm's table begins; 1 lies inside of a place."""
+_ONE = 0x3FF0000000000000
+_STEP = 1 << 45
+"""Bits from place to place."""
+_DIGITS = 60
+_ERF_PER_PLACE, _ERF_END, _N_ERF = 4, 6, 15
+_N_EXPM1, _N_WAVE = 13, 8
+
+
+@cache
+def tables() -> str:
+    """Text of elementary_tables.h."""
+    with localcontext() as context:
+        context.prec = _DIGITS
+        log_2, quarter = Decimal(2).ln(), _pi() / 2
+        per_place = log_2 / PLACES
+        macros = {
+            "LOG_2": _first(log_2, 42),
+            "LOG_2_LOW": float(log_2 - Decimal(_first(log_2, 42))),
+            "PLACES_PER_LOG_2": float(1 / per_place),
+            "LOG_2_PER_PLACE": _first(per_place, 42),
+            "LOG_2_PER_PLACE_LOW": float(per_place - Decimal(_first(per_place, 42))),
+            "ERF_PER_PLACE": float(_ERF_PER_PLACE),
+            "TURNS": float(1 / quarter),
+        }
+        arrays = {
+            "QUARTER[4]": [[part] for part in _parts(quarter)],
+            f"POWERS[{PLACES}][2]": [_pair((k * per_place).exp()) for k in range(PLACES)],
+            f"LOGS[{PLACES}][3]": list(_logs()),
+            f"EXPM1[{_N_EXPM1}]": [[1 / factorial(n + 2)] for n in range(_N_EXPM1)],
+            f"ERF[{_ERF_PER_PLACE * _ERF_END + 1}][{_N_ERF}]": list(_erf()),
+            f"SINE[{_N_WAVE}]": [[-((-1) ** n) / factorial(2 * n + 3)] for n in range(_N_WAVE)],
+            f"COSINE[{_N_WAVE}]": [[(-1) ** n / factorial(2 * n + 4)] for n in range(_N_WAVE)],
+        }
+    counts = {"PLACES": PLACES, "N_EXPM1": _N_EXPM1, "N_ERF": _N_ERF, "N_WAVE": _N_WAVE}
+    return "\n".join(
+        [
+            f"enum {{ {', '.join(f'{name} = {n}' for name, n in counts.items())} }};",
+            f"#define LOG_BEGIN {LOG_BEGIN:#x}",
+            *(f"#define {name} {number(value)}" for name, value in macros.items()),
+            *(array(f"static const double {name}", map(_row, rows)) for name, rows in arrays.items()),
+        ]
+    )
+
+
+def _row(values: Sequence[float]) -> str:
+    text = ", ".join(number(value) for value in values)
+    return text if len(values) == 1 else f"{{{text}}}"
+
+
+def _first(value: Decimal, bits: int) -> float:
+    """A number rounded to a multiple of 2^-bits."""
+    return float((value * 2**bits).to_integral_value()) * 2.0**-bits
+
+
+def _pair(value: Decimal) -> list[float]:
+    """A number and, over it, what it lacks."""
+    high = float(value)
+    return [high, float(value / Decimal(high) - 1)]
+
+
+def _parts(value: Decimal) -> Iterator[float]:
+    """A number as three of 33 bits, whose products with 20 bits are exact, and the rest."""
+    for bits in (32, 65, 98):
+        yield (part := _first(value, bits))
+        value -= Decimal(part)
+    yield float(value)
+
+
+def _logs() -> Iterator[list[float]]:
+    """1/c of few bits near the middle of each place, exactly 1 where 1 lies; log(c) in two parts."""
+    for place in range(PLACES):
+        begin = LOG_BEGIN + place * _STEP
+        ends = [_double(begin), _double(begin + _STEP)]
+        inverse = 1.0 if begin <= _ONE < begin + _STEP else round(2.0**16 * 2.0 / sum(ends)) * 2.0**-16
+        log = -Decimal(inverse).ln()
+        high = _first(log, 42)
+        yield [inverse, high, float(log - Decimal(high))]
+
+
+def _double(bits: int) -> float:
+    return float.fromhex(f"0x1.{bits & ((1 << 52) - 1):013x}p{(bits >> 52) - 1023}")
+
+
+def _erf() -> Iterator[list[float]]:
+    """Coefficients of Taylor's series of erf about each place: derivatives are Hermite's times a bell."""
+    for place in range(_ERF_PER_PLACE * _ERF_END + 1):
+        x = Decimal(place) / _ERF_PER_PLACE
+        bell = 2 / _pi().sqrt() * (-x * x).exp()
+        term = total = x
+        n = 0
+        while term > Decimal(10) ** -_DIGITS:  # erf(x) = bell times the sum of 2^n x^(2n+1)/(2n+1)!!
+            n += 1
+            term *= 2 * x * x / (2 * n + 1)
+            total += term
+        row, before, hermite = [float(bell * total)], Decimal(0), Decimal(1)
+        for n in range(_N_ERF - 1):
+            row.append(float((-1) ** n * hermite * bell / factorial(n + 1)))
+            before, hermite = hermite, 2 * x * hermite - 2 * n * before
+        yield row
+
+
+def _pi() -> Decimal:
+    """Machin's formula."""
+    return 4 * (4 * _inverse_tangent(5) - _inverse_tangent(239))
+
+
+def _inverse_tangent(n: int) -> Decimal:
+    """arctan(1/n)."""
+    total, power, k = Decimal(0), Decimal(1) / n, 0
+    while power > Decimal(10) ** -(_DIGITS + 5):
+        total += (-1) ** k * power / (2 * k + 1)
+        power /= n * n
+        k += 1
+    return total
