@@ -206,19 +206,7 @@ static void elastic_arguments(const Joint *joint, int i, const double *y, const 
     x[E_SHIFT + 1] = along_y(data.nodes[i], inputs);
 }
 
-/* Pressure, stiffness and works of first loading of a node inside the table. */
-static inline void node_inside(const Joint *joint, double approach, double *p, double *k, double *works)
-{
-    const Curve *curve = &joint->curve;
-    const int segment = curve_segment(curve, approach);
-    const double t = (approach - curve->x[segment]) * curve->per[segment], *a = curve->a[segment];
-    *p = curve_value(a, t);
-    *k = curve_slope(a, t) * curve->per[segment];
-    for (int q = 0; q < N_LAW_STATE; q++)
-        works[q] = curve_value(joint->kind.approach.state[segment][q], t);
-}
-
-/* The same of one beside the table. */
+/* Pressure, stiffness and works of first loading of a node beside the table. */
 static bool node_outside(const Joint *joint, double approach, double *p, double *k, double *works, Text *why)
 {
     double y[2], all[N_LAW_STATE], slopes[N_LAW_STATE];
@@ -230,7 +218,7 @@ static bool node_outside(const Joint *joint, double approach, double *p, double 
     return true;
 }
 
-/* Some nodes, looked up before they are summed up. */
+/* Some nodes, looked up before they are summed up: all segments first, so that one does not wait for another. */
 enum { BATCH = 32 };
 typedef struct {
     double p[BATCH], k[BATCH], works[BATCH][N_LAW_STATE];
@@ -238,14 +226,29 @@ typedef struct {
 
 static inline bool look_up(const Joint *joint, const double *inputs, int first, int n, Batch *batch, Text *why)
 {
-    const double begin = joint->curve.first.x, end = joint->curve.end.x;
+    const Curve *curve = &joint->curve;
+    const double begin = curve->first.x, end = curve->end.x;
+    double approach[BATCH], at[BATCH];
+    int segment[BATCH];
     for (int i = 0; i < n; i++) {
-        const double approach = joint->kind.start[first + i] - apart_at(data.nodes[first + i], inputs);
-        if (approach >= begin && approach < end)
-            node_inside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i]);
-        else if (!node_outside(joint, approach, &batch->p[i], &batch->k[i], batch->works[i], why))
-            return false;
+        const double x = joint->kind.start[first + i] - apart_at(data.nodes[first + i], inputs);
+        approach[i] = x;
+        const double inside = x < begin ? begin : (x < end ? x : begin);
+        segment[i] = curve_segment(curve, inside);
+        at[i] = (inside - curve->x[segment[i]]) * curve->per[segment[i]];
     }
+    for (int i = 0; i < n; i++) {
+        const int k = segment[i];
+        const double t = at[i], *a = curve->a[k];
+        batch->p[i] = curve_value(a, t);
+        batch->k[i] = curve_slope(a, t) * curve->per[k];
+        for (int q = 0; q < N_LAW_STATE; q++)
+            batch->works[i][q] = curve_value(joint->kind.approach.state[k][q], t);
+    }
+    for (int i = 0; i < n; i++)
+        if (!(approach[i] >= begin && approach[i] < end) &&
+            !node_outside(joint, approach[i], &batch->p[i], &batch->k[i], batch->works[i], why))
+            return false;
     return true;
 }
 
