@@ -39,12 +39,12 @@ LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
 """Least and largest load of a reference, and that without one, over the load at the end of the curve [1]."""
 
 
-def offsets(share: Array) -> Array:
-    """Offsets (n) [1] of `around` for foundations side by side, whose shares of the area are (n) [1].
+def offsets(load: Array) -> Array:
+    """Offsets (n) [1] of `around` for foundations side by side under loads (n), of whatever unit.
 
-    Multiples of the golden section in the order of the shares: what neighbours in it miss cancels.
+    Multiples of the golden section in the order of the loads: what neighbours in it miss cancels.
     """
-    rank = np.argsort(np.argsort(-share, kind="stable"), kind="stable")
+    rank = np.argsort(np.argsort(-load, kind="stable"), kind="stable")
     return np.asarray((rank * (0.5 * (np.sqrt(5.0) - 1.0)) + 0.5) % 1.0)
 
 

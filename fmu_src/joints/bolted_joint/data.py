@@ -30,7 +30,7 @@ def _tables(joint: Bolted) -> Mapping[str, Table]:
     return {
         "nodes": Table(_rows(spring.points(joint.pattern)), spring.POINTS),
         "patches": Table(_rows(patches), spring.PATCHES),
-        "offsets": Table(offsets(patches.share)[:, None], spring.PATCHES),
+        "offsets": Table(offsets(patches.equal)[:, None], spring.PATCHES),
     }
 
 

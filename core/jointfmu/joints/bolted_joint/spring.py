@@ -87,7 +87,7 @@ class BoltedJointSpring:
     @cached_property
     def _foundations(self) -> Callable[[bytes], Foundation]:
         """The sliders of the patches around approaches, of which the last ones are kept."""
-        ratio, mu, shifts = float(shear_ratio(self.joint)), self.joint.mu, offsets(self.patches.share)
+        ratio, mu, shifts = float(shear_ratio(self.joint)), self.joint.mu, offsets(self.patches.equal)
 
         def build(reference: bytes) -> Foundation:
             return Foundation(self.curve, ratio, mu, around(self.curve, np.frombuffer(reference), shifts))
