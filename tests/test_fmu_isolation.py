@@ -68,7 +68,8 @@ def test_messages_go_to_the_instance_that_logged_them(fmu: Host) -> None:
 @pytest.mark.parametrize("name", ["GearContact", "BoltedJoint"])
 def test_instances_come_and_go(fmus: Path, name: str) -> None:
     bystander = Fmu(fmus / f"{name}.fmu").start()
-    expected = trace(bystander, name, 2)
+    # numpy sums in another order where memory is aligned otherwise
+    expected = [pytest.approx(row, rel=1e-14) for row in trace(bystander, name, 2)]
     for _ in range(30):
         instance = Fmu(fmus / f"{name}.fmu").start()
         assert trace(instance, name, 2) == expected

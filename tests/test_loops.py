@@ -101,7 +101,7 @@ def test_loops_of_a_bolted_joint_give_its_friction_and_level_back(native, tmp_pa
     words = ["--input", "s_rel_x", "--loop", *amplitudes, "--set", "preload=9e3", "--csv", path, "--json"]
     assert cli.main([*map(str, ["ramp", fmu, *words])]) == 0
     found = shear.fit(path, free=["mu", "surface.G"], preload=9e3)
-    assert found.solution.values["mu"] == pytest.approx(true.mu, rel=1e-3)
+    assert found.solution.values["mu"] == pytest.approx(true.mu, rel=2e-3)  # as the force in gross slip
     assert found.facts["shear_stiffness"][0] == pytest.approx(shear.rest_stiffness(true, 9e3), rel=0.01)
     assert found.facts["loop_area"][0] == pytest.approx(found.facts["loop_area_law"][0], rel=0.01)
 
