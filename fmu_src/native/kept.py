@@ -204,18 +204,22 @@ def squeezed(made: bytes) -> bytes:
 
 
 def _keep(file: Path, content: bytes) -> None:
-    """Put a file in place in one go, and remove the oldest beside it."""
+    """Put a file in place in one go, and remove the oldest beside it.
+
+    A folder that others write in may list a file more than once.
+    """
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.NamedTemporaryFile("wb", dir=file.parent, delete=False) as new:
         new.write(content)
     Path(new.name).replace(file)
-    kept = sorted(file.parent.glob("*.xz"), key=_written_at)
-    for old in kept[:-MOST_KEPT]:
+    others = {other: _written_at(other) for other in file.parent.glob("*.xz") if other != file}
+    there = sorted((at, other) for other, at in others.items() if at is not None)
+    for _, old in there[: max(len(there) + 1 - MOST_KEPT, 0)]:
         old.unlink(missing_ok=True)
 
 
-def _written_at(file: Path) -> float:
-    """Time of a file; infinite if another process has just removed it."""
+def _written_at(file: Path) -> float | None:
+    """Time of a file; None if another process has just removed it."""
     with suppress(FileNotFoundError):
         return file.stat().st_mtime
-    return float("inf")
+    return None
