@@ -121,11 +121,12 @@ def test_load_and_stiffness_have_no_jump_at_nodes(curves):
         below, above = np.nextafter(x, -np.inf), np.nextafter(x, np.inf)
         low, high = curve.derivatives(below, 1), curve.derivatives(above, 1)
         gap = above - below
-        # the slope over the gap, and the round-off of both polynomials
-        assert np.all(np.abs(high[0] - low[0]) <= high[1] * gap + 1e2 * EPS * high[0])
+        # the slope over the gap, and the round-off of both polynomials: near t = 1 the coefficients of load,
+        # 10 + 15 + 6 times two loads, count k times in the stiffness, 3 10 + 4 15 + 5 6 times two, for each
+        assert np.all(np.abs(high[0] - low[0]) <= high[1] * gap + 1.3e2 * EPS * high[0])
         h = np.minimum(np.diff(curve.displacement)[:-1], np.diff(curve.displacement)[1:])
         bend = np.maximum(np.abs(curve.bend_end[:-1]), np.abs(curve.bend_start[1:]))
-        assert np.all(np.abs(high[1] - low[1]) <= bend * gap + 1e2 * EPS * (high[1] + high[0] / h))
+        assert np.all(np.abs(high[1] - low[1]) <= bend * gap + 4.8e2 * EPS * (high[1] + high[0] / h))
 
 
 def test_inverse_round_trip(curves):
