@@ -74,7 +74,7 @@ class BoltedPlate:
         """
         a, square = 0.5 * self.hole_diameter, 0.125 * (self.hole_diameter**2 + self.cone_diameter**2)
         first, second, third = 4 / 35 * a, 0.3 * a**2 - 0.1 * square, 0.4 * a * (a**2 - square)
-        s = 8.0 * square**0.5
+        s = 8.0 * float(np.sqrt(square))
         for _ in range(_STEPS):
             s -= (((s / 56 + first) * s + second) * s + third) / ((s * 3 / 56 + 2.0 * first) * s + second)
         return a + s

@@ -38,13 +38,13 @@ def rounded(shape: PressureShape, digits: int = DIGITS) -> PressureShape:
 def to_digits(values: Array, digits: int = DIGITS) -> Array:
     """Values rounded to binary digits of the largest one."""
     exponent = np.frexp(np.max(np.abs(values)))[1]
-    return np.ldexp(_steps(np.ldexp(values, -exponent), digits), exponent)
+    return np.asarray(np.ldexp(_steps(np.ldexp(values, -exponent), digits), exponent))
 
 
 def _steps(values: Array, digits: int) -> Array:
     """Values up to 1 in steps of 2^-digits."""
     sizes = np.floor(np.ldexp(np.abs(values), digits) + NEARLY_HALF)
-    return np.ldexp(np.copysign(sizes, values) + 0.0, -digits)
+    return np.asarray(np.ldexp(np.copysign(sizes, values) + 0.0, -digits))
 
 
 def cleared(shape: PressureShape) -> PressureShape:
