@@ -12,16 +12,16 @@ from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from jointfmu.curve import Curve
-from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.friction import friction_patches
-from jointfmu.footprint.patches import few_points
-from jointfmu.footprint.plate import BoltedPlate
-from jointfmu.footprint.shape import NodalField, PressureShape
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.curve import Curve
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import NodalField, PressureShape
+from jointfmu.mechanics.sliders import Moved
 from jointfmu.parameters import default
-from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 

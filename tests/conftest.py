@@ -38,7 +38,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
-    from jointfmu import cli
+    from jointfmu_tools import cli
 
     try:
         status = cli.main([str(a) for a in arguments])

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from case import Case, Inputs, Joint
 
-from jointfmu.curve import MAX_ERROR
 from jointfmu.joints import KINDS, MODELS
+from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.parameters import default
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten

@@ -8,11 +8,11 @@ from typing import Any, TypeVar
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from jointfmu.asperity.hu2023 import Hu2023
-from jointfmu.asperity.yu2022 import Yu2022
-from jointfmu.asperity.zhao2018 import Zhao2018
+from jointfmu.contact.laws.hu2023 import Hu2023
+from jointfmu.contact.laws.yu2022 import Yu2022
+from jointfmu.contact.laws.zhao2018 import Zhao2018
+from jointfmu.contact.surface import ArealSurface, Elastic, FlankSurface, ProfileSurface, Spectrum
 from jointfmu.quantity import build, flatten
-from jointfmu.surface import ArealSurface, Elastic, FlankSurface, ProfileSurface, Spectrum
 
 T = TypeVar("T")
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from jointfmu_fmu_src.native.generate import sources
 from jointfmu_fmu_src.proof import proof
+from jointfmu_tools.cli import main
 
-from jointfmu.cli import main
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import load
 

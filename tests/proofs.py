@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 from conftest import run_host
+from jointfmu_tools import cli
 
-from jointfmu import cli
 from jointfmu.proof.manifest import ATTRIBUTES, FOLDER, MANIFEST, NAME
 
 Change = Callable[[str, bytes], bytes | None]

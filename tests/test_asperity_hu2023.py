@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from laws import HU, QUAD, changed, hu_laws, over_spots
 from scipy.integrate import quad
 
-from jointfmu.asperity import hu2023, kogut_etsion
-from jointfmu.asperity.hu2023 import Hu2023
+from jointfmu.contact.laws import hu2023, kogut_etsion
+from jointfmu.contact.laws.hu2023 import Hu2023
 
 EPS = np.finfo(float).eps
 # ln(s_l/s_min); below, the quadrature's own difference of logarithms is lost

@@ -2,22 +2,22 @@
 
 import numpy as np
 import pytest
+from jointfmu_tools.batch.approach import tabulate
+from jointfmu_tools.batch.samples import columns
+from jointfmu_tools.cli import main
 from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.special import erf
 from scipy.stats import norm
 
-from jointfmu.asperity import persson, roughness
-from jointfmu.asperity.roughness import FEW_SPOTS, Roughness
-from jointfmu.batch.approach import tabulate
-from jointfmu.batch.samples import columns
-from jointfmu.cli import main
-from jointfmu.curve import MAX_ERROR, approach_curve
-from jointfmu.interface import at_largest_spot, at_pressure
+from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.laws import persson, roughness
+from jointfmu.contact.laws.roughness import FEW_SPOTS, Roughness
+from jointfmu.contact.surface import Elastic
 from jointfmu.joints import KINDS
+from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
-from jointfmu.surface import Elastic
 
 STEEL = Elastic(E=2.1e11, nu=0.3)
 GROUND = Roughness(

@@ -11,8 +11,8 @@ from laws import QUAD, YU, changed, open_end, over_spots, yu_laws
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
-from jointfmu.asperity import yu2022
-from jointfmu.asperity.yu2022 import Yu2022
+from jointfmu.contact.laws import yu2022
+from jointfmu.contact.laws.yu2022 import Yu2022
 
 EPS = np.finfo(float).eps
 log_areas = st.floats(-40.0, 20.0)  # ln(a_l/a_nec); the plastic spots lie far below a_nec

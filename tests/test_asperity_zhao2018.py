@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from laws import QUAD, ZHAO, changed, open_end, over_spots, zhao_laws
 from scipy.optimize import brentq
 
-from jointfmu.asperity import zhao2018
-from jointfmu.asperity.zhao2018 import Zhao2018
+from jointfmu.contact.laws import zhao2018
+from jointfmu.contact.laws.zhao2018 import Zhao2018
 
 EPS = np.finfo(float).eps
 # ln(a'_L/a'_c); closer to the edge the quadrature's own difference of logarithms is lost

@@ -26,7 +26,7 @@ EXTRAS = (
 )
 PROGRAM = (
     f"import sys; sys.modules.update(dict.fromkeys({EXTRAS}));"
-    "from jointfmu.cli import main; sys.exit(main(sys.argv[1:]))"
+    "from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"
 )
 
 

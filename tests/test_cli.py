@@ -8,14 +8,15 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
+from jointfmu_tools.cli import main
+from jointfmu_tools.commands.law import LAWS, ROW, _first, law_parameters
 
-from jointfmu import __version__, reference, validation
-from jointfmu.cli import main
-from jointfmu.commands.law import LAWS, ROW, _first, law_parameters
-from jointfmu.interface import at_largest_spot, at_pressure
+from jointfmu import __version__
+from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.published import PUBLISHED
 from jointfmu.parameters import default, dump
+from jointfmu.published import reference, validation
 from jointfmu.quantity import flatten
 
 COMMON = {
@@ -552,7 +553,7 @@ def test_as_a_module():
 
 def test_a_closed_pipe_is_no_error():
     """`jointfmu validate | head -1` ends quietly."""
-    program = "import sys, time; time.sleep(0.5); from jointfmu.cli import main; sys.exit(main())"
+    program = "import sys, time; time.sleep(0.5); from jointfmu_tools.cli import main; sys.exit(main())"
     with subprocess.Popen(
         [sys.executable, "-c", program, "validate"],
         stdout=subprocess.PIPE,
@@ -585,7 +586,7 @@ class Finder:
 
 sys.meta_path.insert(0, Finder())
 sys.modules.pop({package!r}, None)
-from jointfmu.cli import main
+from jointfmu_tools.cli import main
 sys.exit(main(["ramp", "any.fmu", "--input", "f", "--to", "1", "--step", "1"]))
 """
     done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True)

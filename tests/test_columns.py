@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.columns import read, rows, text
-from jointfmu.units import sizes
+from jointfmu.files.columns import read, rows, text
+from jointfmu.quantity.units import sizes
 
 SPEC = {"load": sizes("N", "kN"), "angle": sizes("rad", "deg", "arcmin")}
 HEAD = "load [kN], angle [arcmin]"

@@ -18,18 +18,18 @@ from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES, STATE, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.laboratory.modules import Module
 from jointfmu_fmu_src.native import kept
 from jointfmu_fmu_src.native.build import build as build_native
 from jointfmu_fmu_src.native.data import split
 from jointfmu_fmu_src.partners import parameters
+from jointfmu_tools.laboratory.modules import Module
 from test_kept_parts import VARIANT
 from test_native_binaries import members
 from webassembly import random_values
 
-from jointfmu import ramp
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, dump
+from jointfmu.run import ramp
 
 SAME = 1e-12
 """The same C with another mathematical library [1]."""

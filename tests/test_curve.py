@@ -10,9 +10,9 @@ from laws import RANDOM, YU, ZHAO, changed, decades
 from numpy.polynomial import Polynomial, polynomial
 from scipy.integrate import quad
 
-from jointfmu.curve import CLOSING_RATIO, MAX_ERROR, Curve, approach_curve, assemble, closing
-from jointfmu.interface import at_largest_spot, largest_spot, stiffness_curve
+from jointfmu.contact.interface import at_largest_spot, largest_spot, stiffness_curve
 from jointfmu.joints.harmonic_drive.spring import torque_curve
+from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR, Curve, approach_curve, assemble, closing
 from jointfmu.parameters import default
 
 EPS = np.finfo(float).eps

@@ -16,9 +16,8 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from jointfmu_tools.commands.parser import parser
 from PIL import Image
-
-from jointfmu.commands.parser import parser
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -117,13 +116,13 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
         re.findall(r'<!-- (.*?) -->\s*<g(?: style="fill: (#\w+)")?', picture)
         for picture in (figures.house(), (DOCS / "images" / "house.svg").read_text(encoding="utf-8"))
     )
-    assert {("interface", "#1f5fa8"), ("building", ""), ("fmu_src", "")} <= set(drawn)
+    assert {("contact", "#1f5fa8"), ("building", ""), ("tools", "")} <= set(drawn)
     assert committed == drawn, "write it again: python docs/figures.py house"
 
 
 # Names of files in the text
 
-FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests")
+FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests", "tools")
 ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
 """Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
 
@@ -163,7 +162,7 @@ def test_a_file_that_is_gone_is_noticed(tmp_path: Path) -> None:
 # What architecture.md lists, it lists completely
 
 ARCHITECTURE = (DOCS / "architecture.md").read_text(encoding="utf-8")
-SOURCES = [path for folder in ("core", "fmu_src") for path in (ROOT / folder).rglob("*.*")]
+SOURCES = [path for folder in ("core", "fmu_src", "tools") for path in (ROOT / folder).rglob("*.*")]
 
 
 def test_every_part_of_a_joint_is_explained() -> None:
@@ -334,7 +333,7 @@ def tutorial(tmp_path_factory: pytest.TempPathFactory) -> Tutorial:
         words = shlex.split(line)
         if words[:3] == ["python", "-m", "pip"]:
             continue
-        start = [sys.executable, "-m", "jointfmu.cli"] if words[0] == "jointfmu" else [sys.executable]
+        start = [sys.executable, "-m", "jointfmu_tools.cli"] if words[0] == "jointfmu" else [sys.executable]
         done = subprocess.run([*start, *words[1:]], cwd=folder, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, (line, done.stderr)
         said[line] = done.stdout

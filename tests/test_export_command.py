@@ -7,11 +7,11 @@ import sys
 
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.export import exports
+from jointfmu_tools.export.forms import FORMS
 
-from jointfmu import __version__, cli
-from jointfmu.export import exports
-from jointfmu.export.forms import FORMS
-from jointfmu.joints.kind import Kind
+from jointfmu import __version__
 from jointfmu.parameters import default, dump
 
 MARKS = {"ansys": "!", "calculix": "**", "abaqus": "**", "modelica": "#", "csv": "#"}
@@ -166,7 +166,7 @@ def test_place_that_cannot_be_written(folder, capsys):
 
 
 def test_a_joint_without_the_part_is_refused(monkeypatch):
-    monkeypatch.setattr(Kind, "part", lambda kind, tool: None)
+    monkeypatch.setattr(exports, "part", lambda kind, tool: None)
     with pytest.raises(ValueError, match="curve of a gear_contact cannot be written"):
         exports.required("gear_contact", "curve")
 
@@ -174,7 +174,7 @@ def test_a_joint_without_the_part_is_refused(monkeypatch):
 def test_what_can_be_written_and_fitted_is_known_without_scipy():
     program = (
         "import argparse, sys\n"
-        "from jointfmu.commands import export, fit\n"
+        "from jointfmu_tools.commands import export, fit\n"
         "words = argparse.ArgumentParser().add_subparsers()\n"
         "export.add(words), fit.add(words)\n"
         "print([name for name in ('scipy', 'matplotlib') if name in sys.modules])\n"

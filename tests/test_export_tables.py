@@ -4,13 +4,13 @@ import re
 
 import numpy as np
 import pytest
+from jointfmu_tools.export import columns, keywords, tables, writing
+from jointfmu_tools.export.units import SI, UNITS
+from jointfmu_tools.joints.bolted_joint.export import State
+from jointfmu_tools.joints.bolted_joint.export.pull import STRONGEST, pull_table
 from scipy.interpolate import PchipInterpolator
 
-from jointfmu.export import columns, keywords, tables, writing
-from jointfmu.export.units import SI, UNITS
-from jointfmu.interface import at_pressure
-from jointfmu.joints.bolted_joint.export import State
-from jointfmu.joints.bolted_joint.export.pull import STRONGEST, pull_table
+from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring

@@ -5,18 +5,18 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from jointfmu_tools.fem import newton
+from jointfmu_tools.fem.balance import RigidBalance
+from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
+from jointfmu_tools.fem.elasticity import ElasticBody
+from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.sparse import Cholesky
 from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 
-from jointfmu.curve import approach_curve
-from jointfmu.fem import newton
-from jointfmu.fem.balance import RigidBalance
-from jointfmu.fem.bolted_contact import BoltedContact, elastic_body, midway
-from jointfmu.fem.bolts import BoltList
-from jointfmu.fem.contact import ContactModel, ContactSolution, Interface
-from jointfmu.fem.elasticity import ElasticBody
-from jointfmu.fem.geometry import Assembly, Plate
-from jointfmu.fem.sparse import Cholesky
+from jointfmu.mechanics.curve import approach_curve
 from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow

@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.fem.bolted_contact import BoltedContact
+from jointfmu_tools.fem.contact import ContactModel
+from jointfmu_tools.fem.elasticity import ElasticBody
+from jointfmu_tools.fem.geometry import Assembly
 from scipy.spatial import cKDTree
 from test_fem_contact import BOLTS, PLATE, Linear
-
-from jointfmu.fem.bolted_contact import BoltedContact
-from jointfmu.fem.contact import ContactModel
-from jointfmu.fem.elasticity import ElasticBody
-from jointfmu.fem.geometry import Assembly
 
 pytestmark = pytest.mark.slow
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.cli import main
+from jointfmu_tools.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
 
-from jointfmu.cli import main
-from jointfmu.fem.convergence import COLUMNS, MeshResult, changes, orders, refinements
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, load
 

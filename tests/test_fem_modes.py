@@ -4,13 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from jointfmu_tools.fem.contact import Interface
+from jointfmu_tools.fem.elasticity import ElasticBody
+from jointfmu_tools.fem.modes import modes
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 from skfem import MeshHex, MeshQuad
-
-from jointfmu.fem.contact import Interface
-from jointfmu.fem.elasticity import ElasticBody
-from jointfmu.fem.modes import modes
 
 pytestmark = pytest.mark.slow
 

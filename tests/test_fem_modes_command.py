@@ -4,9 +4,8 @@ import json
 
 import numpy as np
 import pytest
+from jointfmu_tools.cli import main
 from test_fem_contact_command import BOLTS, PLATE, PLATES, entries
-
-from jointfmu.cli import main
 
 pytestmark = pytest.mark.slow
 

@@ -7,10 +7,9 @@ with contact variables for displacements. Contact tables of a data file have a s
 
 import numpy as np
 import pytest
+from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.reading import Reading
 from test_fields_files import UNITS, blocks, faces, grid
-
-from jointfmu.fields.contact_surface import Plane
-from jointfmu.fields.reading import Reading
 
 DIGITS = 1e-5  # six of them are printed
 REPORT = """

@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.fields import cdb
+from jointfmu_tools.fields.areas import nodal_areas
+from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.reading import Reading
 from mapdl_archive import examples
 from test_fields_files import UNITS, blocks, faces, listing
-
-from jointfmu.fields import cdb
-from jointfmu.fields.areas import nodal_areas
-from jointfmu.fields.contact_surface import Plane
-from jointfmu.fields.reading import Reading
 
 
 def archive(points, elements, types):

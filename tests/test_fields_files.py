@@ -5,12 +5,11 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-
-from jointfmu.fields import csvfile
-from jointfmu.fields.areas import nodal_areas
-from jointfmu.fields.bodies import SURFACES, VOLUMES, boundary
-from jointfmu.fields.contact_surface import Plane
-from jointfmu.fields.reading import Reading
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.areas import nodal_areas
+from jointfmu_tools.fields.bodies import SURFACES, VOLUMES, boundary
+from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.reading import Reading
 
 DATA = Path(__file__).parent / "fields"
 UNITS = {"length": "mm", "pressure": "MPa"}
@@ -191,7 +190,7 @@ def test_nodes_that_calculix_leaves_out_are_open(tmp_path):
 
 def test_middles_of_upright_edges_are_where_calculix_has_them():
     """Every middle node of every boundary face lies between its corners, on the upright faces too."""
-    from jointfmu.fields import frd
+    from jointfmu_tools.fields import frd
 
     found = frd.read(DATA / "blocks_quadratic.frd", 1e-3, 1e6)
     for block in found.faces:

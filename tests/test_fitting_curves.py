@@ -8,14 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.fitting.least_squares import Unknown, solve
+from jointfmu_tools.fitting.loop import backbone
+from jointfmu_tools.joints.bolted_joint.fit import preload
+from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu import cli, columns
-from jointfmu.fitting.least_squares import Unknown, solve
-from jointfmu.fitting.loop import backbone
-from jointfmu.joints.bolted_joint.fit import preload
+from jointfmu.files import columns
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.joints.harmonic_drive.fit import torque_angle
-from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import default, dump, load
 
 pytestmark = pytest.mark.slow

@@ -8,17 +8,17 @@ import memory_measurements as measurements
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.fitting import branches, decay
+from jointfmu_tools.fitting.heads import Heads, read
+from jointfmu_tools.fitting.hysteresis import Elastic, Hysteresis
+from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.joints.bolted_joint.fit import loop
 
-from jointfmu import cli
-from jointfmu.fitting import branches, decay
-from jointfmu.fitting.heads import Heads, read
-from jointfmu.fitting.hysteresis import Elastic, Hysteresis
-from jointfmu.fitting.oscillator import Oscillator
-from jointfmu.joints.bolted_joint.fit import loop
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, load
-from jointfmu.units import sizes
+from jointfmu.quantity.units import sizes
 
 PRELOAD = measurements.PRELOAD
 K, C = 2e9, 4e13

@@ -22,18 +22,21 @@ from browser import PROGRAM, browser
 from conftest import refused_line, run_host
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src import checks, pipeline
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import generate
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
+from jointfmu_tools import cli
+from jointfmu_tools.job import checks, pipeline
+from jointfmu_tools.systems import system as systems
 from proofs import BOTH
 from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
-from jointfmu import cli, ramp, systems, validation
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump
+from jointfmu.published import validation
+from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

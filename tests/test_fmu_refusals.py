@@ -12,8 +12,8 @@ import pytest
 from case import Beyond, Refused
 from conftest import Fmu, refused_line, run_host
 from joint_cases import BEYOND, CASES, GOOD, NAMES
+from jointfmu_tools import cli
 
-from jointfmu import cli
 from jointfmu.joints import MODELS
 
 Host = Callable[..., Fmu]
@@ -491,7 +491,7 @@ def test_json_prints_one_object_and_a_warning_goes_to_standard_error(
     assert err.count("\n") == 1
 
 
-COMMAND = "import sys; from jointfmu.cli import main; sys.exit(main(sys.argv[1:]))"
+COMMAND = "import sys; from jointfmu_tools.cli import main; sys.exit(main(sys.argv[1:]))"
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointfmu.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pressures
-from jointfmu.footprint.nodes import Footprint
-from jointfmu.footprint.shape import ALIKE
 from jointfmu.joints.bolted_joint.law import pressures, row_forces
+from jointfmu.mechanics.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pressures
+from jointfmu.mechanics.footprint.nodes import Footprint
+from jointfmu.mechanics.footprint.shape import ALIKE
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_tools import cli
+from jointfmu_tools.commands.parser import parser
 
-from jointfmu import cli
-from jointfmu.asperity import LAWS
 from jointfmu.commands.examples import EXAMPLES
-from jointfmu.commands.parser import parser
+from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from laws import HU, LAWS, RANDOM, YU, ZHAO, changed, decades
 
-from jointfmu.interface import (
+from jointfmu.contact.interface import (
     at_largest_spot,
     at_pressure,
     largest_spot,

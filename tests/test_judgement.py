@@ -4,20 +4,20 @@ import json
 
 import numpy as np
 import pytest
+from jointfmu_tools import cli
+from jointfmu_tools.drawing.proof import proof_load
+from jointfmu_tools.drawing.tables import threads
+from jointfmu_tools.drawing.vdi2230 import stress_area
+from jointfmu_tools.fem.symmetry import unlike_holes
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.judgement import FACTOR, judge, judge_file, known_height
+from jointfmu_tools.pressing import pressing
 
-from jointfmu import cli
-from jointfmu.drawing.proof import proof_load
-from jointfmu.drawing.tables import threads
-from jointfmu.drawing.vdi2230 import stress_area
-from jointfmu.fem.symmetry import unlike_holes
-from jointfmu.fields.contact import ContactField
-from jointfmu.interface import at_pressure, beyond
+from jointfmu.contact.interface import at_pressure, beyond
+from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.joints.pressing import pressing
-from jointfmu.judgement import FACTOR, judge, judge_file, known_height
 from jointfmu.parameters import default, dump, load
-from jointfmu.roughness import GAMMA, level
 
 BOLTED = default("bolted_joint")
 REST = (0.0, 0.0, 0.0)

@@ -201,7 +201,7 @@ def test_each_variant_is_signed_and_has_a_number_of_its_own(tmp_path: Path) -> N
 VARIANT = f"""
 import sys
 sys.modules.update(dict.fromkeys({EXTRAS!r}))
-from jointfmu.cli import main
+from jointfmu_tools.cli import main
 sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3", "--out", sys.argv[3]]
               + sys.argv[4:]))
 """

@@ -9,10 +9,10 @@ import pytest
 from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from joint_cases import JOINTS
-from jointfmu_fmu_src.laboratory import write_laboratory
-from jointfmu_fmu_src.laboratory.modules import modules
+from jointfmu_tools import cli
+from jointfmu_tools.laboratory import write_laboratory
+from jointfmu_tools.laboratory.modules import modules
 
-from jointfmu import cli
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump, load
 

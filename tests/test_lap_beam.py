@@ -10,7 +10,7 @@ from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
 
-from jointfmu.curve import approach_curve
+from jointfmu.mechanics.curve import approach_curve
 
 pytestmark = pytest.mark.slow
 

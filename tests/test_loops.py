@@ -5,11 +5,12 @@ import json
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.bolted_joint.fit import loop as shear
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 
-from jointfmu import cli, loops, ramp
-from jointfmu.joints.bolted_joint.fit import loop as shear
-from jointfmu.joints.harmonic_drive.fit import hysteresis
 from jointfmu.parameters import default
+from jointfmu.run import loops, ramp
 
 HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}
 SET = [f"{name}={value}" for name, value in HYSTERESIS.items()]

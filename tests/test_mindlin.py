@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from jointfmu.asperity import mindlin
+from jointfmu.contact.laws import mindlin
 
 EPS = np.finfo(float).eps
 ratios = st.floats(0.0, 1.0 - 1e-9)

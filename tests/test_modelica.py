@@ -17,14 +17,16 @@ from typing import Any
 import numpy as np
 import pytest
 from jointfmu_fmu_src.joints import part
-from jointfmu_fmu_src.joints.bolted_joint.modelica import tight
-from jointfmu_fmu_src.modelica import library, tables
-from jointfmu_fmu_src.modelica.text import identifier
+from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
+from jointfmu_tools.cli import main
+from jointfmu_tools.joints.bolted_joint.modelica import tight
+from jointfmu_tools.modelica import library, tables
+from jointfmu_tools.modelica.text import identifier
+from jointfmu_tools.systems.system import system
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 from scipy.integrate import solve_ivp
 
-from jointfmu.cli import main
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import pressures
@@ -32,9 +34,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
-from jointfmu.partners import ForceProfile, TorqueProfile
 from jointfmu.quantity import changed
-from jointfmu.systems import system
 
 pytestmark = pytest.mark.slow
 

@@ -12,7 +12,7 @@ from conftest import Fmu
 mujoco = pytest.importorskip("mujoco")
 pytest.importorskip("ziglang")
 
-from jointfmu_fmu_src.mujoco import plugin  # noqa: E402
+from jointfmu_tools.mujoco import plugin  # noqa: E402
 
 NAME = "HarmonicDriveSpring"
 STEP = 5e-4

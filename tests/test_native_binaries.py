@@ -193,7 +193,7 @@ def test_another_process_with_a_cold_cache_builds_the_same_bytes(
     monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     monkeypatch.setenv("PYTHONHASHSEED", "7")
-    script = "import sys; from jointfmu import cli; sys.exit(cli.main(sys.argv[1:]))"
+    script = "import sys; from jointfmu_tools import cli; sys.exit(cli.main(sys.argv[1:]))"
     done = run_host(script, "build", name, "--flavour", *VERSIONS, "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     for version in VERSIONS:
@@ -214,7 +214,7 @@ def test_no_path_of_this_machine_is_inside(native: Path, version: str) -> None:
 
 WITHOUT_PACKAGE = """
 import sys
-from jointfmu import cli
+from jointfmu_tools import cli
 
 sys.modules[sys.argv[1]] = None
 sys.exit(cli.main(["build", "GearContact", "--flavour", "fmi2", "--out", sys.argv[2]]))

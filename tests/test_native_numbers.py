@@ -12,9 +12,9 @@ from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.generate import RUNTIME, sources
 from jointfmu_fmu_src.native.part import COUNTS, NUMBERS
 
-from jointfmu import curve
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive import hysteresis
+from jointfmu.mechanics import curve
 from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow

@@ -6,14 +6,15 @@ import shlex
 
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.drawing.reading import number, numbers
+from jointfmu_tools.drawing.tables import MATERIAL, classes, row, table, threads
+from jointfmu_tools.parts import part
 
-from jointfmu import cli
-from jointfmu.drawing.reading import number, numbers
-from jointfmu.drawing.tables import MATERIAL, classes, row, table, threads
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 
-NEW = {kind.name.replace("_", "-"): kind.part("new").NEW for kind in KINDS.values() if kind.part("new")}
+NEW = {kind.name.replace("_", "-"): found.NEW for kind in KINDS.values() if (found := part(kind, "new"))}
 
 
 def said(capsys, *words):

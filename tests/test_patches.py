@@ -6,13 +6,13 @@ import numpy as np
 import patch_reduction
 import pytest
 
-from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.elimination import solved
-from jointfmu.footprint.friction import friction_patches
-from jointfmu.footprint.patches import few_points
-from jointfmu.footprint.plate import BoltedPlate
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.elimination import solved
+from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import default
 
 CONTACTS = ("frame", "plate", "row")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import exprel as scipy_exprel
 
-from jointfmu.powerlaw import Power, Slip, Smooth, Spots, exp_integral, exprel, gauss, within
+from jointfmu.contact.powerlaw import Power, Slip, Smooth, Spots, exp_integral, exprel, gauss, within
 
 EPS = np.finfo(float).eps
 # Exponents: ordinary ones, the singular one, and those where (exp(x span) - 1)/x cancels.

@@ -13,9 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools import cli
 from numpy._core._multiarray_umath import __cpu_features__
-
-from jointfmu import cli
 
 pytestmark = pytest.mark.slow
 

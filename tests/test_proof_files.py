@@ -16,20 +16,20 @@ import pytest
 from joint_cases import NAMES, law, parameters
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.experiments import Experiment, experiments, models, study
 from jointfmu_fmu_src.proof.files import TOLERANCE
 from jointfmu_fmu_src.proof.reference import Drive, results
+from jointfmu_tools.uncertainty import study as study_files
 from lxml import etree
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.partners import GRAVITY
 from jointfmu.proof import manifest
 from jointfmu.proof.series import Series, parse, text
 from jointfmu.quantity import changed
-from jointfmu.uncertainty import study as study_files
 
 SCHEMAS = Path(str(files("fmpy") / "schema" / "fmi3"))
 EVERY = [*NAMES, *PARTNERS]

@@ -22,10 +22,10 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_tools import cli
 from natives import VERSIONS
 from proofs import BOTH, copy, needs, other_manifest, proved, replaced
 
-from jointfmu import cli
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default
 from jointfmu.proof.importers import VERSIONS as KNOWN

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from laws import HU, LAWS, YU, ZHAO
 
-from jointfmu.asperity.yu2022 import Yu2022
-from jointfmu.asperity.zhao2018 import Zhao2018
+from jointfmu.contact.laws.yu2022 import Yu2022
+from jointfmu.contact.laws.zhao2018 import Zhao2018
+from jointfmu.contact.surface import Elastic, ElasticPlastic, FlankSurface, ProfileSurface
 from jointfmu.quantity import build, changed, check, choice, flat_fields, flatten, group, problem, quantity
-from jointfmu.surface import Elastic, ElasticPlastic, FlankSurface, ProfileSurface
 
 
 @dataclass(frozen=True, kw_only=True)

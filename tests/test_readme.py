@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_tools import cli
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.contact import ContactField
 
-from jointfmu import cli, validation
-from jointfmu.fields import csvfile
-from jointfmu.fields.contact import ContactField
-from jointfmu.footprint import bolts
+from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
+from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parent.parent
 ASSEMBLY = "models/assemblies/box_specimen.toml"

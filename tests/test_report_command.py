@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.native.page import panels
-from jointfmu_fmu_src.report.course import Course
-from jointfmu_fmu_src.report.joint import TOPICS, write_joint_report
+from jointfmu_tools import cli
+from jointfmu_tools.judgement import judge_file
+from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.joint import TOPICS, write_joint_report
 
-from jointfmu import cli, units
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.judgement import judge_file
 from jointfmu.parameters import ParameterFile, default, dump
+from jointfmu.quantity import units
 
 ROOT = Path(__file__).resolve().parent.parent
 LAWS = [(kind.name, law) for kind in KINDS.values() for law in kind.laws]

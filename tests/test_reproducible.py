@@ -5,9 +5,9 @@ import patch_reduction
 import pytest
 from test_patches import CONTACTS, balance, contact
 
-from jointfmu.footprint import friction, patches
-from jointfmu.footprint.reproducible import cleared, product, root, rounded, to_power
-from jointfmu.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint import friction, patches
+from jointfmu.mechanics.footprint.reproducible import cleared, product, root, rounded, to_power
+from jointfmu.mechanics.footprint.shape import PressureShape
 
 TIMES = 200
 AGREE = 1e-9

@@ -5,13 +5,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields.joint_parameters import with_field
 
-from jointfmu import roughness
-from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint_parameters import with_field
-from jointfmu.footprint.bolts import pressure_shape
+from jointfmu.contact import roughness
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.parameters import default, dump, load
 
 SECTION = "\n[roughness]\n"

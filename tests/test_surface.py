@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
-from jointfmu.surface import (
+from jointfmu.contact.surface import (
     Elastic,
     complete_elliptic,
     contact_modulus,

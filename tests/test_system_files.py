@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.ssp import fmu_names
-from jointfmu_fmu_src.wiring import ends, lags, wires
+from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools.systems.arm import Arm, Link
+from jointfmu_tools.systems.ssp import fmu_names
+from jointfmu_tools.systems.system import names, read, system
+from jointfmu_tools.systems.wiring import ends, lags, wires
 from numpy.typing import NDArray
 
-from jointfmu.arm import Arm, Link
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
-from jointfmu.partners import GRAVITY, TorqueCurve
 from jointfmu.quantity import changed as replaced
-from jointfmu.systems import names, read, system
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parent.parent

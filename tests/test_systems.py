@@ -24,33 +24,39 @@ from fmpy import read_model_description, simulate_fmu
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd, read_ssv
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src import decays, ringing, ssp
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.checks import check_decays, check_ringing
-from jointfmu_fmu_src.cosimulation import simulate as simulate_system
-from jointfmu_fmu_src.joints.harmonic_drive.ringing import LOADING
-from jointfmu_fmu_src.master import Slave, motion
 from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.report.motion import windup
+from jointfmu_fmu_src.partners.laws import (
+    GRAVITY,
+    ForceProfile,
+    RotationalInertia,
+    TorqueProfile,
+    TranslationalMass,
+)
 from jointfmu_fmu_src.ssv import NUMBER
-from jointfmu_fmu_src.structure import MASTERS, Master
-from jointfmu_fmu_src.wiring import model_of, wires
+from jointfmu_tools import cli
+from jointfmu_tools.fitting import decay
+from jointfmu_tools.job.checks import check_decays, check_ringing
+from jointfmu_tools.joints.harmonic_drive.ringing import LOADING
+from jointfmu_tools.report.motion import windup
+from jointfmu_tools.systems import decays, ringing, ssp
+from jointfmu_tools.systems.cosimulation import simulate as simulate_system
+from jointfmu_tools.systems.master import Slave, motion
+from jointfmu_tools.systems.structure import MASTERS, Master
+from jointfmu_tools.systems.system import names, system, systems
+from jointfmu_tools.systems.wiring import model_of, wires
 from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
 from scipy.interpolate import CubicSpline
 from test_modelica import column_sliders, simulate, sliding, top
 
-from jointfmu import cli
-from jointfmu.fitting import decay
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
-from jointfmu.partners import GRAVITY, ForceProfile, RotationalInertia, TorqueProfile, TranslationalMass
 from jointfmu.quantity import changed, flatten
-from jointfmu.systems import names, system, systems
 
 pytestmark = pytest.mark.slow
 
@@ -989,7 +995,7 @@ def test_a_file_makes_a_system(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     copy = tmp_path / "systems"
     shutil.copytree(folder, copy)
     shutil.copytree(folder.parent / "harmonic_drive", tmp_path / "harmonic_drive")
-    monkeypatch.setattr("jointfmu.systems.files", lambda package: tmp_path)
+    monkeypatch.setattr("jointfmu_tools.systems.system.files", lambda package: tmp_path)
     shipped = names()
     assert set(shipped) == {path.stem for path in folder.glob("*.toml")}
     text = (folder / "robot_joint.toml").read_text(encoding="utf-8")

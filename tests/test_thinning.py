@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from jointfmu.thinning import kept
+from jointfmu_tools.thinning import kept
 
 
 @given(reach=st.lists(st.integers(1, 40), min_size=2, max_size=60), extra=st.sets(st.integers(1, 59)))

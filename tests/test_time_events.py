@@ -12,10 +12,10 @@ from conftest import Fmu, made_once
 from fmpy.fmi2 import fmi2EventInfo
 from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.partners import parameters
+from jointfmu_fmu_src.partners.laws import ForceProfile
 from numpy.typing import NDArray
 from scipy.integrate import BDF
 
-from jointfmu.partners import ForceProfile
 from jointfmu.quantity import flatten
 
 pytestmark = pytest.mark.slow

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.surfaces import csvfile, sift, synthesis
+from jointfmu_tools.surfaces.form import filled, without_form, without_spikes
+from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.reading import read
 
-from jointfmu import cli
 from jointfmu.parameters import default, dump, load
-from jointfmu.topography import csvfile, sift, synthesis
-from jointfmu.topography.form import filled, without_form, without_spikes
-from jointfmu.topography.heights import Areal, Profile
-from jointfmu.topography.reading import read
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography")
 
@@ -445,7 +445,7 @@ def test_refused_without_slow_imports(folder):
     (folder / "a.sur").write_bytes(bytes(1000))
     (folder / "a.txt").write_text("1 2\n" * 200)
     code = (
-        "import sys; from jointfmu import cli; "
+        "import sys; from jointfmu_tools import cli; "
         "assert [cli.main(['surface', f'a.{s}']) for s in ('png', 'sur', 'txt')] == [2, 2, 2]; "
         "print([m for m in ('scipy.optimize', 'matplotlib', 'SurfaceTopography') if m in sys.modules])"
     )

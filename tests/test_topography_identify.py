@@ -6,20 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.surfaces import synthesis
+from jointfmu_tools.surfaces.fit import fit
+from jointfmu_tools.surfaces.form import without_form
+from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.identify import identify
+from jointfmu_tools.surfaces.joint_parameters import changes, with_surface
+from jointfmu_tools.surfaces.results import Roughness
+from jointfmu_tools.surfaces.spectrum import psd
+from jointfmu_tools.surfaces.structure import structure
 from scipy.integrate import quad
 
-from jointfmu import cli
+from jointfmu.contact import fractal
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
-from jointfmu.topography import fractal, synthesis
-from jointfmu.topography.fit import fit
-from jointfmu.topography.form import without_form
-from jointfmu.topography.heights import Areal, Profile
-from jointfmu.topography.identify import identify
-from jointfmu.topography.joint_parameters import changes, with_surface
-from jointfmu.topography.results import Roughness
-from jointfmu.topography.spectrum import psd
-from jointfmu.topography.structure import structure
 
 pytestmark = pytest.mark.slow
 

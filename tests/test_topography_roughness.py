@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from jointfmu_tools.surfaces import roughness, synthesis
+from jointfmu_tools.surfaces.form import without_form
+from jointfmu_tools.surfaces.heights import Areal, Profile
 
-from jointfmu.topography import fractal, roughness, synthesis
-from jointfmu.topography.form import without_form
-from jointfmu.topography.heights import Areal, Profile
+from jointfmu.contact import fractal
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9
 
@@ -21,12 +22,12 @@ def test_height_and_slope_of_D_and_G_are_those_of_a_made_surface(D):
     longest, shortest = SIZE / 8.0, SIZE / 32.0
     z = synthesis.periodic(SIZE, POINTS, D, G, (longest, shortest), 1).z
     h = np.sqrt(
-        roughness.height(D, G, longest, areal=True) ** 2 - roughness.height(D, G, shortest, areal=True) ** 2
+        fractal.height(D, G, longest, areal=True) ** 2 - fractal.height(D, G, shortest, areal=True) ** 2
     )
     assert z.std() == pytest.approx(h, rel=0.02)
     step = 2.0 * np.pi * np.fft.fftfreq(POINTS, SIZE / POINTS)
     squared = np.abs(np.fft.fft2(z) / z.size) ** 2 * (step[:, None] ** 2 + step**2)
-    slope = roughness.slope(D, G, longest, shortest, areal=True)
+    slope = fractal.slope(D, G, longest, shortest, areal=True)
     assert np.sqrt(squared.sum()) == pytest.approx(slope, rel=0.02)
 
 
@@ -37,28 +38,26 @@ def test_height_of_a_function_with_a_wave_of_the_longest_length(D, gamma):
 
     A line has profile_share of the power of the surface that it is cut from.
     """
-    H = roughness.hurst(D)
+    H = fractal.hurst(D)
     waves = synthesis.Waves(size=SIZE, points=5000, gamma=gamma)
     missing = gamma ** (-2.0 * H * waves.frequencies.size)  # waves shorter than two spacings
-    h = roughness.height(D, G, SIZE, gamma=gamma) * np.sqrt(fractal.profile_share(H) * (1.0 - missing))
+    h = fractal.height(D, G, SIZE, gamma=gamma) * np.sqrt(fractal.profile_share(H) * (1.0 - missing))
     assert synthesis.profile(waves, D, G, 3).z.std() == pytest.approx(h, rel=1e-9)
 
 
 def test_one_surface_has_one_height():
     """D and G of its profiles, or D_s and G_s of itself; and gamma near 1 is the spectrum."""
     H = 0.58
-    profile = roughness.height(2.0 - H, G, SIZE)
-    assert roughness.height(3.0 - H, fractal.areal_roughness(G, H), SIZE, areal=True) == pytest.approx(
-        profile
-    )
-    assert roughness.height(2.0 - H, G, SIZE, gamma=1.0001) == pytest.approx(profile, rel=1e-4)
-    assert roughness.hurst(1.42) == pytest.approx(0.58)
-    assert roughness.hurst(2.42, areal=True) == pytest.approx(0.58)
+    profile = fractal.height(2.0 - H, G, SIZE)
+    assert fractal.height(3.0 - H, fractal.areal_roughness(G, H), SIZE, areal=True) == pytest.approx(profile)
+    assert fractal.height(2.0 - H, G, SIZE, gamma=1.0001) == pytest.approx(profile, rel=1e-4)
+    assert fractal.hurst(1.42) == pytest.approx(0.58)
+    assert fractal.hurst(2.42, areal=True) == pytest.approx(0.58)
 
 
 def test_specimen_of_zhao():
     """Waves up to 1 mm of its D and G: 7.2 um, the figure of docs/validity.md."""
-    assert roughness.height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
+    assert fractal.height(1.42, 1.21e-8, 1e-3) == pytest.approx(7.2e-6, rel=0.01)
 
 
 def test_a_sine_counts_up_to_its_wavelength():

@@ -9,10 +9,11 @@ import pytest
 import toy_joint
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.checks import check, default_ramp, same
-from jointfmu_fmu_src.modelica import library
+from jointfmu_tools import cli
+from jointfmu_tools.job.checks import check, default_ramp, same
+from jointfmu_tools.modelica import library
 
-from jointfmu import cli, joints
+from jointfmu import joints
 from jointfmu.parameters import default, dump
 
 pytestmark = pytest.mark.slow
@@ -59,7 +60,7 @@ def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
 
 
 def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):
-    from jointfmu import ramp
+    from jointfmu.run import ramp
 
     with pytest.raises(ValueError, match=r"c = -1 N/m is outside \(0, inf\): stiffness"):
         ramp.run(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})

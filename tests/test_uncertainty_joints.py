@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from joint_cases import JOINTS
+from jointfmu_tools import cli
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.reduced import reduced
 
-from jointfmu import cli
 from jointfmu.joints import KINDS
-from jointfmu.joints.reduced import reduced
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flat_fields, flatten
-from jointfmu.uncertainty import propagate
-from jointfmu.uncertainty.problem import pose
 
 pytestmark = pytest.mark.slow
 

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from jointfmu_tools.batch import chebyshev
+from jointfmu_tools.joints.gear_contact import reduced as gear
+from jointfmu_tools.uncertainty import propagate, sensitivity, study
+from jointfmu_tools.uncertainty.distributions import parse
+from jointfmu_tools.uncertainty.problem import pose
 from scipy import stats
 
-from jointfmu.batch import chebyshev
-from jointfmu.joints.gear_contact import reduced as gear
 from jointfmu.parameters import default
-from jointfmu.uncertainty import propagate, sensitivity, study
-from jointfmu.uncertainty.distributions import parse
-from jointfmu.uncertainty.problem import pose
 
 P = np.array([0.001, 0.05, 0.3, 0.5, 0.9, 0.999])
 

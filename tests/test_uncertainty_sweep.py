@@ -11,13 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.uncertainty import journal
+from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.sweep import plan, sweep
+from jointfmu_tools.uncertainty.worker import Drive
 
-from jointfmu import cli, ramp
 from jointfmu.parameters import default
-from jointfmu.uncertainty import journal
-from jointfmu.uncertainty.problem import pose
-from jointfmu.uncertainty.sweep import plan, sweep
-from jointfmu.uncertainty.worker import Drive
+from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 
@@ -137,7 +138,7 @@ def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
 def test_a_worker_that_dies_as_it_starts_prints_nothing():
     code = (
         "import subprocess, sys\n"
-        "from jointfmu.uncertainty.cluster import _mute\n"
+        "from jointfmu_tools.uncertainty.cluster import _mute\n"
         "child = [sys.executable, '-c', '1/0']\n"
         "with _mute():\n"
         "    subprocess.run(child)\n"
@@ -212,7 +213,7 @@ def dies_once_in_a_while(key, drive, index, settings):
 
 def test_a_run_that_kills_its_process(fmu, cluster, tmp_path, monkeypatch):
     """It is recorded with its parameters; those whose results went down with it are done again."""
-    import jointfmu.uncertainty.sweep as module
+    import jointfmu_tools.uncertainty.sweep as module
 
     monkeypatch.setattr(module, "one_run", dies_once_in_a_while)
     done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)

@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_tools.export import columns
+from jointfmu_tools.export.mesh import COLUMNS as PAIRS
+from jointfmu_tools.export.units import UNITS as SETS
+from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
+from jointfmu_tools.fields.csvfile import COLUMNS as FIELD
+from jointfmu_tools.joints.bolted_joint.fit import preload
+from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
+from jointfmu_tools.surfaces.csvfile import LENGTHS
+from jointfmu_tools.systems.system import systems
 from scipy import constants
 
-from jointfmu.export import columns
-from jointfmu.export.mesh import COLUMNS as PAIRS
-from jointfmu.export.units import UNITS as SETS
-from jointfmu.fem.geometry import BoxSection, Layer, Plate
-from jointfmu.fields.csvfile import COLUMNS as FIELD
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.joints.bolted_joint.fit import preload
-from jointfmu.joints.harmonic_drive.fit import torque_angle
 from jointfmu.quantity import flat_fields
-from jointfmu.systems import systems
-from jointfmu.topography.csvfile import LENGTHS
-from jointfmu.units import UNITS, base, display_unit, factor, rewritten, size, sizes
+from jointfmu.quantity.units import UNITS, base, display_unit, factor, rewritten, size, sizes
 
 SIZES = {
     "mm": constants.milli,

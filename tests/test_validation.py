@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from matplotlib.lines import Line2D
 
-from jointfmu import calibration
-from jointfmu.calibration import calibrate
 from jointfmu.joints import KINDS
 from jointfmu.joints.published import published
 from jointfmu.parameters import default
 from jointfmu.plots import published_mark
+from jointfmu.published import calibration
+from jointfmu.published.calibration import calibrate
+from jointfmu.published.reference import CALIBRATION_TOLERANCE, GUESSED, ROLES, Guess, Point, guesses, points
+from jointfmu.published.validation import compare, counts, missed, summary, table, validate
+from jointfmu.published.validation import rows as comparison
 from jointfmu.quantity import flat_fields, flatten
-from jointfmu.reference import CALIBRATION_TOLERANCE, GUESSED, ROLES, Guess, Point, guesses, points
-from jointfmu.validation import compare, counts, missed, summary, table, validate
-from jointfmu.validation import rows as comparison
 
 REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of

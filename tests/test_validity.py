@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from jointfmu_tools.surfaces.synthesis import periodic
 
-from jointfmu.interface import at_pressure, stiffness_curve
-from jointfmu.topography import fractal
-from jointfmu.topography.synthesis import periodic
+from jointfmu.contact import fractal
+from jointfmu.contact.interface import at_pressure, stiffness_curve
 
 pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
 import boundary_element

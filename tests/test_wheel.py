@@ -58,7 +58,7 @@ def link_packages(names: set[str], folder: Path) -> None:
 def built_wheel(out: Path) -> Path:
     """A wheel of this tree with the parts of one FMU; built in a copy, which pip would fill with files."""
     tree, ignored = out / "tree", ignore_patterns("__pycache__", "*.egg-info", "parts")
-    for folder in ("core", "fmu_src", "models"):
+    for folder in ("core", "fmu_src", "models", "tools"):
         copytree(ROOT / folder, tree / folder, ignore=ignored)
     for file in ("setup.py", "pyproject.toml", "README.md", "LICENSE"):
         (tree / file).write_bytes((ROOT / file).read_bytes())

@@ -9,10 +9,10 @@ from typing import Any
 
 import fmpy
 import numpy as np
-from jointfmu_fmu_src.laboratory.modules import Module
 from jointfmu_fmu_src.native.compiler import file_name, libraries
 from jointfmu_fmu_src.native.description import fmi3_xml
 from jointfmu_fmu_src.native.generate import sources, token
+from jointfmu_tools.laboratory.modules import Module
 
 from jointfmu.quantity import build as make
 from jointfmu.quantity import flatten

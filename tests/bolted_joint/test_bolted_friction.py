@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, _Memory
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import default
 
 JOINT = default("bolted_joint").values

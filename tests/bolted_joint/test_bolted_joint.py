@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from jointfmu.asperity import mindlin
-from jointfmu.curve import MAX_ERROR
-from jointfmu.footprint.bolts import PressureShape
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint.law import BoltedJoint, pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.curve import MAX_ERROR
+from jointfmu.mechanics.footprint.bolts import PressureShape
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

@@ -10,10 +10,10 @@ from conftest import Fmu
 from joint_cases import SAME, STATE, TABLE, parameters, random_inputs
 from scipy.integrate import cumulative_simpson
 
-from jointfmu import ramp
-from jointfmu.interface import stiffness_curve
+from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.run import ramp
 
 Host = Callable[..., Fmu]
 

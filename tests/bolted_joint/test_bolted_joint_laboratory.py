@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.laboratory.modules import modules
+from jointfmu_tools.laboratory.modules import modules
 from webassembly import Instance
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points

@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 from conftest import Fmu, refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.drawing import vdi2230
+from jointfmu_tools.drawing.tables import classes, threads
+from jointfmu_tools.joints.bolted_joint.new import layout
 
-from jointfmu import cli
-from jointfmu.drawing import vdi2230
-from jointfmu.drawing.tables import classes, threads
-from jointfmu.joints.bolted_joint.new import layout
+from jointfmu.contact.roughness import FACTOR, GAMMA
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import load
-from jointfmu.roughness import FACTOR, GAMMA
 
 PLATE = ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60", "--grip", "40"]
 STEEL = ["--material", "steel"]
@@ -219,12 +219,12 @@ def test_options_of_the_bolts(capsys):
 
 
 def test_zhao_2018_gets_the_same_height(capsys, tmp_path):
-    from jointfmu.topography import roughness as scanned
+    from jointfmu.contact import fractal
 
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, "--law", "zhao2018", path=path)
     file = load(path)
-    h = scanned.height(file.values.surface.D, file.values.surface.G, 0.8e-3)
+    h = fractal.height(file.values.surface.D, file.values.surface.G, 0.8e-3)
     assert h == pytest.approx(FACTOR * 0.8e-6 * math.sqrt(2.0), rel=1e-9)
     assert dict(file.roughness) == pytest.approx({"Ra1": 0.8e-6, "Ra2": 0.8e-6})
     assert file.values.spot_stiffness == "hertz"

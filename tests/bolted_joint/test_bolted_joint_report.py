@@ -1,7 +1,7 @@
 """The report's loops of a bolted joint."""
 
 import pytest
-from jointfmu_fmu_src.report.course import Course
+from jointfmu_tools.report.course import Course
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Fmu
-from jointfmu_fmu_src.master import peak
+from jointfmu_tools.systems.master import peak
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jointfmu.footprint.plate import BoltedPlate, cells, decay, lever
+from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.plate import BoltedPlate, cells, decay, lever
 from jointfmu.parameters import default, dump, load
-from jointfmu.surface import Elastic
 
 STILL = (0.0, 0.0, 0.0)
 SUM = 1e-12

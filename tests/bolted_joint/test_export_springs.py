@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.export import ansys, columns, keywords
+from jointfmu_tools.export.mesh import Mesh, read_pairs
+from jointfmu_tools.export.placing import AXES, Placing
+from jointfmu_tools.export.units import SI, UNITS
+from jointfmu_tools.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
 
-from jointfmu.export import ansys, columns, keywords
-from jointfmu.export.mesh import Mesh, read_pairs
-from jointfmu.export.placing import AXES, Placing
-from jointfmu.export.units import SI, UNITS
-from jointfmu.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
 from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
@@ -66,7 +66,7 @@ def test_pairs_add_up_to_the_joint(joint, preload, moment):
 
 
 def test_stiffness_of_a_pair_is_the_law_at_its_pressure(joint, found):
-    from jointfmu.interface import at_pressure
+    from jointfmu.contact.interface import at_pressure
 
     law = joint.joint
     state = at_pressure(law, found.pressure)  # of the whole A_0; the curve is within 1e-8 of it

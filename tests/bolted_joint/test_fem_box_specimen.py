@@ -6,9 +6,9 @@ from dataclasses import replace
 import box_specimen_lengths as box
 import numpy as np
 import pytest
+from jointfmu_tools.cli import main
+from jointfmu_tools.fem.geometry import Plate
 
-from jointfmu.cli import main
-from jointfmu.fem.geometry import Plate
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 

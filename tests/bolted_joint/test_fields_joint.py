@@ -5,25 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.modelica import library
+from jointfmu_tools import cli
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
+from jointfmu_tools.fields.loads import PRELOADS, PRESSED, Load
+from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
+from jointfmu_tools.fields.sums import Sums
+from jointfmu_tools.modelica import library
 
-from jointfmu import cli, plots, ramp
-from jointfmu.fields import csvfile
-from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint_parameters import pressure_shape, with_field
-from jointfmu.fields.loads import PRELOADS, PRESSED, Load
-from jointfmu.fields.reduction import DIGITS, TOLERANCE, reduce
-from jointfmu.fields.sums import Sums
-from jointfmu.footprint import bolts
-from jointfmu.footprint.reproducible import rounded
-from jointfmu.footprint.shape import NodalField
+from jointfmu import plots
 from jointfmu.joints import register, unregister
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
 from jointfmu.joints.bolted_joint.published import p_between
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint import bolts
+from jointfmu.mechanics.footprint.reproducible import rounded
+from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
+from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

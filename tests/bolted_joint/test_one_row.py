@@ -1,10 +1,10 @@
 """Assemblies whose bolts are no two rows: what finite elements write of them."""
 
 import pytest
+from jointfmu_tools.commands.finite_elements import with_assembly
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.geometry import Assembly, Plate
 
-from jointfmu.commands.finite_elements import with_assembly
-from jointfmu.fem.bolts import BoltList
-from jointfmu.fem.geometry import Assembly, Plate
 from jointfmu.parameters import default
 
 PLATE = Plate(length=0.2, width=0.1, thickness=0.02, E=210e9, nu=0.3, density=7850.0)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from jointfmu.curve import CLOSING_RATIO, MAX_ERROR
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
+from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
 

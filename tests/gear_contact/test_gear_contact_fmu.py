@@ -7,7 +7,7 @@ import pytest
 from conftest import Fmu
 from joint_cases import SAME, STATE, TABLE, parameters
 
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
 
 Host = Callable[..., Fmu]
 

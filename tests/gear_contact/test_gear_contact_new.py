@@ -5,8 +5,8 @@ import math
 
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
 
-from jointfmu import cli
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import load
 

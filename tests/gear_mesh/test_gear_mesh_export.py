@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from jointfmu_tools import cli
+from jointfmu_tools.export.exports import required
 
-from jointfmu import cli
-from jointfmu.export.exports import required
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 from jointfmu.parameters import default
 

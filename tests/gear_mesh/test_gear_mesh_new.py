@@ -5,9 +5,9 @@ import math
 
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.gear_mesh.new.wheels import Wheels
 
-from jointfmu import cli
-from jointfmu.joints.gear_mesh.new.wheels import Wheels
 from jointfmu.parameters import default, load
 
 DRAWING = ["--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "150"]

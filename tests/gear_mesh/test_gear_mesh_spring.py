@@ -10,11 +10,11 @@ from laws import RANDOM, decades
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from jointfmu.curve import MAX_ERROR, approach_curve
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
 from jointfmu.joints import MODELS
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch
+from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import build, changed, flatten
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.joints.gear_mesh.spring import GearMesh
 from jointfmu.parameters import default
 from jointfmu.quantity import build, flatten
-from jointfmu.uncertainty import propagate
-from jointfmu.uncertainty.problem import pose
 
 pytestmark = pytest.mark.slow
 

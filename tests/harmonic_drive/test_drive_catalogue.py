@@ -7,9 +7,8 @@ from importlib.resources import files
 
 import pytest
 from conftest import refused_line
-
-from jointfmu import cli
-from jointfmu.joints.harmonic_drive import catalogue
+from jointfmu_tools import cli
+from jointfmu_tools.joints.harmonic_drive import catalogue
 
 REFERENCE = files("jointfmu_models") / "reference"
 

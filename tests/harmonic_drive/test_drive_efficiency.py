@@ -4,10 +4,10 @@ import math
 from pathlib import Path
 
 import pytest
-from jointfmu_fmu_src.joints.harmonic_drive import figures
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
-from jointfmu_fmu_src.report.course import Course
-from jointfmu_fmu_src.report.joint import write_joint_report
+from jointfmu_tools.joints.harmonic_drive import figures
+from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
+from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.joint import write_joint_report
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, default

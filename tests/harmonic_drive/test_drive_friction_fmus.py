@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.master import Slave
+from jointfmu_tools.systems.master import Slave
 
 DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "stribeck_speed": 5.0}
 MOTION, MOTOR = ("phi1", "w1", "phi2", "w2"), 3e-5

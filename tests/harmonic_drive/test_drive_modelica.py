@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.master import Slave
-from jointfmu_fmu_src.modelica import library
-from jointfmu_fmu_src.modelica.text import identifier
+from jointfmu_tools.modelica import library
+from jointfmu_tools.modelica.text import identifier
+from jointfmu_tools.systems.master import Slave
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
 from test_modelica import COMMITTED, EXACT, GRAVITY, STAND_IN, move, simulate, top

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 import pytest
 from browser import PROGRAM, Browser, browser
 from conftest import made_once
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import spring_bench
-from jointfmu_fmu_src.joints.harmonic_drive.laboratory import LABORATORY
-from jointfmu_fmu_src.laboratory import write_laboratory
+from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
+from jointfmu_tools.joints.harmonic_drive.laboratory import LABORATORY
+from jointfmu_tools.laboratory import write_laboratory
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default

@@ -20,8 +20,8 @@ from scipy import sparse
 from scipy.integrate import quad
 from scipy.sparse.linalg import splu
 
-from jointfmu.curve import approach_curve
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
+from jointfmu.mechanics.curve import approach_curve
 from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.harmonic_drive.fit import catalogue, lines
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu import cli, ramp
-from jointfmu.joints.harmonic_drive.fit import catalogue, lines
-from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import load
+from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

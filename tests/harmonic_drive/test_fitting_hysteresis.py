@@ -5,12 +5,12 @@ import json
 import drive_measurements as measurements
 import numpy as np
 import pytest
+from jointfmu_tools import cli
+from jointfmu_tools.fitting import decay
+from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 from memory_measurements import save
 
-from jointfmu import cli
-from jointfmu.fitting import decay
-from jointfmu.fitting.oscillator import Oscillator
-from jointfmu.joints.harmonic_drive.fit import hysteresis
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, load
 

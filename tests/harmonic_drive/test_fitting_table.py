@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.fitting.loop import Backbone
+from jointfmu_tools.joints.harmonic_drive.fit import table, torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu import cli
-from jointfmu.fitting.loop import Backbone
-from jointfmu.joints.harmonic_drive.fit import table, torque_angle
-from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import default, dump, load
 
@@ -96,8 +96,8 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
-    from jointfmu_fmu_src.joints.harmonic_drive.modelica import COMPONENT
-    from jointfmu_fmu_src.modelica.tables import curve_of
+    from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
+    from jointfmu_tools.modelica.tables import curve_of
 
     file = default("harmonic_drive", law)
     (record,) = COMPONENT.records(file, [()])

@@ -7,19 +7,19 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools.joints.harmonic_drive import catalogue
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.judgement import judge_file
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive import catalogue
 from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive, TorqueAngle
 from jointfmu.joints.harmonic_drive.hysteresis import exponent
-from jointfmu.joints.harmonic_drive.new import NEW
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
-from jointfmu.judgement import judge_file
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import changed
-from jointfmu.uncertainty import propagate
-from jointfmu.uncertainty.problem import pose
 
 SAME = 1e-12
 """Lines are exact; round-off of the spline's coefficients remains."""

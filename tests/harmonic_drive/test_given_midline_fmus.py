@@ -9,10 +9,10 @@ from conftest import Fmu, made_once
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import kept
+from jointfmu_tools.joints.harmonic_drive.new import NEW
 from natives import Host, close
 
 from jointfmu.joints.harmonic_drive.given import MOST_POINTS
-from jointfmu.joints.harmonic_drive.new import NEW
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import changed
 

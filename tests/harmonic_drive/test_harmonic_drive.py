@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from jointfmu.asperity.hu2023 import critical_area
-from jointfmu.curve import MAX_ERROR
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.laws.hu2023 import critical_area
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
+from jointfmu.mechanics.curve import MAX_ERROR
 from jointfmu.parameters import default, load
 from jointfmu.quantity import build, flatten
 

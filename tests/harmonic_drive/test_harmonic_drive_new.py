@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu import cli
-from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import load
 
 ROW = ["--ratio", "100", "--K1", "4700", "--K2", "6100", "--K3", "7100", "--T1", "2", "--T2", "6.9"]

@@ -6,14 +6,14 @@ from importlib.resources import files
 
 import pytest
 from conftest import refused_line
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import bench, parameters, printed_drives, spring_bench
+from jointfmu_tools import cli
+from jointfmu_tools.joints.harmonic_drive import catalogue
+from jointfmu_tools.joints.harmonic_drive.efficiency import bench, parameters, printed_drives, spring_bench
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.quoted import hysteresis_loss, lost_motion
+from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED, efficiency
 
-from jointfmu import cli
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive import catalogue
-from jointfmu.joints.harmonic_drive.new import NEW
-from jointfmu.joints.harmonic_drive.quoted import hysteresis_loss, lost_motion
-from jointfmu.joints.harmonic_drive.quoted_friction import SPEED, efficiency
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import load
 

@@ -9,14 +9,14 @@ from pathlib import Path
 import drive_catalogue
 import numpy as np
 import pytest
-from jointfmu_fmu_src.joints.harmonic_drive.beside import beside
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import spring_bench
-from jointfmu_fmu_src.report.beside import OWN, PREDICTED, SET
-from jointfmu_fmu_src.report.joint import write_joint_report
+from jointfmu_tools.joints.harmonic_drive.beside import beside
+from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED
+from jointfmu_tools.report.beside import OWN, PREDICTED, SET
+from jointfmu_tools.report.joint import write_joint_report
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.new import NEW
-from jointfmu.joints.harmonic_drive.quoted_friction import SPEED
 from jointfmu.parameters import default
 
 SPRING = MODELS["HarmonicDriveSpring"]
