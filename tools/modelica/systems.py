@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from jinja2 import Environment
-from jointfmu_fmu_src.native.terminals import ROTATIONAL
 from jointfmu_fmu_src.partners.laws import POINTS
+from jointfmu_fmu_src.parts.terminals import ROTATIONAL
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile

@@ -1,6 +1,6 @@
 """Flanges of the bolted joint."""
 
-from ...native.terminals import axis, turn
+from ...parts.terminals import axis, turn
 
 TERMINALS = {
     "BoltedJoint": (
