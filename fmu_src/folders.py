@@ -6,7 +6,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 
 from . import joints, partners
-from .parts import Parts
+from .joint_parts import Parts
 
 
 def parts_of(model: Model) -> Parts:

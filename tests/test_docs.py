@@ -17,9 +17,9 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 import pytest
-from jointfmu_fmu_src.parts import Parts
+from jointfmu_fmu_src.joint_parts import Parts
 from jointfmu_tools.commands.parser import parser
-from jointfmu_tools.parts import TOOLS
+from jointfmu_tools.joint_parts import TOOLS
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
 from jointfmu_tools.cli import main
+from jointfmu_tools.joint_parts import part
 from jointfmu_tools.joints.bolted_joint.modelica import tight
 from jointfmu_tools.modelica import library, tables
 from jointfmu_tools.modelica.text import identifier
-from jointfmu_tools.parts import part
 from jointfmu_tools.systems.system import system
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution

@@ -8,9 +8,9 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
+from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.generate import RUNTIME, sources
-from jointfmu_fmu_src.parts.native import COUNTS, NUMBERS
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive import hysteresis

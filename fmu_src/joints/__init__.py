@@ -4,7 +4,7 @@ from importlib import import_module
 
 from jointfmu.joints import KINDS
 
-from ..parts import Parts
+from ..joint_parts import Parts
 
 PARTS: dict[str, Parts] = {
     name: import_module(f".{name}", __name__).PARTS for name, kind in KINDS.items() if kind.own

@@ -19,9 +19,9 @@ from jointfmu.parameters import ParameterFile, dump
 from jointfmu.quantity import flat_fields
 
 from ..folders import parts_of
+from ..joint_parts.c_text import number, string
+from ..joint_parts.data import NO_TABLES, Split, Table, Tables
 from ..naming import LONGEST
-from ..parts.c_text import number, string
-from ..parts.data import NO_TABLES, Split, Table, Tables
 
 Array = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ..folders import own_folder, parts_of
+from ..joint_parts.data import Split
+from ..joint_parts.graph import graph
+from ..joint_parts.native import NativePart
 from ..partners import PARTNERS
-from ..parts.data import Split
-from ..parts.graph import graph
-from ..parts.native import NativePart
 from .data import GENERATED, data_of, placeholder, split
 from .elementary import tables
 from .law_c import law_c

@@ -25,7 +25,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ..folders import own_folder
-from ..parts.data import Split
+from ..joint_parts.data import Split
 from .compiler import exported, libraries
 from .component import module
 from .data import PLACEHOLDER, placeholder
@@ -145,7 +145,7 @@ def _sources_of(model: Model) -> str:
     packages = {"jointfmu", own.package if own else "jointfmu"}
     roots = [Path(str(files(package))) for package in sorted(packages)]
     here = Path(__file__).parent
-    return _digest((*roots, here, here.with_name("parts"), own_folder(model)))
+    return _digest((*roots, here, here.with_name("joint_parts"), own_folder(model)))
 
 
 @cache

@@ -4,9 +4,9 @@ import casadi as ca
 
 from jointfmu.joints.model import Model
 
-from ..parts.c_text import array, number, string
-from ..parts.graph import Graph
-from ..parts.native import NativePart, shared_definitions
+from ..joint_parts.c_text import array, number, string
+from ..joint_parts.graph import Graph
+from ..joint_parts.native import NativePart, shared_definitions
 from .emit import HELPERS, function
 
 _SHORT = 60

@@ -15,8 +15,8 @@ from jointfmu.quantity import flat_fields, problem
 from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
-from ..parts.page import Panel
-from ..parts.plot import Plot, svg
+from ..joint_parts.page import Panel
+from ..joint_parts.plot import Plot, svg
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence

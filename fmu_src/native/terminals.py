@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from jointfmu.joints.model import Model
 
 from ..folders import asset, parts_of
-from ..parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
+from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
 from ..xml_parts import serialized
 
 _COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}

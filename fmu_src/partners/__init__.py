@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ..parts import Parts, equations
+from ..joint_parts import Parts, equations
 from .models import PARTNERS, parameters
 from .terminals import TERMINALS
 

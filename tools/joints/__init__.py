@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ..parts import PARTS
+from ..joint_parts import PARTS
 
 _FOLDERS = (
     "harmonic_drive",

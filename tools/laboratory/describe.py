@@ -5,8 +5,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from jointfmu_fmu_src.joint_parts.page import Panel
 from jointfmu_fmu_src.native.page import panels
-from jointfmu_fmu_src.parts.page import Panel
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
 from jointfmu.joints import KINDS
@@ -15,7 +15,7 @@ from jointfmu.parameters import ParameterFile, dump
 from jointfmu.published.reference import ROLES, points
 from jointfmu.quantity import units
 
-from ..parts import part
+from ..joint_parts import part
 from ..shown import shown_unit
 from .modules import Module
 from .part import Bench

@@ -13,7 +13,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load
 
-from ..parts import part
+from ..joint_parts import part
 
 _OWN = "laboratory.c"
 _MAP = "map.c"

@@ -20,7 +20,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
 
-from ..parts import part
+from ..joint_parts import part
 from ..systems.system import System, systems
 from .blocks import interface, wrapper
 from .records import Component, Record, WorkingPoint

@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from jointfmu_fmu_src.joint_parts.terminals import Terminal
 from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_fmu_src.parts.terminals import Terminal
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model

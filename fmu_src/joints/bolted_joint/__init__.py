@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...parts import Parts
+from ...joint_parts import Parts
 from .data import DATA
 from .page import DRAWINGS, PANELS
 from .terminals import TERMINALS
 
 if TYPE_CHECKING:
-    from ...parts.native import NativePart
+    from ...joint_parts.native import NativePart
 
 
 def _native() -> "NativePart":

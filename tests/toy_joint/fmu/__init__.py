@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from jointfmu_fmu_src.parts import Parts, equations
-from jointfmu_fmu_src.parts.terminals import TRANSLATIONAL, Terminal
+from jointfmu_fmu_src.joint_parts import Parts, equations
+from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL, Terminal
 
 MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
 FLANGE = Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", MEMBERS)

@@ -1,6 +1,6 @@
 """What the tools know of the bolted joint."""
 
-from ...parts import Parts
+from ...joint_parts import Parts
 
 PARTS = Parts(
     __name__,

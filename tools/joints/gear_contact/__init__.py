@@ -1,6 +1,6 @@
 """What the tools know of the gear contact."""
 
-from ...parts import Parts
+from ...joint_parts import Parts
 
 PARTS = Parts(
     __name__, ("checks", "export", "figures", "laboratory", "modelica", "new", "pressing", "reduced")

@@ -7,7 +7,7 @@ import jointfmu_fmu_src.joints as builders
 import jointfmu_tools as tools
 import pytest
 from jointfmu_fmu_src.folders import parts_of
-from jointfmu_tools.parts import TOOLS, Parts, part
+from jointfmu_tools.joint_parts import TOOLS, Parts, part
 
 from jointfmu.joints import KINDS, MODELS
 
