@@ -4,7 +4,8 @@ What a joint exports are sums over its nodes of share times a function of the no
 (`equal`, `tilt`), with its position as a factor. At finitely many loads these are finitely many sums, most of
 which follow from the others. Some of the nodes with positive shares keep these (`recombination`), and as few
 of them as keep all within the tolerance are taken. Loads at which the points miss are added until none of
-further ones is missed.
+further ones is missed. Which nodes and shares these are is found with rounded numbers
+(`footprint.reproducible`); the nodes are the field's own.
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,8 @@ from itertools import islice
 import numpy as np
 from scipy.linalg import qr, solve_triangular
 
+from jointfmu.mechanics.footprint.patches import highest
+from jointfmu.mechanics.footprint.reproducible import rounded, to_digits
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.progress import track
 
@@ -27,6 +30,8 @@ TOLERANCE = 1e-6
 AIM, LET_PASS, WORTH_ADDING = 0.05, 0.6, 0.15
 """Parts of the tolerance [1]: what is aimed at, what is let pass where it was not aimed at (the rest is for
 loads that are not tried), and from where on a load is one to aim at."""
+DIGITS = 25
+"""Binary digits to which nodes are rounded before they decide: 3e-8, less than what is aimed at."""
 LEAST = 7e-9
 """Sums that are kept: those that say so much that others do not, over the one that says most [1]."""
 FEWER = 0.93
@@ -87,29 +92,32 @@ def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pres
     if nodes <= FEW:
         return Reduction(shape, nodes)
     sums = Sums.of(joint, preload, pressures)
-    shape = shape.part(np.argsort(shape.equal))  # neighbours on the curve, which is read the faster
+    order = np.argsort(
+        to_digits(shape.equal), kind="stable"
+    )  # neighbours on the curve: it is read the faster
+    own = shape.part(order)
+    shape = rounded(own, DIGITS)
     few = np.random.default_rng(SEED).choice(
         nodes, min(SAMPLE, nodes), replace=False, p=sums.weights(shape, largest_moment(joint, shape))
     )
-    reduction = _search(sums, shape, shape.part(few))
+    reduction = _search(sums, shape, shape.part(few), own)
     if reduction is not None:
         return reduction
     if nodes <= MOST:
-        return Reduction(shape, nodes)
+        return Reduction(own, nodes)
     raise RuntimeError(f"the field of {nodes} nodes has no points that keep its sums within {TOLERANCE:g}")
 
 
-def _highest(shape: PressureShape) -> Nodes:
-    """Nodes that have the largest pressure at some moment: they are kept, with their share."""
-    steep = np.concatenate([-np.geomspace(30.0, 0.01, 40), [0.0], np.geomspace(0.01, 30.0, 40)])
-    return np.unique([int(np.argmax(shape.equal + m * shape.tilt)) for m in steep])
+def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: PressureShape) -> Reduction | None:
+    """Points that keep the sums at first loads and at those of others that they missed.
 
-
-def _search(sums: Sums, shape: PressureShape, some: PressureShape) -> Reduction | None:
-    """Points that keep the sums at first loads and at those of others that they missed."""
+    shape : the nodes, rounded
+    some  : of these, on which it is found which sums follow from others
+    own   : the nodes as they are
+    """
     limit = largest_moment(sums.joint, shape)
     loads, tests = further_loads(limit), int(np.clip(WORK / shape.share.size, *TESTS))
-    system = _System.of(sums, shape, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
+    system = _System.of(sums, shape, own, some, sums.at(shape, [*first_loads(limit), *islice(loads, MORE)]))
     best, least = None, TOLERANCE
     for _ in track(range(ROUNDS), "points", ROUNDS):
         points = system.points()
@@ -142,6 +150,7 @@ def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: floa
 class _System:
     """Sums that shares of the nodes of a shape are to keep, those that balance it and those at loads.
 
+    own    : the nodes as they are, not rounded
     some   : (c) nodes on which it is found which sums follow from others, mixed by `mixing` (SKETCH, c)
     rows   : the sums at loads
     over   : what those that balance the shape are divided by
@@ -150,6 +159,7 @@ class _System:
 
     sums: Sums
     shape: PressureShape
+    own: PressureShape
     some: PressureShape
     mixing: Array
     rows: SumsAtLoads
@@ -157,13 +167,15 @@ class _System:
     sketch: Array
 
     @classmethod
-    def of(cls, sums: Sums, shape: PressureShape, some: PressureShape, rows: SumsAtLoads) -> "_System":
+    def of(
+        cls, sums: Sums, shape: PressureShape, own: PressureShape, some: PressureShape, rows: SumsAtLoads
+    ) -> "_System":
         """Of loads, to begin with."""
         over = np.maximum(np.max(np.abs(balance(shape)), axis=0), np.finfo(float).tiny)
         mixing = np.random.default_rng(SEED).standard_normal((SKETCH, some.share.size))
         mixing *= np.sqrt(some.share / SKETCH)
         sketch = mixing @ np.concatenate([balance(some) / over, sums.columns(some, rows)], axis=1)
-        return cls(sums, shape, some, mixing, rows, over, sketch)
+        return cls(sums, shape, own, some, mixing, rows, over, sketch)
 
     def add(self, rows: SumsAtLoads) -> None:
         """Further loads."""
@@ -177,7 +189,7 @@ class _System:
     def points(self) -> PressureShape | None:
         """The fewest nodes found that keep the sums; None if none do."""
         kept, turn = self._combinations()
-        held = _highest(self.shape)
+        held = highest(self.shape)
         try:
             some, share = self._groups(kept, turn, held)
             left, share = recombined(self._kept(some, kept), share, turn)
@@ -199,7 +211,7 @@ class _System:
             left, values = left[few], values[few]
         if best is None:
             return None
-        both = self.shape.part(np.concatenate([held, best[0]]))
+        both = self.own.part(np.concatenate([held, best[0]]))
         return _balanced(both, np.concatenate([self.shape.share[held], best[1]]))
 
     def _groups(self, kept: Nodes, turn: Array, held: Nodes) -> tuple[Nodes, Array]:

@@ -59,10 +59,12 @@ def without_form(heights: Heights, form: str = "tilt") -> Heights:
     valid = np.isfinite(heights.z)
     terms = _polynomial([np.broadcast_to(g, heights.z.shape) for g in grids], order)
     weights = [np.where(valid, t, 0.0).ravel() for t in terms]
-    known = np.where(valid, heights.z, 0.0).ravel()
-    normal = np.array([[a @ b for b in weights] for a in weights])
-    coefficients = np.linalg.solve(normal, np.array([w @ known for w in weights]))
-    return heights.with_heights(heights.z - sum(c * t for c, t in zip(coefficients, terms, strict=True)))
+    normal, left = np.array([[a @ b for b in weights] for a in weights]), heights.z
+    for _ in range(2):  # what rounding leaves of a large form goes the second time
+        known = np.where(valid, left, 0.0).ravel()
+        coefficients = np.linalg.solve(normal, np.array([w @ known for w in weights]))
+        left = left - sum(c * t for c, t in zip(coefficients, terms, strict=True))
+    return heights.with_heights(left)
 
 
 def _polynomial(axes: list[Array], order: int) -> list[Array]:

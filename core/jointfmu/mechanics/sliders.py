@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..quantity import Number, where
 from .curve import Curve
+from .footprint.reproducible import to_digits
 
 Array = NDArray[np.float64]
 
@@ -42,9 +43,10 @@ LOWEST, HIGHEST, USUAL = 1e-5, 0.1, 1e-3
 def offsets(load: Array) -> Array:
     """Offsets (n) [1] of `around` for foundations side by side under loads (n), of whatever unit.
 
-    Multiples of the golden section in the order of the loads: what neighbours in it miss cancels.
+    Multiples of the golden section in the order of the loads, equal ones in that of their places: what
+    neighbours in it miss cancels.
     """
-    rank = np.argsort(np.argsort(-load, kind="stable"), kind="stable")
+    rank = np.argsort(np.argsort(-to_digits(load), kind="stable"), kind="stable")
     return np.asarray((rank * (0.5 * (np.sqrt(5.0) - 1.0)) + 0.5) % 1.0)
 
 

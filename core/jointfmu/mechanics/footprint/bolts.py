@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import check, quantity
-from .plate import BoltedPlate
+from .plate import EDGE, BoltedPlate
 from .shape import NodalField, PressureShape, mean_squares
 
 Array = NDArray[np.float64]
@@ -87,9 +87,9 @@ def cells(pattern: BoltPattern) -> tuple[Array, Array]:
     count = np.maximum(np.round(2.0 * outer / size).astype(int), 1)
     sub = [(np.arange(n * _SUBCELLS) + 0.5) / (n * _SUBCELLS) for n in count]
     x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
-    solid = (np.abs(x) > inner[0]) | (np.abs(y) > inner[1])
+    solid = (np.abs(x) > inner[0] * EDGE) | (np.abs(y) > inner[1] * EDGE)
     for bx, by in pattern.bolts:
-        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter
+        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter * EDGE
     area = 4.0 * outer[0] * outer[1] / solid.size
 
     def total(values: Array) -> Array:

@@ -18,6 +18,8 @@ _PARTS = 8
 """Parts of a cell's side in which the edge of a hole is seen."""
 _ONE_ROW = 1e-6
 """Bolts whose distances across the rows are below this part of the plate's size make one row [1]."""
+EDGE = 1.0 + 1e-9
+"""Points nearer to an edge than this lie on it [1]: which side they are on does not hang on rounding."""
 _STEPS, _BALANCED = 50, 1e-13
 """Most steps of Newton's method, and what remains of the moment of a bolt's pressure over its radius [1]."""
 
@@ -67,11 +69,15 @@ class BoltedPlate:
     def reach(self) -> float:
         """R [m], where the pressure of a bolt ends.
 
-        The moments of the polynomial over s = R - a make the mean square of r a cubic equation of s.
+        The moments of the polynomial over s = R - a make the mean square of r a cubic equation of s with one
+        positive root, to which Newton's method falls from above.
         """
         a, square = 0.5 * self.hole_diameter, 0.125 * (self.hole_diameter**2 + self.cone_diameter**2)
-        cubic = [1 / 56, 4 / 35 * a, 0.3 * a**2 - 0.1 * square, 0.4 * a * (a**2 - square)]
-        return float(a + np.max(np.roots(cubic).real))
+        first, second, third = 4 / 35 * a, 0.3 * a**2 - 0.1 * square, 0.4 * a * (a**2 - square)
+        s = 8.0 * float(np.sqrt(square))
+        for _ in range(_STEPS):
+            s -= (((s / 56 + first) * s + second) * s + third) / ((s * 3 / 56 + 2.0 * first) * s + second)
+        return a + s
 
     @property
     def area(self) -> float:
@@ -160,8 +166,8 @@ def cells(plate: BoltedPlate) -> tuple[Array, Array]:
     middle = (index + 0.5) * side - 0.5 * plan
     done_middle, done_side = [], []
     while middle.size:
-        pressed = _distance(plate, middle, side) < reach
-        split = pressed & (np.max(side) > reach / ACROSS)
+        pressed = _distance(plate, middle, side) * EDGE < reach
+        split = pressed & (np.max(side) > reach / ACROSS * EDGE)
         done_middle.append(middle[~split])
         done_side.append(np.broadcast_to(side, middle[~split].shape))
         side = 0.5 * side
@@ -185,7 +191,7 @@ def _solid(plate: BoltedPlate, middle: Array, side: Array) -> tuple[Array, Array
     for bolt in plate.bolts:
         near = np.flatnonzero(np.hypot(*(middle - bolt).T) < reach)
         points = middle[near, None, :] + grid * side[near, None, :]
-        solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter
+        solid = np.hypot(*np.moveaxis(points - bolt, -1, 0)) > 0.5 * plate.hole_diameter * EDGE
         kept = solid.mean(axis=1)
         areas[near] *= kept
         total = np.sum(points * solid[..., None], axis=1)

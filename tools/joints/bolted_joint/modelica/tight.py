@@ -7,6 +7,7 @@ import numpy as np
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
+from jointfmu.mechanics.footprint.reproducible import NOTHING
 
 from ....modelica.tables import Array, Table, thinned
 
@@ -53,7 +54,9 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     area, share = spring.joint.A_0, spring.shape.share
 
     def total(c: Array) -> list[Array]:
-        each = spring.curve.derivatives(start + c[:, None], 2)
+        approach = start + c[:, None]
+        approach[approach - low < NOTHING * (high - low)] = low  # where nodes just touch their load is zero
+        each = spring.curve.derivatives(approach, 2)
         return [area * (value @ share) for value in each]
 
     at_rest = total(np.zeros(1))[0][0]
