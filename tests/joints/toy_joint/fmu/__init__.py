@@ -5,6 +5,6 @@ from pathlib import Path
 from jointfmu_fmu_src.joint_parts import Parts, equations
 from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL, Terminal
 
-MEMBERS = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
-FLANGE = Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", MEMBERS)
-PARTS = Parts(folder=Path(__file__).parent, native=equations, terminals={"ToySpring": (FLANGE,)})
+WIRES = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
+FLANGES = (Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", WIRES),)
+PARTS = Parts(folder=Path(__file__).parent, native=equations, terminals={"ToySpring": FLANGES})
