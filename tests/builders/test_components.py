@@ -150,7 +150,7 @@ def test_random_parameters_give_the_numbers_or_refusals_of_the_library(
     file, rng = default(MODELS[name].joint), np.random.default_rng(16)
     module = Module(MODELS[name].of(file.joint, file.values), [file])
     sets = [random_values(module, rng, switched=False) for _ in range(SETS)]
-    sets += [{one.parameter: one.value} for one in CASES[name].refused]
+    sets += [{one.parameter: one.value} for one in CASES[name].refusals.refused]
     refused = 0
     for i, values in enumerate(sets):
         seen = [len(one.messages) for one in both]
@@ -172,7 +172,7 @@ def test_random_parameters_give_the_numbers_or_refusals_of_the_library(
         told, said = (one.messages[n:] for one, n in zip(both, seen, strict=True))
         assert [(m.status, m.category) for m in said] == [(m.status, m.category) for m in told]
         assert [m.text for m in said if m.status == 3] == [m.text for m in told if m.status == 3]
-    assert len(CASES[name].refused) <= refused < len(sets)
+    assert len(CASES[name].refusals.refused) <= refused < len(sets)
     assert component.names == {"test"}
 
 

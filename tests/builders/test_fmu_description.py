@@ -122,7 +122,7 @@ def test_base_units_and_display_factors_say_what_the_names_say(root: Any) -> Non
 
 @pytest.mark.parametrize(
     ("fmu_name", "variable", "shown"),
-    [(name, *shown) for name, case in CASES.items() for shown in case.shown.items()],
+    [(name, *shown) for name, case in CASES.items() for shown in case.description.shown.items()],
 )
 def test_people_see_the_units_they_know(fmus: Path, fmu_name: str, variable: str, shown: str) -> None:
     found = {v.name: v for v in fmpy.read_model_description(str(fmus / f"{fmu_name}.fmu")).modelVariables}
@@ -196,12 +196,12 @@ def test_start_values_are_the_default_parameters(root: Any, name: str) -> None:
 
 def test_the_default_experiment_is_the_load_ramp_one_step_per_second(fmus: Path, name: str) -> None:
     experiment = fmpy.read_model_description(str(fmus / f"{name}.fmu")).defaultExperiment
-    ramp, steps = MODELS[name].ramp, CASES[name].steps
+    ramp, steps = MODELS[name].ramp, CASES[name].description.steps
     assert float(experiment.startTime) == 0.0
     assert float(experiment.stepSize) == 1.0
     assert float(experiment.stopTime) == pytest.approx(ramp.end / ramp.step, rel=1e-12)
     assert steps is None or float(experiment.stopTime) == steps
-    assert ramp.input in CASES[name].inputs
+    assert ramp.input in CASES[name].description.inputs
 
 
 def test_what_the_fmu_can_do(root: Any, name: str) -> None:
@@ -224,7 +224,7 @@ def test_calibration_parameters_say_so_and_no_other(root: Any, name: str) -> Non
     fields = MODELS[name].parameter_fields()
     described = {k for k, v in variables(root, "parameter").items() if "calibration" in v.get("description")}
     assert described == {k for k, f in fields.items() if f.metadata.get("calibration")}
-    assert CASES[name].calibration <= described
+    assert CASES[name].description.calibration <= described
 
 
 def test_equal_content_gives_an_equal_guid_and_file(

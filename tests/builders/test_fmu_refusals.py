@@ -23,7 +23,8 @@ Host = Callable[..., Fmu]
 
 
 @pytest.mark.parametrize(
-    ("name", "refused"), [(name, refused) for name, case in CASES.items() for refused in case.refused]
+    ("name", "refused"),
+    [(name, refused) for name, case in CASES.items() for refused in case.refusals.refused],
 )
 def test_a_bad_parameter_is_named_with_value_unit_and_range(fmu: Host, name: str, refused: Refused) -> None:
     instance = fmu(name)
@@ -80,7 +81,8 @@ def test_two_bad_parameters_are_both_named(fmu: Host) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "values", "parts"), [(name, *unfit) for name, case in CASES.items() for unfit in case.unfit]
+    ("name", "values", "parts"),
+    [(name, *unfit) for name, case in CASES.items() for unfit in case.refusals.unfit],
 )
 def test_parameters_that_do_not_fit_together_are_refused(
     fmu: Host, name: str, values: dict[str, float], parts: tuple[str, ...]
@@ -92,7 +94,7 @@ def test_parameters_that_do_not_fit_together_are_refused(
 
 @pytest.mark.parametrize(
     ("name", "parameter", "value"),
-    [(name, *absurd) for name, case in CASES.items() for absurd in case.absurd],
+    [(name, *absurd) for name, case in CASES.items() for absurd in case.refusals.absurd],
 )
 def test_an_absurd_value_in_range_is_refused_by_name_or_gives_numbers(
     fmu: Host, name: str, parameter: str, value: float

@@ -40,7 +40,7 @@ def test_random_parameters_reach_the_law(fmu: Host, name: str) -> None:
     instance = fmu(name)
     for inputs in random_inputs(name, 5, seed=3):
         scaled = {k: start[k] * float(rng.uniform(0.95, 1.05)) for k in MODELS[name].parameter_fields()}
-        scaled |= {k: float(rng.integers(*ends)) for k, ends in CASES[name].counted.items()}
+        scaled |= {k: float(rng.integers(*ends)) for k, ends in CASES[name].tuning.counted.items()}
         instance.reset()
         changes = {k: v for k, v in scaled.items() if not isinstance(start[k], bool)}
         instance.start(changes | inputs)
@@ -49,13 +49,13 @@ def test_random_parameters_reach_the_law(fmu: Host, name: str) -> None:
 
 def test_each_parameter_changes_the_outputs_that_it_should(fmu: Host, name: str) -> None:
     start, case = flatten(default(MODELS[name].joint).values), CASES[name]
-    base = dict(case.base)
+    base = dict(case.tuning.base)
     instance, without = fmu(name).start(base | STATE[name]), set()
     before = instance.get()
     assert all(before.values())
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]
-        change = (not value) if isinstance(value, bool) else case.moved.get(parameter, 1.001 * value)
+        change = (not value) if isinstance(value, bool) else case.tuning.moved.get(parameter, 1.001 * value)
         instance.reset()
         instance.start(base | {parameter: change} | STATE[name])
         found = instance.get()
@@ -63,7 +63,7 @@ def test_each_parameter_changes_the_outputs_that_it_should(fmu: Host, name: str)
         assert found == pytest.approx(expected, rel=SAME), parameter
         if found == pytest.approx(before, rel=SAME):
             without.add(parameter)
-    assert without == case.without_effect
+    assert without == case.tuning.without_effect
 
 
 # Right at once
@@ -95,7 +95,7 @@ def test_a_step_with_unchanged_inputs_changes_nothing(fmu: Host, name: str) -> N
 def test_outputs_do_not_depend_on_the_way_there(fmu: Host, name: str) -> None:
     """Without memory."""
     there, back = random_inputs(name, 2, seed=6)
-    instance = fmu(name).start(there | CASES[name].also)
+    instance = fmu(name).start(there | CASES[name].tuning.also)
     before = instance.get()
     instance.at(back)
     instance.step()
@@ -229,8 +229,8 @@ def test_defaults_of_a_parameter_file_are_the_start_values(fmu: Host, tmp_path: 
 
 
 def test_an_output_changes_with_the_inputs_it_is_said_to_depend_on_and_with_no_other(name: str) -> None:
-    model, base = MODELS[name], dict(CASES[name].base)
-    laws = [law(name, parameters(name, base | more)) for more in ({}, dict(CASES[name].also))]
+    model, base = MODELS[name], dict(CASES[name].tuning.base)
+    laws = [law(name, parameters(name, base | more)) for more in ({}, dict(CASES[name].tuning.also))]
     laws += [from_rest.after() for from_rest in laws]  # some of a memory acts once it has begun
     still = [found(STATE[name]) for found in laws]
     for variable in model.inputs:

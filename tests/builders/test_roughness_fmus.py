@@ -65,7 +65,7 @@ def test_the_python_flavour_has_the_same_variables_and_numbers(
 
 @pytest.mark.parametrize("name", NAMES)
 def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, name: str) -> None:
-    state = CASES[name].state
+    state = CASES[name].numbers.state
     instance, expected = host(name, "fmi3", built).start(state), law(name, file_of(name).values)
     references = {n: v.valueReference for n, v in instance.variables.items()}
     outputs = list(expected(state))
@@ -74,13 +74,15 @@ def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built
             [references[n] for n in outputs], [references[moved]], [1.0], len(outputs)
         )
         found = dict(zip(outputs, column, strict=True))
-        h = 1e-4 * abs((state | CASES[name].sizes)[moved])
+        h = 1e-4 * abs((state | CASES[name].numbers.sizes)[moved])
         ends: list[dict[str, Any]] = [expected({**state, moved: value + d * h}) for d in (-1, 1)]
         for output, now in expected(state).items():
             slope = (ends[1][output] - ends[0][output]) / (2.0 * h)
             size = max(abs(slope), SLOPE * abs(now) / h)
-            rough = 1e-3 if output in CASES[name].jumps else 1e-4
-            if output in CASES[name].kinks:  # before the first step the differences lay the sliders anew
+            rough = 1e-3 if output in CASES[name].numbers.jumps else 1e-4
+            if (
+                output in CASES[name].numbers.kinks
+            ):  # before the first step the differences lay the sliders anew
                 rough = 1e-2
             assert found[output] == pytest.approx(slope, abs=rough * size), (output, moved)
 

@@ -212,7 +212,7 @@ sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3
 def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) -> None:
     """In the bare installation, once the default FMU was built; with the numbers of the package."""
     kind = KINDS[MODELS[name].joint]
-    tuned = ({n: v} for n, v in CASES[name].tuned.items())
+    tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
     alone = [one for one in tuned if not list(kind.contradictions(of(name, one)[1].values))]
     model, file = of(name, alone[0])
     fixed = {n: 0.99 * file.flat[n] for n in split(model, file).fixed if n in file.flat}

@@ -104,7 +104,7 @@ def test_casadi_evaluates_and_differentiates_it(
     instance = Fmu(path, exchange=True).start(changes)
     for state, row in zip(states, found["rows"], strict=True):
         values, J = instance.at(state), np.array(row["jacobian"])
-        exact, sizes = jacobian(instance), STATE[name] | CASES[name].sizes
+        exact, sizes = jacobian(instance), STATE[name] | CASES[name].numbers.sizes
         for (o, i), slope in zip(itertools.product(outputs, inputs), J.ravel(), strict=True):
             # CasADi scales its seeds; terms that cancel in a slope are as large as the output over the input
             scale = max(abs(exact[o, i]), abs(values[o] / sizes[i]))

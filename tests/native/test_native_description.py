@@ -385,7 +385,7 @@ def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> N
             assert kind in ("constant", "tunable")
             sets: list[dict[str, float]] = [{}]
             if kind == "constant":  # the same for other parameters too
-                sets += [dict(CASES[name].others)]
+                sets += [dict(CASES[name].description.others)]
             factors = []
             for parameters in sets:
                 for inputs in samples(name, 3):
@@ -398,7 +398,7 @@ def test_where_a_factor_is_declared_the_output_is_linear_with_it(name: str) -> N
             # differences of numbers up to 10 over 1e-4: eight digits remain
             assert factors == pytest.approx([factors[0]] * len(factors), rel=1e-8, abs=1e-9)
             checked += 1
-    assert (checked > 0) == CASES[name].linear
+    assert (checked > 0) == CASES[name].description.linear
 
 
 def test_fmi_2_names_the_sources_to_compile(name: str) -> None:
@@ -511,13 +511,15 @@ def test_the_flanges_of_each_joint(name: str) -> None:
         t.get("name"): " ".join(m.get("variableName") for m in t.findall("TerminalMemberVariable"))
         for t in root.find("Terminals")
     }
-    assert found == case.flanges
-    assert {t.get("terminalKind").split(".")[2] for t in root.find("Terminals")} == set(case.domain.split())
+    assert found == case.description.flanges
+    assert {t.get("terminalKind").split(".")[2] for t in root.find("Terminals")} == set(
+        case.description.domain.split()
+    )
 
 
 def test_flows_are_signed_as_the_standard_asks(name: str) -> None:
     """Inflow is applied to the element and winds it up; outflow is what it applies and opposes the motion."""
-    rest = {v.name: 0.0 for v in MODELS[name].inputs} | CASES[name].rest
+    rest = {v.name: 0.0 for v in MODELS[name].inputs} | CASES[name].numbers.rest
     for terminal in etree.fromstring(pictures(name)["terminalsAndIcons.xml"]).find("Terminals"):
         members = {m.get("memberName"): m for m in terminal.findall("TerminalMemberVariable")}
         motion = next(members[m].get("variableName") for m in ("phi", "s") if m in members)

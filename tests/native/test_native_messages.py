@@ -65,7 +65,7 @@ def test_beyond_the_table_the_last_tangent_continues_with_one_warning(
 def test_each_way_of_leaving_the_tables_is_warned_of_once_as_in_the_package(
     host: Host, name: str, version: str
 ) -> None:
-    model, rng, also = MODELS[name], np.random.default_rng(37), dict(CASES[name].also)
+    model, rng, also = MODELS[name], np.random.default_rng(37), dict(CASES[name].tuning.also)
     spring, instance = model.spring(parameters(name, also)), host(name, version).start(GOOD[name] | also)
     warned: dict[int, str] = {}
     for _ in range(150):
@@ -111,8 +111,8 @@ def test_a_value_at_the_end_of_every_interval_is_refused_or_not_as_in_the_packag
 
 
 FORBIDDEN: list[tuple[str, dict[str, Any]]] = [
-    *((name, {r.parameter: r.value}) for name, case in CASES.items() for r in case.refused),
-    *((name, values) for name, case in CASES.items() for values in case.forbidden),
+    *((name, {r.parameter: r.value}) for name, case in CASES.items() for r in case.refusals.refused),
+    *((name, values) for name, case in CASES.items() for values in case.refusals.forbidden),
 ]
 """What is refused, for every reason that there is."""
 

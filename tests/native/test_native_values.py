@@ -119,19 +119,19 @@ def test_random_parameters_give_the_numbers_or_the_refusal_of_the_package(host: 
 
 def test_each_parameter_changes_the_outputs_that_it_should(host: Host, name: str, version: str) -> None:
     start, case = flatten(default(MODELS[name].joint).values), CASES[name]
-    base = dict(case.base)
+    base = dict(case.tuning.base)
     instance, without = host(name, version), set()
     instance.begin()  # while it initializes a joint with memory comes from rest, as in the package
     before = instance.at(base | STATE[name])
     for parameter in MODELS[name].parameter_fields():
         value = (start | base)[parameter]
-        change = (not value) if isinstance(value, bool) else case.moved.get(parameter, 1.001 * value)
+        change = (not value) if isinstance(value, bool) else case.tuning.moved.get(parameter, 1.001 * value)
         found = instance.at({parameter: change})
         assert found == close(package(name, base | {parameter: change})(STATE[name])), parameter
         if found == close(before):
             without.add(parameter)
         assert instance.at({parameter: value}) == before
-    assert without == case.without_effect
+    assert without == case.tuning.without_effect
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -258,7 +258,7 @@ def test_a_parameter_changed_between_steps_is_as_if_it_had_always_been_so(
 ) -> None:
     """Without memory: a path keeps what it was."""
     instance, fresh = (host(name, version, exchange=exchange) for _ in range(2))
-    given = STATE[name] | CASES[name].also
+    given = STATE[name] | CASES[name].tuning.also
     before = instance.start(given).get()
     start = flatten(default(MODELS[name].joint).values)
     changes: dict[str, Any] = {}
@@ -329,7 +329,7 @@ def test_a_parameter_is_not_set_in_continuous_time(host: Host, version: str) -> 
 
 def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: bool) -> None:
     instance, fresh = (host(name, "fmi3", exchange=exchange) for _ in range(2))
-    given = STATE[name] | CASES[name].also
+    given = STATE[name] | CASES[name].tuning.also
     instance.start(given).fmu.enterConfigurationMode()
     instance.set(TUNED[name])
     instance.fmu.exitConfigurationMode()
@@ -340,7 +340,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 
 
 @pytest.mark.parametrize(
-    ("name", "changes"), [(name, changes) for name, case in CASES.items() for changes in case.baked]
+    ("name", "changes"), [(name, changes) for name, case in CASES.items() for changes in case.tuning.baked]
 )
 def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
     file = default(MODELS[name].joint).with_values(changes, "user", "test")

@@ -107,7 +107,7 @@ def test_the_wheel_alone_builds_variants_for_every_platform(clean: Path, tmp_pat
         assert run(clean, tmp_path, "-c", f"import {package}").returncode
     where = run(clean, tmp_path, "-c", "import jointfmu, jointfmu_fmu_src.native as n; print(n.__file__)")
     assert str(clean / "env") in where.stdout, where.stderr
-    changes = dict([next(iter(CASES[NAME].tuned.items()))])
+    changes = dict([next(iter(CASES[NAME].tuning.tuned.items()))])
     file = default(MODELS[NAME].joint).with_values(changes, "user", "test")
     (tmp_path / "variant.toml").write_text(dump(file))
     build = ("-m", "jointfmu", "build", NAME, "--params", "variant.toml", "--name", "Mine", "--out", "out")

@@ -40,27 +40,27 @@ JOINTS: dict[str, Joint] = {kind: load(kind) for kind in KINDS}
 CASES: dict[str, Case] = {case.name: case for joint in JOINTS.values() for case in joint.cases}
 """{FMU: what the tests know of it}."""
 NAMES = list(MODELS)
-GOOD: dict[str, Inputs] = {name: case.good for name, case in CASES.items()}
-STATE: dict[str, Inputs] = {name: case.state for name, case in CASES.items()}
-RANGES = {name: dict(case.ranges) for name, case in CASES.items()}
+GOOD: dict[str, Inputs] = {name: case.numbers.good for name, case in CASES.items()}
+STATE: dict[str, Inputs] = {name: case.numbers.state for name, case in CASES.items()}
+RANGES = {name: dict(case.numbers.ranges) for name, case in CASES.items()}
 PUBLIC: dict[str, dict[str, dict[str, str]]] = {
     name: {
-        "input": dict(case.inputs),
-        "output": dict(case.results),
-        "parameter": dict(case.parameters),
+        "input": dict(case.description.inputs),
+        "output": dict(case.description.results),
+        "parameter": dict(case.description.parameters),
     }
     for name, case in CASES.items()
 }
 """The contract: {FMU: {causality: {variable: unit}}}; an FMU may have more."""
-BEYOND = [(name, beyond) for name, case in CASES.items() for beyond in case.beyond]
-TUNED = {name: case.tuned for name, case in CASES.items()}
+BEYOND = [(name, beyond) for name, case in CASES.items() for beyond in case.refusals.beyond]
+TUNED = {name: case.tuning.tuned for name, case in CASES.items()}
 
 
 def random_inputs(name: str, count: int, seed: int) -> list[Inputs]:
     """Inputs at random, inside the tables."""
-    rng, ranges = np.random.default_rng(seed), CASES[name].ranges
+    rng, ranges = np.random.default_rng(seed), CASES[name].numbers.ranges
     drawn = [{k: float(rng.uniform(*limits)) for k, limits in ranges.items()} for _ in range(count)]
-    return [CASES[name].place(inputs) for inputs in drawn]
+    return [CASES[name].numbers.place(inputs) for inputs in drawn]
 
 
 def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:
@@ -84,7 +84,7 @@ class Law:
 
     def __call__(self, inputs: Inputs) -> dict[str, float]:
         if self.memory is None:
-            found = CASES[self.name].outputs(self.spring, inputs)
+            found = CASES[self.name].numbers.outputs(self.spring, inputs)
         else:
             found = MODELS[self.name].evolve(self.spring, inputs, self.memory)[0]
         return {k: float(x) for k, x in found.items()}

@@ -92,13 +92,13 @@ def check_slopes(
     Central differences of fourth order. A kink or jump of the output between their points makes those of
     second order differ, by at least a quarter of its effect on the one of fourth.
     """
-    expected, size = package(name, changes).after(), abs((STATE[name] | CASES[name].sizes)[moved])
+    expected, size = package(name, changes).after(), abs((STATE[name] | CASES[name].numbers.sizes)[moved])
     h = 1e-3 * size
     here, up, down, far, back = (expected(state | {moved: state[moved] + k * h}) for k in (0, 1, -1, 2, -2))
     for output, slope in slopes.items():
         near, wide = ((b[output] - a[output]) / d for a, b, d in ((down, up, 2.0 * h), (back, far, 4.0 * h)))
         most = allowed(name, output) * max(abs(here[output]) / size, abs(slope))
-        doubt = 4.0 * abs(near - wide) if output in CASES[name].kinks else 0.0
+        doubt = 4.0 * abs(near - wide) if output in CASES[name].numbers.kinks else 0.0
         found = (4.0 * near - wide) / 3.0
         assert abs(slope - found) <= most + doubt, (output, moved, slope, found, most, doubt)
 
@@ -115,6 +115,6 @@ JUMPS = 1e-4
 
 def allowed(name: str, output: str) -> float:
     """How far a derivative of an output may be from its differences."""
-    if output in CASES[name].kinks:
+    if output in CASES[name].numbers.kinks:
         return KINKS
-    return JUMPS if output in CASES[name].jumps else DIFFERENCE
+    return JUMPS if output in CASES[name].numbers.jumps else DIFFERENCE

@@ -2,7 +2,7 @@
 
 import math
 
-from case import Beyond, Case, Joint, Refused, Study
+from case import Beyond, Case, Description, Joint, Numbers, Refusals, Refused, Study, Tuning
 
 from jointfmu.parameters import default
 
@@ -48,85 +48,101 @@ relative to mu."""
 
 SPRING = Case(
     name="HarmonicDriveSpring",
-    outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
-    inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
-    results={
-        "tau1": "N.m",
-        "tau2": "N.m",
-        "phi_rel": "rad",
-        "tau": "N.m",
-        **STIFFNESS,
-        "phi_error": "rad",
-        "tau_friction": "N.m",
-    },
-    parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
-    ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5)},
-    span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5)},
-    state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02},
-    good={"phi2": 6e-4},
-    base=BASE | ERROR | FRICTION,
-    moved=MOVED,
-    without_effect=ELASTIC,
-    tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},
-    baked=({"traction": "real_area", "shear_traction": 5e5, "max_torque": 10.0, "d": 0.9},),
-    beyond=(Beyond("phi2", 0.01, "tau", "K_WTS", "phi_rel = 0.01 rad"),),
-    refused=(
-        Refused("surface.D", 2.0, "2", "(2, 3)"),
-        Refused("surface.D", 3.5, "3.5", "(2, 3)"),
-        Refused("surface.gamma", 1.0, "1", "(1, inf)"),
-        Refused("eccentricity", -1e-5, "-1e-05 m", "[0, 0.001)"),
-        Refused("radial_deformation", 3e-3, "0.003 m", "(0, 0.002)"),
-        Refused("d", math.inf, "inf N.m.s/rad", "[0, inf)"),
-        Refused("ratio", 0.0, "0", "(0, inf)"),
+    description=Description(
+        inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
+        results={
+            "tau1": "N.m",
+            "tau2": "N.m",
+            "phi_rel": "rad",
+            "tau": "N.m",
+            **STIFFNESS,
+            "phi_error": "rad",
+            "tau_friction": "N.m",
+        },
+        parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
+        calibration=CALIBRATED,
+        shown={"phi2": "deg"},
+        flanges={"flange1": "phi1 w1 tau1", "flange2": "phi2 w2 tau2"},
+        domain="Rotational",
+        linear=True,
+        others={"ratio": 50.0, "d": 0.25},
     ),
-    unfit=(({"rated_pressure": 1e6}, ("rated_pressure = 1e+06 Pa", "zero_torque_pressure")),),
-    forbidden=(
-        {"rated_pressure": 1e6},
-        {"flexspline.sigma_y": 3e8},
-        {"radial_deformation": 1e-4},
-        {"surface.G": 2e-307},
-        {"torque_smoothing": 5e-302},
+    numbers=Numbers(
+        outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5)},
+        span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5)},
+        state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02},
+        good={"phi2": 6e-4},
     ),
-    calibration=CALIBRATED,
-    shown={"phi2": "deg"},
-    flanges={"flange1": "phi1 w1 tau1", "flange2": "phi2 w2 tau2"},
-    domain="Rotational",
-    linear=True,
-    others={"ratio": 50.0, "d": 0.25},
+    tuning=Tuning(
+        base=BASE | ERROR | FRICTION,
+        moved=MOVED,
+        without_effect=ELASTIC,
+        tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},
+        baked=({"traction": "real_area", "shear_traction": 5e5, "max_torque": 10.0, "d": 0.9},),
+    ),
+    refusals=Refusals(
+        beyond=(Beyond("phi2", 0.01, "tau", "K_WTS", "phi_rel = 0.01 rad"),),
+        refused=(
+            Refused("surface.D", 2.0, "2", "(2, 3)"),
+            Refused("surface.D", 3.5, "3.5", "(2, 3)"),
+            Refused("surface.gamma", 1.0, "1", "(1, inf)"),
+            Refused("eccentricity", -1e-5, "-1e-05 m", "[0, 0.001)"),
+            Refused("radial_deformation", 3e-3, "0.003 m", "(0, 0.002)"),
+            Refused("d", math.inf, "inf N.m.s/rad", "[0, inf)"),
+            Refused("ratio", 0.0, "0", "(0, inf)"),
+        ),
+        unfit=(({"rated_pressure": 1e6}, ("rated_pressure = 1e+06 Pa", "zero_torque_pressure")),),
+        forbidden=(
+            {"rated_pressure": 1e6},
+            {"flexspline.sigma_y": 3e8},
+            {"radial_deformation": 1e-4},
+            {"surface.G": 2e-307},
+            {"torque_smoothing": 5e-302},
+        ),
+    ),
 )
 COMPLIANCE = Case(
     name="HarmonicDriveCompliance",
-    outputs=lambda spring, v: spring.windup(v["tau"]),
-    inputs={"tau": "N.m"},
-    results={"phi_rel": "rad", **STIFFNESS},
-    parameters=PARAMETERS,
-    ranges={"tau": (-25, 25)},
-    span={"tau": (-30, 30)},
-    state={"tau": 3.0},
-    good={"tau": 3.0},
-    base=BASE,
-    moved=MOVED,
-    without_effect=ELASTIC | {"ratio", "d"},  # the wave generator is locked and there is no speed
-    tuned={"surface.D": 2.55, "K_FTS0": 2e4, "radial_deformation": 1.9e-4},
-    baked=({"max_torque": 20.0, "surface.D": 2.55},),
-    beyond=(Beyond("tau", 100.0, "phi_rel", "K_WTS", "tau = 100 N.m", inverse=True),),
-    refused=(
-        Refused("K_FTS0", math.nan, "nan N.m/rad", "(0, inf)"),
-        Refused("flexspline.sigma_y", -835e6, "-835000000 Pa", "(0, inf)"),
-        Refused("bearing.nu", 0.6, "0.6", "(-1, 0.5]"),
+    description=Description(
+        inputs={"tau": "N.m"},
+        results={"phi_rel": "rad", **STIFFNESS},
+        parameters=PARAMETERS,
+        calibration=CALIBRATED,
+        shown={"phi_rel": "arcmin"},
+        steps=500,
+        flanges={"flange": "phi_rel tau"},
+        domain="Rotational",
     ),
-    unfit=(({"eccentricity": 9e-4}, ("eccentricity = 0.0009 m is outside [0, ",)),),
-    forbidden=(
-        {"eccentricity": 9e-4},
-        {"bearing.sigma_y": 3e8},
-        {"surface.G": 1e-100},  # K_FTS0 and what the contact pair adds
+    numbers=Numbers(
+        outputs=lambda spring, v: spring.windup(v["tau"]),
+        ranges={"tau": (-25, 25)},
+        span={"tau": (-30, 30)},
+        state={"tau": 3.0},
+        good={"tau": 3.0},
     ),
-    absurd=(("K_FTS0", 1e-300),),
-    calibration=CALIBRATED,
-    shown={"phi_rel": "arcmin"},
-    steps=500,
-    flanges={"flange": "phi_rel tau"},
-    domain="Rotational",
+    tuning=Tuning(
+        base=BASE,
+        moved=MOVED,
+        without_effect=ELASTIC | {"ratio", "d"},  # the wave generator is locked and there is no speed
+        tuned={"surface.D": 2.55, "K_FTS0": 2e4, "radial_deformation": 1.9e-4},
+        baked=({"max_torque": 20.0, "surface.D": 2.55},),
+    ),
+    refusals=Refusals(
+        beyond=(Beyond("tau", 100.0, "phi_rel", "K_WTS", "tau = 100 N.m", inverse=True),),
+        refused=(
+            Refused("K_FTS0", math.nan, "nan N.m/rad", "(0, inf)"),
+            Refused("flexspline.sigma_y", -835e6, "-835000000 Pa", "(0, inf)"),
+            Refused("bearing.nu", 0.6, "0.6", "(-1, 0.5]"),
+        ),
+        unfit=(({"eccentricity": 9e-4}, ("eccentricity = 0.0009 m is outside [0, ",)),),
+        forbidden=(
+            {"eccentricity": 9e-4},
+            {"bearing.sigma_y": 3e8},
+            {"surface.G": 1e-100},  # K_FTS0 and what the contact pair adds
+        ),
+        absurd=(("K_FTS0", 1e-300),),
+    ),
 )
 JOINT = Joint(
     cases=(SPRING, COMPLIANCE),

@@ -101,7 +101,7 @@ def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one:
     """On the lines and within a corner (where the wind-up is that of T1)."""
     values = file_of(one).values
     for phi in (1e-4, 3.92e-4, 6e-4, 2e-3):
-        state = CASES[SPRING].state | {"phi1": 0.0, "phi2": phi}
+        state = CASES[SPRING].numbers.state | {"phi1": 0.0, "phi2": phi}
         instance, expected = host(SPRING, "fmi3", built / one).start(state), law(SPRING, values)
         names = {n: v.valueReference for n, v in instance.variables.items()}
         outputs = ("tau", "K_WTS", "K_TS", "tau1")
