@@ -6,7 +6,7 @@ from typing import Any
 
 from jointfmu.joints.kind import Kind
 
-from .parts import part
+from .joint_parts import part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,8 +16,8 @@ from jointfmu.parameters import check_writable, dump, load, write_text
 
 from ..drawing.reading import number
 from ..fitting.procedure import Option, Procedure
+from ..joint_parts import part
 from ..judgement import judge_file
-from ..parts import part
 from .telling import tell
 
 if TYPE_CHECKING:

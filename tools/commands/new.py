@@ -12,8 +12,8 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import check_writable, dump, write_text
 
 from ..drawing.part import Drawing, Option
+from ..joint_parts import part
 from ..judgement import judge_file
-from ..parts import part
 from .telling import tell
 
 if TYPE_CHECKING:
