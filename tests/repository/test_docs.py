@@ -18,8 +18,8 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 from jointfmu_fmu_src.joint_parts import Parts
-from jointfmu_tools.commands.parser import parser
 from jointfmu_tools.joint_parts import TOOLS
+from jointfmu_tools.parser import parser
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]

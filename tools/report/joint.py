@@ -18,7 +18,7 @@ from jointfmu.quantity.units import factor
 from jointfmu.run.loops import Loops
 
 from ..joint_parts import part
-from ..judgement import judge_file
+from ..pressing import judge_file
 from ..shown import shown_unit, spelled
 from .beside import Beside
 from .course import Course, kinds_of
