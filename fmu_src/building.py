@@ -12,16 +12,12 @@ from .native.build import build_fmi2, build_fmi3
 from .python.build import build as build_python
 from .xml_parts import VARIABILITIES
 
-FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str, str, bool], Path]] = {
-    "fmi2": lambda name, parameters, out, variability, alias, _: build_fmi2(
-        name, parameters, out, variability, alias
-    ),
+FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str, str], Path]] = {
+    "fmi2": build_fmi2,
     "fmi3": build_fmi3,
     # its parameters are fixed in any case
-    "python": lambda name, parameters, out, _, alias, __: build_python(name, parameters, out, alias),
+    "python": lambda name, parameters, out, _, alias: build_python(name, parameters, out, alias),
 }
-WASM = "fmi3"
-"""The flavour that may have a WebAssembly component."""
 
 
 def build(
@@ -31,23 +27,19 @@ def build(
     out: Path,
     variability: str = VARIABILITIES[0],
     alias: str | None = None,
-    wasm: bool = False,
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
 
     variability : of the parameters of native FMUs, one of VARIABILITIES
     alias       : the name that one FMU has instead of its own
-    wasm        : whether FMUs of FMI 3.0 have a WebAssembly component after FMI-LS-WASM as well
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
-    no identifier or for several FMUs, a component without FMI 3.0, or a folder that cannot be written,
+    no identifier or for several FMUs, or a folder that cannot be written,
     before anything is built where that can be known.
     """
     for noun, given, allowed in (("FMU", names, list(MODELS)), ("flavour", flavours, list(FLAVOURS))):
         if unknown := [name for name in given if name not in allowed]:
             raise ValueError(f"unknown {noun} {unknown[0]!r}, allowed are {', '.join(allowed)}")
-    if wasm and WASM not in flavours:
-        raise ValueError(f"WebAssembly goes into the flavour {WASM}, got {', '.join(flavours)}")
     if not names:
         joint = parameters.joint if parameters else None
         names = [name for name, model in MODELS.items() if joint in (None, model.joint)]
@@ -62,5 +54,5 @@ def build(
     built = []
     for flavour, name in track(jobs, "build", len(jobs)):
         file = parameters or default(MODELS[name].joint)
-        built.append(FLAVOURS[flavour](name, file, out / flavour, variability, alias or "", wasm))
+        built.append(FLAVOURS[flavour](name, file, out / flavour, variability, alias or ""))
     return built

@@ -14,11 +14,11 @@ from jointfmu.quantity import flat_fields
 from ..partners import PARTNERS
 from ..partners import parameters as partner_parameters
 from .data import split
-from .kept import module_of, part_of, shipped_module, shipped_name, squeezed, written
+from .kept import part_of, shipped_name, written
 
 
 def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
-    """Write the parts of some FMUs, or of all, into a folder, whose other files go; joints' with modules.
+    """Write the parts of some FMUs, or of all, into a folder, whose other files go.
 
     Raises what `kept.part_of` raises, and ValueError for an unknown name.
     """
@@ -33,9 +33,6 @@ def compile_ahead(names: Sequence[str], out: Path) -> list[Path]:
         part = part_of(model, parameters, given)
         made.append(out / shipped_name(model, given))
         made[-1].write_bytes(written(part))
-        if model.name in MODELS:
-            made.append(out / shipped_module(model, given))
-            made[-1].write_bytes(squeezed(module_of(model, given, part.sources)))
     for old in set(out.iterdir()) - set(made):
         old.unlink()
     return made

@@ -14,10 +14,9 @@ from ..proof import proof
 from ..xml_parts import VARIABILITIES
 from .binary import finished
 from .compiler import exported, file_name, universal
-from .component import members as component_members
 from .data import data_of, placeholder, split
 from .description import build_description, fmi2_xml, fmi3_xml
-from .kept import module_of, part_of
+from .kept import part_of
 from .page import documentation
 from .terminals import terminals_and_icons
 
@@ -27,11 +26,9 @@ def build_fmi2(name: str, parameters: ParameterFile, out: Path, variability: str
     return build(name, parameters, out, "2", variability, alias)
 
 
-def build_fmi3(
-    name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "", wasm: bool = False
-) -> Path:
+def build_fmi3(name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "") -> Path:
     """Write `out/name.fmu` of FMI 3.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "3", variability, alias, wasm)
+    return build(name, parameters, out, "3", variability, alias)
 
 
 def build(
@@ -41,13 +38,11 @@ def build(
     version: str,
     variability: str = VARIABILITIES[0],
     alias: str = "",
-    wasm: bool = False,
 ) -> Path:
     """Write `out/name.fmu`; an existing file is replaced in one go. Equal content gives an equal file.
 
     variability : of the parameters, one of VARIABILITIES
     alias       : the name that the FMU has instead of its own
-    wasm        : whether an FMU of FMI 3.0 has a component after FMI-LS-WASM as well
 
     Raises ValueError if the parameters are of another joint or a folder cannot be written, ImportError
     if a package is missing, RuntimeError if the compiler fails.
@@ -55,13 +50,11 @@ def build(
     model = replace((MODELS | PARTNERS)[name].of(parameters.joint, parameters.values), alias=alias)
     target = out / f"{model.title}.fmu"
     with workshop(target) as work:
-        pack(_members(model, parameters, version, variability, wasm), work / target.name)
+        pack(_members(model, parameters, version, variability), work / target.name)
     return target
 
 
-def _members(
-    model: Model, parameters: ParameterFile, version: str, variability: str, wasm: bool
-) -> dict[str, bytes]:
+def _members(model: Model, parameters: ParameterFile, version: str, variability: str) -> dict[str, bytes]:
     """{path: content} of an FMU."""
     given = split(model, parameters)
     part = part_of(model, parameters, given)
@@ -73,7 +66,6 @@ def _members(
         platform: finished(library, before, data, model.title)
         for platform, library in part.libraries[version].items()
     }
-    module = module_of(model, given, part.sources) if wasm else b""
     icons = terminals_and_icons(model)
     if version == "2":
         top = {
@@ -94,7 +86,6 @@ def _members(
         | _below("documentation", documentation(model, parameters))
         | _below("terminalsAndIcons", icons)
         | proof(model, parameters)
-        | (component_members(model.title, finished(module, before, data, model.title)) if wasm else {})
     )
 
 

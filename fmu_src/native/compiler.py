@@ -75,21 +75,13 @@ def exported(files: Iterable[str], version: str) -> list[str]:
     return [name for name in files if name.endswith(".c") and name != other]
 
 
-def webassembly(
-    name: str, sources: Mapping[str, str], units: Sequence[str], defined: Sequence[str] = ()
-) -> bytes:
-    """A WebAssembly module of the .c files `units`, a reactor; the rest as `libraries`.
-
-    defined : macros, NAME=TEXT
-
-    Raises as `libraries`.
-    """
+def webassembly(name: str, sources: Mapping[str, str], units: Sequence[str]) -> bytes:
+    """A WebAssembly module of the .c files `units`, a reactor; the rest and what is raised as `libraries`."""
     import_module("ziglang")
     folder = _folder({**_headers(), **sources})
     with tempfile.TemporaryDirectory() as out:
         file = Path(out) / f"{name}.wasm"
-        macros = [f"-D{macro}" for macro in defined]
-        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *macros, *units, "-o", str(file))
+        _run(f"{name} for WebAssembly", folder, "cc", *_WEB, *units, "-o", str(file))
         return file.read_bytes()
 
 

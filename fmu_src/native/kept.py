@@ -1,7 +1,6 @@
 """Compiled parts of FMUs, which all parameter files of one structure share: shipped, kept or compiled now.
 
-A part is found by what went into it: the structure, and the content of every source that it is made of. The
-module of a WebAssembly component lies beside it, in a file of its own, as few ask for one.
+A part is found by what went into it: the structure, and the content of every source that it is made of.
 Wheels carry parts beside this file; what is compiled here is kept in the user's cache.
 """
 
@@ -11,14 +10,14 @@ import os
 import sys
 import tarfile
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
@@ -27,7 +26,6 @@ from jointfmu.parameters import ParameterFile
 from ..folders import own_folder
 from ..joint_parts.data import Split
 from .compiler import exported, libraries
-from .component import module
 from .data import PLACEHOLDER, placeholder
 from .interrupt import interrupt_after
 
@@ -38,10 +36,9 @@ CACHE = "JOINTFMU_CACHE"
 """Environment variable with the folder of the parts that are kept."""
 MOST_KEPT = 200
 """Files that are kept [1]; older ones go."""
-_SUFFIX, _MODULE = ".tar.xz", ".wasm.xz"
+_SUFFIX = ".tar.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
-Kept = TypeVar("Kept")
 
 
 class Part(NamedTuple):
@@ -61,36 +58,11 @@ def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
     Raises ImportError if it has to be compiled and a package is missing, ValueError and RuntimeError as
     `compiler.libraries`.
     """
-    return _kept(
-        _places(shipped_name(model, given)), read, lambda: compiled(model, parameters, given), written
-    )
-
-
-def module_of(model: Model, given: Split, sources: Mapping[str, str]) -> bytes:
-    """The module of an FMU's WebAssembly component, with the placeholder of its data.
-
-    sources : of its part
-
-    Raises as `part_of`.
-    """
-
-    def made() -> bytes:
-        return module(model.name, {**sources, "data.c": placeholder(model, given).source()})
-
-    return _kept(_places(shipped_module(model, given)), lzma.decompress, made, squeezed)
-
-
-def _kept(
-    places: tuple[Path, Path],
-    read: Callable[[bytes], Kept],
-    make: Callable[[], Kept],
-    written: Callable[[Kept], bytes],
-) -> Kept:
-    """What lies in a file, or is made now and kept in the last one."""
+    places = _places(shipped_name(model, given))
     for file in places:
         with suppress(OSError, lzma.LZMAError, tarfile.TarError, ValueError):
             return read(file.read_bytes())
-    made = make()
+    made = compiled(model, parameters, given)
     with suppress(OSError):  # nothing is lost but time
         _keep(places[-1], written(made))
     return made
@@ -112,11 +84,6 @@ def shipped_name(model: Model, given: Split) -> str:
     law = model.parameters
     text = f"{model.name} {law.__module__}.{law.__qualname__} {given.structure} {_sources_of(model)}"
     return f"{model.name}-{sha256(text.encode()).hexdigest()[:32]}{_SUFFIX}"
-
-
-def shipped_module(model: Model, given: Split) -> str:
-    """The same of a module."""
-    return shipped_name(model, given).removesuffix(_SUFFIX) + _MODULE
 
 
 def _places(name: str) -> tuple[Path, Path]:
@@ -198,11 +165,6 @@ def read(content: bytes) -> Part:
     if not sources or not all(built.values()):
         raise ValueError("no part")
     return Part(sources, built)
-
-
-def squeezed(made: bytes) -> bytes:
-    """A module as a file."""
-    return lzma.compress(made, preset=9)
 
 
 def _keep(file: Path, content: bytes) -> None:

@@ -11,7 +11,6 @@ from shutil import copytree, ignore_patterns
 import pytest
 from conftest import Fmu, made_once
 from joint_cases import CASES, STATE, law, random_inputs
-from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native.ahead import compile_ahead
 from natives import VERSIONS, close
 from packaging.requirements import Requirement
@@ -129,16 +128,6 @@ def test_the_bytes_are_those_of_a_build_here(clean: Path, tmp_path: Path, native
     for version in VERSIONS:
         path = f"{version}/{NAME}.fmu"
         assert (tmp_path / "out" / path).read_bytes() == (native / path).read_bytes()
-
-
-def test_the_wheel_alone_builds_the_component(clean: Path, tmp_path: Path) -> None:
-    done = run(
-        clean, tmp_path, "-m", "jointfmu", "build", NAME, "--flavour", "fmi3", "--wasm", "--out", "out"
-    )
-    assert done.returncode == 0, done.stderr
-    (here,) = build([NAME], ["fmi3"], None, tmp_path / "here", wasm=True)
-    assert f"binaries/wasm32-wasip2/{NAME}.wasm" in members(here)
-    assert (tmp_path / "out" / "fmi3" / here.name).read_bytes() == here.read_bytes()
 
 
 def test_what_the_wheel_does_not_carry_asks_for_the_compiler(clean: Path, tmp_path: Path) -> None:

@@ -40,11 +40,6 @@ def add(commands: Any) -> None:
         "(fixed, which OpenModelica imports without warnings); fmi2 and fmi3",
     )
     make.add_argument(
-        "--wasm",
-        action="store_true",
-        help="put a WebAssembly component beside the binaries of fmi3, after the draft of FMI-LS-WASM",
-    )
-    make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
     make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
@@ -53,17 +48,13 @@ def add(commands: Any) -> None:
 def _build(args: argparse.Namespace) -> int:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
-    if args.wasm and args.systems:
-        raise ValueError("--wasm is for the FMUs of joints; expected no --systems beside it")
     file = load(args.params) if args.params else None
     try:
         from jointfmu_fmu_src import building
 
         built = []
         if args.names or not args.systems:
-            built += building.build(
-                args.names, args.flavour, file, args.out, args.parameters, args.name, args.wasm
-            )
+            built += building.build(args.names, args.flavour, file, args.out, args.parameters, args.name)
         if args.systems:
             from ..systems import ssp
 
