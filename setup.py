@@ -2,7 +2,12 @@
 
 from setuptools import find_packages, setup
 
-ROOTS = {"jointfmu": "core/jointfmu", "jointfmu_fmu_src": "fmu_src", "jointfmu_models": "models"}
+ROOTS = {
+    "jointfmu": "core/jointfmu",
+    "jointfmu_fmu_src": "fmu_src",
+    "jointfmu_tools": "tools",
+    "jointfmu_models": "models",
+}
 """{import name: folder}."""
 
 setup(

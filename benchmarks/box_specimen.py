@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from jointfmu import plots
 from jointfmu.parameters import default
-from jointfmu.reference import points
+from jointfmu.published.reference import points
 
 Array = NDArray[np.float64]
 STATES = [(9e3, 0.0), (15e3, 0.0), (15e3, 4500.0)]

@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from jointfmu_tools.fem import assembly_modes
+from jointfmu_tools.fem.assembly import load
+from jointfmu_tools.fem.assembly_modes import REFINEMENT
+from jointfmu_tools.fem.bolts import BoltGrid
+from jointfmu_tools.fem.elasticity import Array
+from jointfmu_tools.fem.geometry import Assembly, BoxSection
+from jointfmu_tools.joints.bolted_joint.frequencies import FREQUENCIES
 from scipy.optimize import least_squares
 
-from jointfmu.fem import assembly_modes
-from jointfmu.fem.assembly import load
-from jointfmu.fem.assembly_modes import REFINEMENT
-from jointfmu.fem.bolts import BoltGrid
-from jointfmu.fem.elasticity import Array
-from jointfmu.fem.geometry import Assembly, BoxSection
-from jointfmu.joints.bolted_joint.frequencies import FREQUENCIES
 from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
 
 LENGTHS = ("length", "height", "wall", "flange_thickness", "overhang")

@@ -14,14 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from box_specimen import STATES, measured
+from jointfmu_tools.fem.contact import Interface, trace
+from jointfmu_tools.fem.elasticity import ElasticBody
+from jointfmu_tools.fem.modes import Modes, modes
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from skfem import MeshHex, MeshQuad
 
-from jointfmu.fem.contact import Interface, trace
-from jointfmu.fem.elasticity import ElasticBody
-from jointfmu.fem.modes import Modes, modes
-from jointfmu.interface import stiffness_curve
+from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
 from jointfmu.parameters import default
 from jointfmu.progress import track

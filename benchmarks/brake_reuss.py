@@ -18,7 +18,7 @@ from validity_pictures import IMAGES
 from validity_tables import heading, row
 
 from jointfmu import plots
-from jointfmu.curve import approach_curve
+from jointfmu.mechanics.curve import approach_curve
 
 FRICTION = 0.15
 """Of dry machined metal, what `jointfmu new` takes where nothing is stated (VDI 2230: 0.1 to 0.3) [1]."""

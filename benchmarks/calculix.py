@@ -18,11 +18,11 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+from jointfmu_tools import cli
+from jointfmu_tools.export.placing import AXES
 
-from jointfmu import cli
-from jointfmu.curve import approach_curve
-from jointfmu.export.placing import AXES
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.curve import approach_curve
 from jointfmu.parameters import default
 
 DECKS = Path(__file__).resolve().parent.parent / "models/calculix"

@@ -9,15 +9,15 @@ import csv
 import math
 from importlib.resources import files
 
-from jointfmu_fmu_src.joints.harmonic_drive.efficiency import parameters, printed_drives, spring_bench
+from jointfmu_tools.catalogue import Item
+from jointfmu_tools.joints.harmonic_drive import catalogue
+from jointfmu_tools.joints.harmonic_drive.efficiency import parameters, printed_drives, spring_bench
+from jointfmu_tools.joints.harmonic_drive.fit.row import Row
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.quoted import hysteresis_loss, lost_motion
+from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.catalogue import Item
-from jointfmu.joints.harmonic_drive import catalogue
-from jointfmu.joints.harmonic_drive.fit.row import Row
-from jointfmu.joints.harmonic_drive.new import NEW
-from jointfmu.joints.harmonic_drive.quoted import hysteresis_loss, lost_motion
-from jointfmu.joints.harmonic_drive.quoted_friction import SPEED
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 

@@ -3,9 +3,8 @@
 from functools import cache
 
 import numpy as np
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 from memory_measurements import DECAY_NOISE, decay, file, loops, save
-
-from jointfmu.joints.harmonic_drive.fit import hysteresis
 
 ARCMIN = np.pi / 10800.0
 INERTIA = 0.2

@@ -13,14 +13,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from jointfmu_tools import cli
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields.joint_parameters import pressure_shape
+from jointfmu_tools.fields.reduction import reduce
 
-from jointfmu import cli
-from jointfmu.fields import csvfile
-from jointfmu.fields.contact import ContactField
-from jointfmu.fields.joint_parameters import pressure_shape
-from jointfmu.fields.reduction import reduce
-from jointfmu.footprint import bolts
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
+from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
 
 PRELOAD = 9e3

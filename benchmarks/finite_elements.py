@@ -17,18 +17,18 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+from jointfmu_tools.fem import convergence
+from jointfmu_tools.fem.assembly import load
+from jointfmu_tools.fem.bolted_contact import BoltedContact, JointSolution
+from jointfmu_tools.fem.contact import trace
+from jointfmu_tools.fem.geometry import Assembly, BoxSection
+from jointfmu_tools.fem.joint_file import TILT
+from jointfmu_tools.fem.sparse import Cholesky
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from jointfmu.curve import Curve, approach_curve
-from jointfmu.fem import convergence
-from jointfmu.fem.assembly import load
-from jointfmu.fem.bolted_contact import BoltedContact, JointSolution
-from jointfmu.fem.contact import trace
-from jointfmu.fem.geometry import Assembly, BoxSection
-from jointfmu.fem.joint_file import TILT
-from jointfmu.fem.sparse import Cholesky
+from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import default
 
 PRELOAD = 9e3

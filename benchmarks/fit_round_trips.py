@@ -12,10 +12,10 @@ from pathlib import Path
 import drive_measurements
 import memory_measurements
 import numpy as np
+from jointfmu_tools.joints.bolted_joint.fit import preload
+from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu.joints.bolted_joint.fit import preload
-from jointfmu.joints.harmonic_drive.fit import torque_angle
-from jointfmu.joints.harmonic_drive.fit.drive import windup
 from jointfmu.parameters import default
 from jointfmu.progress import track
 

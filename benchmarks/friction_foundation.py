@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from jointfmu.footprint.bolts import pressure_shape
 from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.parameters import default
 
 Array = NDArray[np.float64]

@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointfmu.curve import Curve
-from jointfmu.sliders import Foundation
+from jointfmu.mechanics.curve import Curve
+from jointfmu.mechanics.sliders import Foundation
 
 Array = NDArray[np.float64]
 

@@ -6,13 +6,13 @@ from importlib.resources import files
 
 import numpy as np
 from boundary_element import bonded, press, refined, slope
+from jointfmu_tools.surfaces.synthesis import periodic
 
-from jointfmu.asperity import yu2022
-from jointfmu.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.contact.fractal import areal_roughness
+from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.contact.laws import yu2022
+from jointfmu.contact.surface import contact_modulus
 from jointfmu.parameters import default
-from jointfmu.surface import contact_modulus
-from jointfmu.topography.fractal import areal_roughness
-from jointfmu.topography.synthesis import periodic
 
 SEEDS = range(4)
 POINTS, FINEST = 256, 8

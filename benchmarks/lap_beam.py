@@ -8,9 +8,8 @@ Half 1 reaches from the left end to the right end of the lap, below the contact;
 from dataclasses import dataclass
 
 import numpy as np
+from jointfmu_tools.fem.elasticity import ElasticBody
 from skfem import MeshHex, MeshQuad
-
-from jointfmu.fem.elasticity import ElasticBody
 
 HEADS = "head{}"
 """Name of the facets of bolt i on which its shank pulls: the floor of a disc, above the hole."""

@@ -12,7 +12,7 @@ from friction_sliders import at_levels, levels
 from lap_beam_reduction import Reduced
 from scipy.linalg import lu_factor, lu_solve
 
-from jointfmu.sliders import Foundation
+from jointfmu.mechanics.sliders import Foundation
 
 WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.2
 """Pressures [Pa] between which the heights of the sliders lie close; lowest level, distance of levels [1]."""

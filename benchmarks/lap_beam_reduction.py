@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import lap_beam
 import numpy as np
 import scipy.sparse as sp
+from jointfmu_tools.fem.contact import ContactModel, Interface, trace
+from jointfmu_tools.fem.sparse import Cholesky
 from lap_beam_plan import plan
 from lap_beam_shanks import shanks
 from scipy.sparse.linalg import LinearOperator, eigsh
-
-from jointfmu.fem.contact import ContactModel, Interface, trace
-from jointfmu.fem.sparse import Cholesky
 
 SHIFT = 100.0
 """Frequency [Hz] below all modes with strain, at whose negative square the eigensolver looks."""

@@ -7,9 +7,9 @@ first harmonic, as the fit takes them.
 from functools import cache
 
 import numpy as np
+from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.joints.bolted_joint.fit import loop
 
-from jointfmu.fitting.oscillator import Oscillator
-from jointfmu.joints.bolted_joint.fit import loop
 from jointfmu.parameters import default
 
 PRELOAD, MASS = 9e3, 50.0

@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 from fmpy.fmi3 import FMU3Model
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.mujoco import plugin
+from jointfmu_tools.mujoco import plugin
 
 NAME = "HarmonicDriveSpring"
 JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200

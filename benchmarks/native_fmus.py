@@ -25,9 +25,9 @@ import numpy as np
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import compiler, data, generate
 
-from jointfmu.host import Fmi2
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
+from jointfmu.run.host import Fmi2
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"
@@ -45,7 +45,7 @@ PASS_THROUGH = {"PassThrough": (2, 2), WIDE: (4, 9)}
 LOOPS = {f"{name}+loop": name for name in ("HarmonicDriveSpring", "HarmonicDriveCompliance")}
 """The drive with hysteresis: {in the table: FMU}."""
 LOOP = {"hysteresis_loss": 3e-4}
-RANGES = {name: dict(case.span) for name, case in CASES.items()} | {
+RANGES = {name: dict(case.numbers.span) for name, case in CASES.items()} | {
     name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
 }
 RANGES |= {label: RANGES[name] for label, name in LOOPS.items()}

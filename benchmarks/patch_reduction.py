@@ -12,16 +12,16 @@ from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from jointfmu.curve import Curve
-from jointfmu.footprint.bolts import pressure_shape
-from jointfmu.footprint.friction import friction_patches
-from jointfmu.footprint.patches import few_points
-from jointfmu.footprint.plate import BoltedPlate
-from jointfmu.footprint.shape import NodalField, PressureShape
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.curve import Curve
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import NodalField, PressureShape
+from jointfmu.mechanics.sliders import Moved
 from jointfmu.parameters import default
-from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 
@@ -75,6 +75,8 @@ MOTIONS = {
 """Columns of the table of the friction."""
 PLATES = 12
 """Random plates."""
+POLES = 400
+"""Turns in gross slip about poles anywhere within the contact's reach."""
 
 
 def ranges(moment: float) -> dict[str, Range]:
@@ -219,6 +221,20 @@ def friction(
     return np.array(forces), np.array(losses)
 
 
+def pole_deviations(shape: PressureShape, patches: PressureShape) -> Array:
+    """(2) deviation of the force over the friction [1] in gross slip about POLES poles: of 95 %, largest."""
+    reach = np.max(np.abs(shape.position), axis=0)
+    poles = reach * np.random.default_rng(1).uniform(-1.0, 1.0, (POLES, 2))
+
+    def force(points: PressureShape) -> Array:
+        arm = points.position - poles[:, None]
+        way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1, keepdims=True)
+        return np.asarray(np.einsum("n,pni->pi", points.share * points.equal, way))
+
+    off = np.linalg.norm(force(shape) - force(patches), axis=1)
+    return np.quantile(off, [0.95, 1.0])
+
+
 def mean_pressure(spring: BoltedJointSpring) -> float:
     """Of the tightened joint [Pa]."""
     return float(PRELOAD * spring.joint.n_bolts / spring.joint.A_0)
@@ -245,11 +261,14 @@ def print_normal(spring: BoltedJointSpring) -> None:
 
 def print_friction(spring: BoltedJointSpring) -> None:
     """Deviation of friction, over gross slip, and of loops from all nodes with fine heights."""
-    print("| contact | patches | " + " | ".join(MOTIONS) + " |\n" + "|---" * (2 + len(MOTIONS)) + "|")
+    heads = ["contact", "patches", *MOTIONS, "any pole: 95 %, all"]
+    print("| " + " | ".join(heads) + " |\n" + "|---" * len(heads) + "|")
     for name, shapes in sheared():
         found = [friction_deviations(spring, shape) for shape in shapes]
         for count, worst in zip(PATCHES, np.max(found, axis=0), strict=True):
+            poles = [pole_deviations(shape, friction_patches(shape, count)) for shape in shapes]
             cells = [f"{force:.1e}, {area:.1%}" for force, area in worst]
+            cells.append("{:.1%}, {:.1%}".format(*np.max(poles, axis=0)))
             print(f"| {name} | {count} | " + " | ".join(cells) + " |", flush=True)
 
 

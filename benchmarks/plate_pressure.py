@@ -12,17 +12,17 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
+from jointfmu_tools import cli
+from jointfmu_tools.drawing.tables import threads
+from jointfmu_tools.fem.bolted_contact import BoltedContact
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fields.joint_parameters import pressure_shape
 
-from jointfmu import cli
-from jointfmu.curve import approach_curve
-from jointfmu.drawing.tables import threads
-from jointfmu.fem.bolted_contact import BoltedContact
-from jointfmu.fem.bolts import BoltList
-from jointfmu.fem.geometry import Assembly, Plate
-from jointfmu.fields.joint_parameters import pressure_shape
-from jointfmu.footprint import plate
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.footprint import plate
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile, load
 
 PLATES = {

@@ -22,7 +22,7 @@ from jointfmu import plots
 from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.progress import track
-from jointfmu.reference import points
+from jointfmu.published.reference import points
 
 DRIVE = default("harmonic_drive").values
 HU = {point.id: float(point.value) for point in points("hu2023")}

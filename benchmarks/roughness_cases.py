@@ -12,9 +12,9 @@ import interface_laws as compare
 import numpy as np
 from boundary_element import press, slope
 
-from jointfmu.asperity.roughness import Roughness
-from jointfmu.interface import at_pressure
-from jointfmu.surface import Elastic, contact_modulus
+from jointfmu.contact.interface import at_pressure
+from jointfmu.contact.laws.roughness import Roughness
+from jointfmu.contact.surface import Elastic, contact_modulus
 
 DEVELOPMENT = (*range(8), *range(100, 106), *range(200, 212))
 """Seeds that the constants of the law were chosen with; the proof uses none of them."""

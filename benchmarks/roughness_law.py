@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from validity_laws import CHOICES
 from validity_tables import heading, row, spread
 
-from jointfmu.interface import stiffness_curve
+from jointfmu.contact.interface import stiffness_curve
 from jointfmu.progress import track
 
 WAVES = (5e-3, 40e-3)

@@ -4,10 +4,11 @@ Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surf
 """
 
 import numpy as np
+from jointfmu_tools.surfaces import roughness
+from jointfmu_tools.surfaces.form import without_form
 from surface_round_trip import FRESH, gaussian
 
-from jointfmu.topography import fractal, roughness
-from jointfmu.topography.form import without_form
+from jointfmu.contact import fractal
 
 SHARES = (1.0, 0.5, 0.25)
 """Longest wave over the side of the scan."""
@@ -36,7 +37,7 @@ def main(points=128, draws=100):
         mean, scatter = found.mean(axis=0), found.std(axis=0)
         cells = [f"{m:.2f} ± {s:.2f}" for m, s in zip(mean[0], scatter[0], strict=True)]
         print(f"| {D} | " + " | ".join([*cells, f"{mean[1, 0]:.2f} ± {scatter[1, 0]:.2f}"]) + " |")
-    h, own = (roughness.height(1.42, 1.21e-8, 1e-3, gamma=gamma) for gamma in (None, 1.5))
+    h, own = (fractal.height(1.42, 1.21e-8, 1e-3, gamma=gamma) for gamma in (None, 1.5))
     print(f"specimen of Zhao 2018, waves up to 1 mm: h = {h:.3g} m, of a function with that wave {own:.3g} m")
 
 

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import slip_theory as theory
+from jointfmu_tools.surfaces import synthesis
 from scipy.interpolate import PchipInterpolator
 from slip_solver import Contact, lone, periodic
-
-from jointfmu.topography import synthesis
 
 FORCES = (0.1, 0.2, 0.3, 0.5, 0.7, 0.9)
 """Forces over the friction limit [1] at which displacements are compared."""

@@ -8,7 +8,7 @@ import numpy as np
 from friction_sliders import at_levels
 from scipy.interpolate import PchipInterpolator
 
-from jointfmu.curve import Curve
+from jointfmu.mechanics.curve import Curve
 
 STATIONS = np.polynomial.legendre.leggauss(6)
 """On each branch of a loop, and their weights."""

@@ -8,12 +8,12 @@ them), their ratio, and the largest relative difference of both over those sampl
 from time import process_time
 
 import numpy as np
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default
 from jointfmu.quantity import build
-from jointfmu.uncertainty import propagate
-from jointfmu.uncertainty.problem import pose
 
 SAMPLES, POINTS, OBVIOUS = 131_072, 200, 8
 STUDIES = {

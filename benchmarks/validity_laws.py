@@ -7,10 +7,10 @@ import numpy as np
 from validity_pictures import GAMMA
 from validity_tables import heading, row
 
-from jointfmu.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.contact.fractal import rms_height
+from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
+from jointfmu.contact.roughness import height, level
 from jointfmu.parameters import default
-from jointfmu.roughness import height, level
-from jointfmu.topography.fractal import rms_height
 
 CHOICES = [(area, spot) for area in ("continuity", "printed", "yield") for spot in ("family", "hertz")]
 JUDGED = np.array([0.5e6, 1e6, 2e6, 8e6])

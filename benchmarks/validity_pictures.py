@@ -7,7 +7,7 @@ import interface_laws as compare
 import numpy as np
 
 from jointfmu import plots
-from jointfmu.interface import stiffness_curve
+from jointfmu.contact.interface import stiffness_curve
 
 IMAGES = Path(__file__).resolve().parent.parent / "docs" / "images"
 GAMMA = 0.48

@@ -9,29 +9,32 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from jointfmu_fmu_src import cosimulation, ringing, ssp
-from jointfmu_fmu_src.checks import default_ramp
-from jointfmu_fmu_src.drawing import BLUE, GREY, RED, short, svg
-from jointfmu_fmu_src.joints.harmonic_drive import figures
 from jointfmu_fmu_src.python.build import runtime_sources
-from jointfmu_fmu_src.report import motion
-from jointfmu_fmu_src.report.systems import SIZE, draw
+from jointfmu_tools.job.checks import default_ramp
+from jointfmu_tools.joints.harmonic_drive import figures
+from jointfmu_tools.joints.harmonic_drive.fit import lines
+from jointfmu_tools.joints.harmonic_drive.fit.row import Row
+from jointfmu_tools.report import motion
+from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
+from jointfmu_tools.report.systems import SIZE, draw
+from jointfmu_tools.systems import cosimulation, ringing, ssp
+from jointfmu_tools.systems.system import system
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from jointfmu import plots, validation
+from jointfmu import plots
 from jointfmu.joints import KINDS
-from jointfmu.joints.harmonic_drive.fit import lines
-from jointfmu.joints.harmonic_drive.fit.row import Row
 from jointfmu.parameters import write_text
-from jointfmu.systems import system
+from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 
-WIDTH, LEFT, RIGHT, ROW, BAND, EDGE = 8.0, 4.3, 3.2, 0.29, 0.86, 0.08
-"""Sizes of the house [inch]: width, that of its two columns, height of a layer and of the joints, margin."""
+WIDTH, LEFT, ROW, HEAD, EDGE = 9.4, 6.5, 0.29, 0.36, 0.08
+"""Sizes of the house [inch]: width, that of the layers, height of a layer and of a title, margin."""
+PACKAGES = {"jointfmu_tools": "tools", "jointfmu_fmu_src": "fmu_src", "jointfmu": "core/jointfmu"}
+"""{import name: folder} of the packages, from above."""
 LETTER = 0.078
 """Width of a letter of the figures' style [inch], about."""
 
@@ -71,30 +74,24 @@ def resonance(path: Path) -> None:
 
 
 def house() -> str:
-    """The house as SVG: layers as the import contracts have them, and the joints through both packages."""
-    core, builder = (_layers(package) for package in ("jointfmu", "jointfmu_fmu_src"))
-    place = next(i for i, names in enumerate(core) if "joints" in names)
-    above, below = core[:place], core[place + 1 :]
-    rooms = [[name for name in names if name != "joints"] for names in builder]
-    joints = EDGE + ROW * len(below)
-    roof, eaves = (joints + BAND + ROW * len(rows) for rows in (above, rooms))
-    left, right = (EDGE, LEFT), (WIDTH - EDGE - RIGHT, RIGHT)
-    inside = _inside()
+    """The house as SVG: three packages one above the other, with the layers of the import contracts."""
+    storeys = [(title, _layers(package)) for package, title in PACKAGES.items()]
+    height = 2.0 * EDGE + sum(HEAD + ROW * len(layers) for _, layers in storeys)
+    running = _inside()
 
     def draw(canvas: Figure) -> None:
         axes = canvas.add_axes((0.0, 0.0, 1.0, 1.0))
         axes.set_axis_off()
         axes.set_xlim(0.0, WIDTH)
-        axes.set_ylim(0.0, roof + 0.4)
-        _storeys(axes, left, roof, above, inside)
-        _storeys(axes, left, joints, below, inside)
-        _storeys(axes, right, eaves, rooms, inside)
-        for (x, width), y, title in ((left, roof, "core/jointfmu"), (right, eaves, "fmu_src")):
-            axes.text(x + 0.5 * width, y + 0.12, title, ha="center", weight="bold", size=12)
-        _joints(axes, joints)
-        _legend(axes, right[0], joints)
+        axes.set_ylim(0.0, height)
+        top = height - EDGE
+        for title, layers in storeys:
+            axes.text(EDGE, top - 0.7 * HEAD, title, weight="bold", size=12)
+            _storey(axes, top - HEAD, layers, set() if title == "tools" else running)
+            top -= HEAD + ROW * len(layers)
+        _legend(axes, height - EDGE)
 
-    return short(svg(draw, (WIDTH, roof + 0.4), layout=None)) + "\n"
+    return short(svg(draw, (WIDTH, height), layout=None)) + "\n"
 
 
 def _layers(package: str) -> list[list[str]]:
@@ -111,17 +108,14 @@ def _inside() -> set[str]:
     return {name for file in files for name in (*file.parent.parts, file.stem)}
 
 
-def _storeys(
-    axes: Axes, column: tuple[float, float], top: float, layers: Sequence[Sequence[str]], inside: set[str]
-) -> None:
-    """A row for each layer, downwards from `top`, in a column (x, width)."""
-    x, width = column
+def _storey(axes: Axes, top: float, layers: Sequence[Sequence[str]], running: set[str]) -> None:
+    """A row for each layer of a package, downwards from `top`."""
     for i, names in enumerate(layers):
         y = top - ROW * (i + 1)
-        face = "#e8f0fa" if inside & set(names) else "#f4f4f4"
-        axes.add_patch(Rectangle((x, y), width, ROW, facecolor=face, edgecolor="white", linewidth=2.0))
-        words = [(name, BLUE if name in inside else "black") for name in names]
-        _words(axes, x + 0.5 * width, y + 0.5 * ROW, words)
+        colours = [RED if name == "joints" else BLUE if name in running else "black" for name in names]
+        face = "#fbeeea" if RED in colours else "#e8f0fa" if BLUE in colours else "#f4f4f4"
+        axes.add_patch(Rectangle((EDGE, y), LEFT, ROW, facecolor=face, edgecolor="white", linewidth=2.0))
+        _words(axes, EDGE + 0.5 * LEFT, y + 0.5 * ROW, list(zip(names, colours, strict=True)))
 
 
 def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> None:
@@ -133,22 +127,15 @@ def _words(axes: Axes, x: float, y: float, words: Sequence[tuple[str, str]]) -> 
         start += width
 
 
-def _joints(axes: Axes, y: float) -> None:
-    """The joints: a folder of one name in both packages and in models."""
-    place, width = (EDGE, y), WIDTH - 2.0 * EDGE
-    axes.add_patch(Rectangle(place, width, BAND, facecolor="#fbeeea", edgecolor=RED, linewidth=1.2))
-    names = ["core/jointfmu/joints/KIND", "fmu_src/joints/KIND", "models/KIND", "tests/KIND"]
-    axes.text(0.5 * WIDTH, y + 0.68 * BAND, "     ".join(names), ha="center", va="center", color=RED)
-    kinds = "   ".join(name for name, kind in KINDS.items() if kind.own)
-    axes.text(0.5 * WIDTH, y + 0.3 * BAND, f"KIND:  {kinds}", ha="center", va="center", weight="bold")
-
-
-def _legend(axes: Axes, x: float, top: float) -> None:
+def _legend(axes: Axes, top: float) -> None:
     """What arrow and colours mean."""
+    x = EDGE + LEFT + 0.35
     arrow = {"arrowstyle": "->", "color": GREY, "lw": 1.5}
-    axes.annotate("", (x - 0.18, EDGE), (x - 0.18, top - 0.1), arrowprops=arrow)
+    axes.annotate("", (x - 0.18, EDGE), (x - 0.18, top), arrowprops=arrow)
     lines = (
         ("imports run downwards", GREY),
+        ("red: a folder for each joint,", RED),
+        *((f"    {name}", RED) for name, kind in KINDS.items() if kind.own),
         ("blue: runs inside a Python FMU,", BLUE),
         ("needs numpy only", BLUE),
         ("C FMUs: generated from the same", "black"),

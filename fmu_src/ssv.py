@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
-from jointfmu.units import UNITS
+from jointfmu.quantity.units import UNITS
 
 from .xml_parts import serialized
 

@@ -5,8 +5,11 @@ from typing import Any
 
 import jinja2
 
-from jointfmu.asperity.roughness import FEW_SPOTS
+from jointfmu.contact.laws.roughness import FEW_SPOTS
 from jointfmu.parameters import ParameterFile
+
+FRAME = Path(__file__).with_name("native")
+"""Folder of the templates that the pages of joints extend."""
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
-from jointfmu.units import UNITS, display_unit
+from jointfmu.quantity.units import UNITS, display_unit
 
 VARIABILITIES = ("tunable", "fixed")
 """What a description may say of all parameters: set during a run too, or before it only."""

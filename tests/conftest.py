@@ -20,6 +20,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell's background job ignores it, and so would the commands that tests interrupt.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+HERE = Path(__file__).parent
 SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
@@ -38,7 +39,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     """What `jointfmu` prints when it refuses with 2: one line on standard error, nothing else."""
-    from jointfmu import cli
+    from jointfmu_tools import cli
 
     try:
         status = cli.main([str(a) for a in arguments])
@@ -184,7 +185,7 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
     """Run a script in a process of its own, where a crash harms no other test; it can import this file."""
     return subprocess.run(
         [sys.executable, "-c", script, *map(str, arguments)],
-        env=os.environ | {"PYTHONPATH": str(Path(__file__).parent)},
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(map(str, (HERE, HERE / "support")))},
         capture_output=True,
         text=True,
         timeout=100,

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from jointfmu.curve import Curve, approach_curve
-from jointfmu.footprint.nodes import Footprint
-from jointfmu.interface import at_pressure
+from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive
+from jointfmu.mechanics.curve import Curve, approach_curve
+from jointfmu.mechanics.footprint.nodes import Footprint
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
 from .data import Rings, Traction, ball_stiffness, contact_length

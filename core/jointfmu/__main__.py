@@ -1,7 +1,7 @@
-"""`python -m jointfmu`."""
+"""`python -m jointfmu`: the command line as it is installed, which stands above this package."""
 
 import sys
+from importlib.metadata import entry_points
 
-from .cli import main
-
-sys.exit(main())
+(command_line,) = entry_points(group="console_scripts", name="jointfmu")
+sys.exit(command_line.load()())

@@ -21,7 +21,7 @@ from dataclasses import Field, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from . import roughness
+from .contact import roughness
 from .joints import KINDS
 from .quantity import build, changed, flat_fields, flatten, problem, quantity
 

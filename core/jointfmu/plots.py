@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .parameters import check_writable, write_bytes
-from .reference import ROLES
-from .units import UNITS, display_unit
+from .published.reference import ROLES
+from .quantity.units import UNITS, display_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

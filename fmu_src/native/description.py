@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
+from jointfmu.files.stamp import fixed_time
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.stamp import fixed_time
-from jointfmu.units import UNITS
+from jointfmu.quantity.units import UNITS
 
 from ..xml_parts import (
     Listed,

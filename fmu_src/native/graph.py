@@ -10,9 +10,9 @@ from typing import Any
 
 import casadi as ca
 
-from jointfmu.curve import closing
+from jointfmu.contact.powerlaw import Power, Smooth, Spots, Term
 from jointfmu.joints.model import Model
-from jointfmu.powerlaw import Power, Smooth, Spots, Term
+from jointfmu.mechanics.curve import closing
 from jointfmu.quantity import Limit, build
 
 from .data import Split

@@ -12,7 +12,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.plots import BLUE, GREEN, RED
 from jointfmu.quantity import flat_fields, problem
-from jointfmu.units import UNITS, display_unit
+from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, part
 from ..templates import law_terms, template

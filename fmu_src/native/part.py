@@ -7,8 +7,9 @@ from typing import Any
 
 import casadi as ca
 
-from jointfmu import curve, interface
+from jointfmu.contact import interface
 from jointfmu.joints.model import Model
+from jointfmu.mechanics import curve
 
 from .c_text import number
 from .graph import Graph

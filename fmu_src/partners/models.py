@@ -7,15 +7,9 @@ from typing import Any
 
 from jointfmu.joints.model import Model, Ramp, Variable
 from jointfmu.parameters import ParameterFile, entries, read_document
-from jointfmu.partners import (
-    AngleProfile,
-    ForceProfile,
-    RotationalInertia,
-    TorqueCurve,
-    TorqueProfile,
-    TranslationalMass,
-)
 from jointfmu.quantity import build, flat_fields
+
+from .laws import AngleProfile, ForceProfile, RotationalInertia, TorqueCurve, TorqueProfile, TranslationalMass
 
 
 def _model(

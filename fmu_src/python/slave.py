@@ -16,12 +16,12 @@ from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
 from jointfmu import __version__
+from jointfmu.files.stamp import build_time
 from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Memory, Model
 from jointfmu.parameters import load
 from jointfmu.quantity import build
-from jointfmu.stamp import build_time
 
 T = TypeVar("T")
 

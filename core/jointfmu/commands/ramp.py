@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import loops, plots, ramp
+from .. import plots
 from ..parameters import check_writable, write_text
+from ..run import loops, ramp
 from .common import command, flag, settings
 
 if TYPE_CHECKING:

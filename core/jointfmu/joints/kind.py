@@ -45,7 +45,7 @@ class Kind:
     package       : import name of its folder
     default       : stem of its default parameter file
     laws          : {interface law: its parameter set with this law}, the default first; a name of
-                    asperity.LAWS, or any other if it has no interface law
+                    contact.laws.LAWS, or any other if it has no interface law
     law_of        : the law's parameter set out of the joint's; None with a law that is of no interface
     models        : what it is exported as; the first is its component in a system model
     surfaces      : its rough surfaces

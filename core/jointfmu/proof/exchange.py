@@ -20,7 +20,7 @@ NEAR = 1e-9
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy and CVode, FMI 2.0 and 3.0."""
-    from .. import ramp
+    from ..run import ramp
 
     description, variables = description_of(task.fmu)
     with ramp.slave(task.folder, description, messages, task.fmu, exchange=True) as instance:

@@ -14,7 +14,7 @@ from .task import Execute, Rows, Task, description_of, reader
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy, FMI 2.0 and 3.0."""
-    from .. import ramp
+    from ..run import ramp
 
     description, variables = description_of(task.fmu)
     with ramp.slave(task.folder, description, messages, task.fmu) as slave:
@@ -34,7 +34,7 @@ def fmpy(task: Task, messages: list[str]) -> Rows:
 
 def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
     """What the FMU starts the variables `task.outputs` of any type with, by fmpy; one row."""
-    from .. import ramp
+    from ..run import ramp
 
     description, variables = description_of(task.fmu)
     exchanged = task.interface == MODEL_EXCHANGE

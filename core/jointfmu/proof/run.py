@@ -10,8 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from .. import ramp
 from ..progress import track
+from ..run import ramp
 from .importers import PACKAGES, VERSIONS, interfaces
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.footprint.shape import PressureShape
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.law import Bolted
+from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.sliders import offsets
 from jointfmu.quantity import flatten
-from jointfmu.sliders import offsets
 
 from ...native.data import DataPart, Table
 

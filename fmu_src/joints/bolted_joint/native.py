@@ -2,9 +2,9 @@
 
 import casadi as ca
 
-from jointfmu import sliders
 from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
+from jointfmu.mechanics import sliders
 
 from ...native.graph import Graph, add_closing, law_functions, symbols
 from ...native.part import ENERGY, Definitions, NativePart

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from jointfmu.asperity import yu2022
+from jointfmu.contact.laws import yu2022
 from jointfmu.joints.gear_contact import spring
 from jointfmu.joints.model import Model
 

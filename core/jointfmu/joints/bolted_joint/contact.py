@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...footprint.shape import PressureShape
+from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.sliders import Foundation
 from ...quantity import Number, where
-from ...sliders import Foundation
 
 Array = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...asperity.roughness import Roughness
-from ...asperity.zhao2018 import Zhao2018
-from ...footprint.bolts import BoltPattern, PressureSource
-from ...footprint.plate import BoltedPlate
-from ...footprint.shape import MergedShape, NodalField, PressureShape
+from ...contact.laws.roughness import Roughness
+from ...contact.laws.zhao2018 import Zhao2018
+from ...mechanics.footprint.bolts import BoltPattern, PressureSource
+from ...mechanics.footprint.plate import BoltedPlate
+from ...mechanics.footprint.shape import MergedShape, NodalField, PressureShape
 from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity
 
 Array = NDArray[np.float64]

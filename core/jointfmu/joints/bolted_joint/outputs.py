@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...asperity import mindlin
+from ...contact.laws import mindlin
 from ...quantity import Number, where
 from .law import Bolted, shear_ratio
 

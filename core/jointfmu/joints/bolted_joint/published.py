@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...asperity import mindlin
-from ...asperity import zhao2018 as zhao
-from ...footprint.bolts import cells, pressure_shape, unit_pressures
-from ...surface import domain_extension
-from ...topography.roughness import height
+from ...contact.fractal import height
+from ...contact.laws import mindlin
+from ...contact.laws import zhao2018 as zhao
+from ...contact.surface import domain_extension
+from ...mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
 from ..published import Fit, Published
 from .law import BoltedJoint, bolt_pattern, pressures, row_forces
 

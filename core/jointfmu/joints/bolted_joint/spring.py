@@ -7,14 +7,14 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...curve import Curve, approach_curve
-from ...footprint.bolts import PressureSource, pressure_shape
-from ...footprint.friction import friction_patches
-from ...footprint.patches import few_points
-from ...footprint.shape import PressureShape
-from ...interface import largest_spot
+from ...contact.interface import largest_spot
+from ...mechanics.curve import Curve, approach_curve
+from ...mechanics.footprint.bolts import PressureSource, pressure_shape
+from ...mechanics.footprint.friction import friction_patches
+from ...mechanics.footprint.patches import few_points
+from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
-from ...sliders import SLIDERS, Foundation, around, offsets
 from .contact import (
     Place,
     along,

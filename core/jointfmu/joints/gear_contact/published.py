@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ...asperity.yu2022 import Yu2022
-from ...interface import at_largest_spot
+from ...contact.interface import at_largest_spot
+from ...contact.laws.yu2022 import Yu2022
 from ..published import Published
 from .spring import GearContact
 

@@ -6,10 +6,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...asperity.roughness import Roughness
-from ...asperity.yu2022 import Yu2022
-from ...curve import Curve, approach_curve
-from ...interface import at_pressure
+from ...contact.interface import at_pressure
+from ...contact.laws.roughness import Roughness
+from ...contact.laws.yu2022 import Yu2022
+from ...mechanics.curve import Curve, approach_curve
 from ...quantity import Number
 
 Array = NDArray[np.float64]

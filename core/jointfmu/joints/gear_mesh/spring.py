@@ -8,9 +8,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...asperity.roughness import Roughness
-from ...asperity.yu2022 import Yu2022
-from ...curve import Curve, approach_curve, assemble, refined
+from ...contact.laws.roughness import Roughness
+from ...contact.laws.yu2022 import Yu2022
+from ...mechanics.curve import Curve, approach_curve, assemble, refined
 from ...quantity import Number, quantity
 from .pairs import pairs, rise
 

@@ -17,9 +17,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...curve import Curve
-from ...interface import MOST_STEPS
-from ...powerlaw import exprel
+from ...contact.interface import MOST_STEPS
+from ...contact.powerlaw import exprel
+from ...mechanics.curve import Curve
 from ...quantity import Number
 from .drive import Drive
 from .law import PairDrive, pair_log_area

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...asperity.hu2023 import Hu2023, elastic_pressure
-from ...asperity.roughness import Roughness, RoughSurfaces
+from ...contact.laws.hu2023 import Hu2023, elastic_pressure
+from ...contact.laws.roughness import Roughness, RoughSurfaces
+from ...contact.surface import ArealSurface, Elastic, ElasticPlastic
 from ...quantity import Interval, Limit, Number, choice, group, quantity, where
-from ...surface import ArealSurface, Elastic, ElasticPlastic
 from .drive import Drive
 
 SETTLED = 2.0

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...asperity import hu2023 as hu
-from ...asperity import kogut_etsion
-from ...interface import at_largest_spot
-from ...surface import hardness_coefficient
+from ...contact.interface import at_largest_spot
+from ...contact.laws import hu2023 as hu
+from ...contact.laws import kogut_etsion
+from ...contact.surface import hardness_coefficient
 from ..published import Fit, Published
 from .law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 

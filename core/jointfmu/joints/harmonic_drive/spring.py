@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...curve import Curve, assemble, refined
+from ...mechanics.curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
 from .drive import Drive
 from .friction import Friction, limit, viscous

@@ -1,0 +1,1 @@
+"""Contact of rough surfaces: the interface laws and what they stand on."""

@@ -1,0 +1,102 @@
+"""What the Weierstrass-Mandelbrot functions of this package have in common, and their constants; height and
+slope of a surface of D and G.
+
+All lengths are SI. H is the Hurst exponent: H = 2 - D of a profile, H = 3 - D of a surface.
+The derivations are in docs/surfaces.md.
+"""
+
+import numpy as np
+
+from ..quantity import Number
+
+
+def wave_power(frequency: Number, H: Number, G: Number) -> Number:
+    """Phi [m2], variance of height per unit of ln(frequency) [1/m]: G^(2(1-H)) frequency^(-2H)/2.
+
+    A wave of length l has the amplitude G^(1-H) sqrt(ln gamma) l^H (Hu 2023, Eqs. 1-3; Zhao 2018,
+    Eq. 5; Yu 2022, Eq. 4) and there is one in every ln(gamma). Phi/frequency is the one-sided power
+    spectral density of Zhao 2018, Eq. 30, without its 1/ln(gamma).
+    """
+    return 0.5 * G ** (2.0 * (1.0 - H)) * frequency ** (-2.0 * H)
+
+
+def structure_constant(H: Number) -> Number:
+    """C [1] of S(tau) = C G^(2(1-H)) tau^(2H), the structure function of a profile, 0 < H < 1.
+
+    C = (2 pi)^(2H) integral_0^inf u^(-1-2H) (1 - cos u) du = (2 pi)^(2H) pi/(2 Gamma(1+2H) sin(pi H)).
+    """
+    from scipy.special import gammaln  # slow to import, and every command imports this module
+
+    log = 2.0 * H * np.log(2.0 * np.pi) - gammaln(1.0 + 2.0 * H)
+    return 0.5 * np.pi * np.exp(log) / np.sin(np.pi * H)
+
+
+def second_difference(H: Number) -> Number:
+    """V(tau)/S(tau) = 4 - 4^H [1] of a power law, V(tau) = 4 S(tau) - S(2 tau)."""
+    return 4.0 - 4.0**H
+
+
+def profile_share(H: Number) -> Number:
+    """kappa [1], power of a line cut out of an isotropic surface over that of the surface itself.
+
+    kappa = mean of |cos a|^(2H) over all directions a = Gamma(H + 1/2)/(sqrt(pi) Gamma(H + 1)), since
+    waves that meet the line at an angle are stretched along it.
+    """
+    from scipy.special import gammaln  # slow to import, and every command imports this module
+
+    return np.exp(gammaln(H + 0.5) - gammaln(H + 1.0)) / np.sqrt(np.pi)
+
+
+def areal_roughness(G: Number, H: Number) -> Number:
+    """G [m] of the isotropic surface (Hu 2023, Eq. 1) whose lines have the profile's G [m]."""
+    return G * profile_share(H) ** (-0.5 / (1.0 - H))
+
+
+def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
+    """G [m] in the sense of Zhao 2018, Eqs. 1 and 30, whose waves lack the factor sqrt(ln gamma)."""
+    return G * np.log(gamma) ** (0.5 / (1.0 - H))
+
+
+def rms_height(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
+    """h_rms [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
+    return np.sqrt((wave_power(1.0 / longest, H, G) - wave_power(1.0 / shortest, H, G)) / (2.0 * H))
+
+
+def rms_slope(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
+    """h'_rms [1], root mean square gradient: the integral of (2 pi frequency)^2 Phi over ln(frequency)."""
+    high, low = (wave_power(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
+    return 2.0 * np.pi * np.sqrt((high - low) / (2.0 - 2.0 * H))
+
+
+def hurst(D: Number, areal: bool = False) -> Number:
+    """Hurst exponent H [1] of a profile's dimension D, 2 - D, or of a surface's, 3 - D."""
+    return (3.0 if areal else 2.0) - D
+
+
+def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Number | None = None) -> Number:
+    """Rms height h [m] of the isotropic surface of D [1] and G [m], of all waves up to the longest [m].
+
+    areal : whether D and G are those of the surface (Hu 2023, Eq. 1) or of its profiles (Zhao 2018, Eq. 5;
+            Yu 2022, Eq. 4)
+    gamma : frequency ratio of a Weierstrass-Mandelbrot function that has a wave of just the longest length,
+            h^2 = Phi ln(gamma)/(1 - gamma^(-2H)); without it, the mean over where its waves lie, which is
+            the spectrum's, h^2 = Phi/(2H)
+
+    Phi = G_s^(2(1-H)) longest^(2H)/2, `wave_power`. Every line of the surface has this height, if
+    the surface has no longer waves.
+    """
+    H = hurst(D, areal)
+    power = wave_power(1.0 / longest, H, _surface(G, H, areal))
+    share = 0.5 / H if gamma is None else np.log(gamma) / (1.0 - gamma ** (-2.0 * H))
+    return np.sqrt(power * share)
+
+
+def slope(D: Number, G: Number, longest: Number, shortest: Number, areal: bool = False) -> Number:
+    """Rms slope [1] of the isotropic surface of D [1] and G [m] between two wavelengths [m]; as `height`."""
+    H = hurst(D, areal)
+    return rms_slope(H, _surface(G, H, areal), longest, shortest)
+
+
+def _surface(G: Number, H: Number, areal: bool) -> Number:
+    """G [m] of the isotropic surface."""
+    return G if areal else areal_roughness(G, H)

@@ -1,0 +1,194 @@
+"""Hu et al. 2023 (doi:10.3389/fmats.2023.1211019): asperities of one base radius, four regimes.
+
+Equation numbers are the paper's; where the print is wrong the corrected form is implemented
+(docs/errata.md). D is the dimension of the surface (2 < D < 3); areas are real contact areas. The choice
+`reading` tells which pressure Eq. 28 means, and with it which law follows:
+
+corrected : load over nominal area, F_r/A_0; four regimes, stiffness of spots above s_min
+printed   : load over real area, F_r/S_r; all spots elastic, stiffness of one set of spots as Eq. 30 has it
+    but for its sign, in proportion to the pressure. It holds up to `elastic_pressure`.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...quantity import Number, check, choice, group, quantity
+from ..powerlaw import Power, Slip, Spots, Term
+from ..surface import (
+    ArealSurface,
+    Elastic,
+    contact_modulus,
+    contact_shear_modulus,
+    domain_extension_fit,
+    hardness_coefficient,
+)
+from . import mindlin
+from .kogut_etsion import FIRST, PLASTIC_AREA, SECOND, SECOND_AREA, by_area
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hu2023:
+    """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
+
+    surface: ArealSurface = group("equivalent rough surface")
+    side1: Elastic = group("softer body")
+    side2: Elastic = group("harder body")
+    sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+    shear_traction: float = quantity("Pa", "shear traction on the real area, if traction is so", gt=0.0)
+    traction: str = choice(
+        "ratio", "real_area", doc="shear of a spot: the node's traction ratio, or a traction on the real area"
+    )
+
+    reading: str = choice(
+        "corrected", "printed", doc="pressure of Eq. 28: load over nominal area, or over real area as printed"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def hardness(self) -> Number:
+        """H = 2.8 sigma_s [Pa], below Eq. 7."""
+        return 2.8 * self.sigma_y
+
+    def spots(self) -> Spots:
+        """Regimes of one spot over the size distribution of Eq. 17, reference area s_min."""
+        return spots(self) if self.reading == "corrected" else printed_spots(self)
+
+    def state(self, u: Number) -> dict[str, Number]:
+        """F [N] Eq. 27, P A_0 as printed; K_N [N/m] Eq. 35; K_T [N/m] Eq. 44; A_r [m2] Eq. 22."""
+        s = self.spots()
+        names = {"F": "load", "K_N": "normal", "K_T": "tangential", "A_r": "area"}
+        return {symbol: s.total(name, u) for symbol, name in names.items()}
+
+
+def curvature_radius(law: Hu2023) -> Number:
+    """R [m] at the peak of an asperity, Eq. 5."""
+    s = law.surface
+    root = np.sqrt(np.log(s.gamma))
+    return s.r_m ** (s.D - 1.0) / (2.0 ** (3.0 - s.D) * np.pi**2 * s.G ** (s.D - 2.0) * root)
+
+
+def critical_deformation(law: Hu2023) -> Number:
+    """epsilon_ec [m], end of the elastic regime, Eq. 7."""
+    modulus = contact_modulus(law.side1, law.side2)
+    onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) * law.hardness / modulus
+    return onset**2 * curvature_radius(law)
+
+
+def critical_area(law: Hu2023) -> Number:
+    """s_ec [m2], Eq. 10; the stages end at 7.1197 s_ec and 205.38 s_ec (Eqs. 13-14)."""
+    return np.pi * curvature_radius(law) * critical_deformation(law)
+
+
+def critical_load(law: Hu2023) -> Number:
+    """f_ec = (2/3) k H s_ec [N], Eq. 9 at s_ec."""
+    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * critical_area(law)
+
+
+def elastic_pressure(law: Hu2023) -> Number:
+    """F_r/S_r [Pa] of elastic spots, the largest of area s_ec: Eqs. 9, 18, 23; below it no spot yields."""
+    D = law.surface.D
+    return 2.0 / 3.0 * hardness_coefficient(law.side1.nu) * law.hardness * (3.0 - D) / (4.0 - D)
+
+
+def printed_spots(law: Hu2023) -> Spots:
+    r"""The law as printed, all spots elastic. With s_l the largest spot
+
+        P = F_r/S_r = \frac{4 E (3 - D)}{3 pi^{3/2} R (4 - D)} s_l^{1/2}    (Eqs. 9, 18, 23, 28)
+
+    and the magnitude of Eq. 30 with s_l as its upper limit, also ~ s_l^(1/2). So K is in proportion to P,
+    and E cancels. The stiffness is that of one set of spots, whatever the area.
+
+    Quantities: load [N], P A_0; normal, tangential [N/m]; area, elastic_area [m2].
+    """
+    s, E = law.surface, contact_modulus(law.side1, law.side2)
+    m, weight = 0.5 * s.D - 0.5, domain_extension_fit(s.D) ** (1.5 - 0.5 * s.D)
+    edge = np.sqrt(s.s_min / np.pi)
+    P = 4.0 / 3.0 * E * (3.0 - s.D) / (4.0 - s.D) * edge / (np.pi * curvature_radius(law))
+    full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * edge
+    if law.traction == "ratio":
+        tangential: Term = Power(0.0 - full_stick * mindlin.stick_root(law.traction_ratio)[0], 0.5)
+    else:
+        slip = law.shear_traction * s.s_min / (law.mu * _elastic_load(law))
+        tangential = Slip(c=full_stick, p=0.5, h=slip, q=0.5, lower=-np.inf, upper=np.inf)
+    terms: dict[str, tuple[Term, ...]] = {
+        "load": (Power(law.A_0 * P * (0.5 - m) / (m * weight), 0.5),),
+        "normal": (Power(-2.0 * E * edge, 0.5),),
+        "tangential": (tangential,),
+        "area": (Power(s.s_min, 1.0),),
+        "elastic_area": (Power(s.s_min, 1.0),),
+    }
+    return Spots(reference=s.s_min, m=m, weight=weight, terms=terms)
+
+
+def _elastic_load(law: Hu2023) -> Number:
+    """f_e [N] of a spot of area s_min, Eq. 9."""
+    s_min, E = law.surface.s_min, contact_modulus(law.side1, law.side2)
+    return 4.0 / 3.0 * E * (s_min / np.pi) ** 1.5 / curvature_radius(law)
+
+
+def spots(law: Hu2023) -> Spots:
+    """Size distribution (Eq. 17) and regimes up to the largest spot.
+
+    Load and area count all spots (Eqs. 18-27), the stiffness those above s_min, without which its
+    integrals diverge or are undefined (Eqs. 30, 41, corrected).
+
+    Quantities: load [N]; normal, tangential [N/m]; area, elastic_area [m2].
+    """
+    s_min, s_ec = law.surface.s_min, critical_area(law)
+    f_ec, H = critical_load(law), law.hardness
+    k_ec = f_ec / critical_deformation(law)
+    edge = np.log(s_ec / s_min)  # log-area of the end of the elastic regime
+    ends = [edge, edge + np.log(SECOND_AREA), edge + np.log(PLASTIC_AREA)]
+    bounds = [None, *ends]
+    stages = [by_area(FIRST), by_area(SECOND)]
+
+    def regime(c: Number, p: float, i: int, smallest: Number = None) -> Power:
+        """`c (s/s_ec)^p` in regime i, referred to s_min; the first begins at `smallest`."""
+        lower = bounds[i] if i else smallest
+        upper = bounds[i + 1] if i < 3 else None
+        return Power(c * np.exp(-p * edge), p, lower, upper)
+
+    load = [regime(f_ec, 1.5, 0), *(regime(f_ec * st.A, st.p, i + 1) for i, st in enumerate(stages))]
+    normal = [regime(1.5 * k_ec, 0.5, 0, 0.0)]
+    normal += [regime(k_ec * st.B, st.q, i + 1) for i, st in enumerate(stages)]
+    normal = [replace(t, lower=np.maximum(t.lower, 0.0), upper=np.maximum(t.upper, 0.0)) for t in normal]
+    terms: dict[str, tuple[Term, ...]] = {
+        "load": (*load, regime(H * s_ec, 1.0, 3)),
+        "normal": tuple(normal),
+        "tangential": _tangential(law, load, bounds),
+        "area": (Power(s_min, 1.0),),
+        "elastic_area": (Power(s_min, 1.0, None, bounds[1]),),
+    }
+    D = law.surface.D
+    weight = domain_extension_fit(D) ** (1.5 - 0.5 * D)
+    return Spots(reference=s_min, m=0.5 * D - 0.5, weight=weight, terms=terms)
+
+
+def _tangential(law: Hu2023, load: list[Power], bounds: list[Number]) -> tuple[Term, ...]:
+    """k_t = 8 G' r (1 - t/(mu f))^(1/3) in the three regimes that are not plastic, Eqs. 39, 41-43.
+
+    ratio     : every spot has the traction ratio x of the node
+    real_area : the real area carries the shear traction, t = tau s; x = tau s/(mu f(s)) differs from
+        spot to spot and is clipped to full slip
+    """
+    full_stick = 8.0 * contact_shear_modulus(law.side1, law.side2) * np.sqrt(law.surface.s_min / np.pi)
+    if law.traction == "ratio":
+        stick, _ = mindlin.stick_root(law.traction_ratio)
+        return (Power(full_stick * stick, 0.5, 0.0, np.maximum(bounds[3], 0.0)),)
+    return tuple(
+        Slip(
+            c=full_stick,
+            p=0.5,
+            h=law.shear_traction * law.surface.s_min / (law.mu * term.c),
+            q=term.p - 1.0,
+            lower=0.0 if term.lower is None else np.maximum(term.lower, 0.0),
+            upper=np.maximum(term.upper, 0.0),
+        )
+        for term in load
+    )

@@ -1,0 +1,168 @@
+"""Stiffness from a roughness: elastic contact in many spots, with a crossover to few.
+
+No sum over single spots: the rms height h of both surfaces together carries the level. In many spots
+p ~ exp(approach/(gamma h)) (Persson 2007; Akarapu, Sharp, Robbins 2011), so the stiffness per area is
+p/(gamma h), whatever the modulus. Under a small load few hills of the longest wave carry, and the contact
+is stiffer than that (finite size; Pastewka and others 2013). docs/validity.md says how far it holds.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...quantity import Number, check, group, quantity
+from ..powerlaw import Power, Spots
+from ..surface import Elastic, contact_modulus, contact_shear_modulus
+from .persson import bearing_curve, contact_shares
+
+FEW_SPOTS = 0.3
+"""C [1] of the stiffness of few spots, see `spots`: from boundary elements (benchmarks/roughness_law.py)."""
+FIRST_TOUCH = 1e-6
+"""Load [1] over E* h longest_wave where the stiffness begins: far less than one hill carries."""
+_SIZE = 0.25
+"""Exponent m [1] of the sums, below that of every quantity; it cancels."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoughSurfaces:
+    """What the law `roughness` knows of the two surfaces."""
+
+    h: float = quantity("m", "rms height of both surfaces together, of all waves up to longest_wave", gt=0.0)
+    gamma: float = quantity("1", "approach over h by which the pressure grows e-fold", gt=0.0)
+    longest_wave: float = quantity("m", "longest wave of the roughness", gt=0.0)
+    hurst: float = quantity("1", "Hurst exponent of the roughness", gt=0.0, lt=1.0)
+    slope: float = quantity("1", "rms slope of both surfaces together; for the real area", gt=0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Roughness(RoughSurfaces):
+    """Parameters of the interface law `roughness`."""
+
+    side1: Elastic = group("first body")
+    side2: Elastic = group("second body")
+    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def hardness(self) -> Number:
+        """H [Pa] of the softer body."""
+        return self.H
+
+    def spots(self) -> Spots:
+        """Load, stiffness and works over u = ln(p/p_1), see `spots`."""
+        return spots(self)
+
+    def areas(self, pressure: Number) -> tuple[Number, Number]:
+        """Real area [m2] and its elastic part [1] at pressures (...) [Pa] (Persson 2001)."""
+        elastic, plastic = contact_shares(self, pressure)
+        return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
+
+    def shear_ratio(self) -> Number:
+        """K_T/K_N [1]."""
+        return shear_ratio(self)
+
+    def loss_factor(self) -> Number:
+        """eta_t [1] at the traction ratio."""
+        return loss_factor(self.traction_ratio)
+
+    def state(self, u: Number) -> dict[str, Number]:
+        """Everything the law defines at the log-pressure u, see `state`."""
+        return state(self, u)
+
+
+def first_pressure(law: Roughness) -> Number:
+    """p_1 [Pa], the pressure of u = 0: FIRST_TOUCH of E* h longest_wave over A_0."""
+    return FIRST_TOUCH * contact_modulus(law.side1, law.side2) * law.h * law.longest_wave / law.A_0
+
+
+def shear_ratio(law: Roughness) -> Number:
+    """rho = K_T/K_N = 4 G'/E* [1] without slip; 2 (1 - nu)/(2 - nu) for equal bodies (Mindlin 1949)."""
+    return 4.0 * contact_shear_modulus(law.side1, law.side2) / contact_modulus(law.side1, law.side2)
+
+
+def spots(law: Roughness) -> Spots:
+    """Quantities of the area A_0 as sums of powers of the pressure, exp(u) = p/p_1.
+
+    load       : [N] p A_0
+    normal     : [N/m] p A_0/h (1/gamma + C x^(-hurst/(1 + hurst))), x = p A_0/(E* h longest_wave)
+    tangential : [N/m] rho times normal
+    elastic_work : [J] gamma h p A_0, the energy of p ~ exp(approach/(gamma h))
+    plastic_work : [J] none: the load has been there before
+    """
+    p, A, rho = first_pressure(law), law.A_0, shear_ratio(law)
+    many = p * A / (law.gamma * law.h)
+    few = FEW_SPOTS * p * A / law.h * FIRST_TOUCH ** (-law.hurst / (1.0 + law.hurst))
+    power = 1.0 / (1.0 + law.hurst)
+    return Spots(
+        reference=A,
+        m=_SIZE,
+        weight=1.0 / _SIZE,
+        terms={
+            "load": (_grown(p * A, 1.0),),
+            "normal": (_grown(many, 1.0), _grown(few, power)),
+            "tangential": (_grown(rho * many, 1.0), _grown(rho * few, power)),
+            "elastic_work": (_grown(law.gamma * law.h * p * A, 1.0),),
+            "plastic_work": (_grown(0.0, 1.0),),
+        },
+        onset=0.0,
+        sized=False,
+    )
+
+
+def _grown(c: Number, power: Number) -> Power:
+    """The term whose sum is c exp(power u)."""
+    return Power(c * (power - _SIZE), power)
+
+
+def loss_factor(x: Number) -> Number:
+    """eta_t [1] of a shear cycle of amplitude T = x mu F: W/(2 pi U), U = T s/2 at its ends.
+
+    The spots slip one by one where p ~ exp(approach/(gamma h)): T = mu F (1 - exp(-s/s_0)), so
+    W = -4 mu F s_0 ((2 - x) ln(1 - x) + 2x) by Masing's rule, and eta_t = (4/pi) (2/x - 1 + 2/ln(1 - x));
+    2x/(3 pi) for small x, of which the next terms are taken below x = 0.01, where the closed form cancels.
+    """
+    series = x * (1.0 / 6.0 + x * (1.0 / 12.0 + x * (19.0 / 360.0 + x * (3.0 / 80.0 + x * 863.0 / 30240.0))))
+    small = x < 0.01
+    safe = np.where(small, 0.01, x)
+    closed = 2.0 / safe - 1.0 + 2.0 / np.log1p(-safe)
+    return 4.0 / np.pi * np.where(small, series, closed)
+
+
+def approach(law: Roughness, p: Number) -> Number:
+    """Approach [m] of the two sides from no pressure to p [Pa]: the integral of dp/k."""
+    x = p * law.A_0 / (contact_modulus(law.side1, law.side2) * law.h * law.longest_wave)
+    bend = law.hurst / (1.0 + law.hurst)
+    return law.gamma * law.h / bend * np.log1p(x**bend / (law.gamma * FEW_SPOTS))
+
+
+def state(law: Roughness, u: Number) -> dict[str, Number]:
+    """Interface quantities (whole area A_0) at the log-pressure u; p = p_1 exp(u).
+
+    F [N], approach [m]; K_N, K_T [N/m] of small motions, and of a plastic contact on unloading;
+    K_loading [N/m] while the load grows for the first time and spots flow: the elastic approach and that of a
+    bearing curve, by the part of the load that plastic spots carry; A_r [m2], elastic_fraction [1];
+    eta_n [1], none; eta_t [1]; friction_limit [N] = mu F, slip_length [m] s_0 = mu gamma h/rho of many spots.
+    """
+    s, p = spots(law), first_pressure(law) * np.exp(u)
+    F, K_N = s.total("load", u), s.total("normal", u)
+    A_r, elastic = law.areas(p)
+    flowing = np.minimum((1.0 - elastic) * A_r * law.H / F, 1.0)
+    loading = 1.0 / (1.0 / K_N + flowing * law.h / (F * bearing_curve(p / law.H)))
+    return {
+        "F": F,
+        "K_N": K_N,
+        "K_T": s.total("tangential", u),
+        "A_r": A_r,
+        "eta_n": 0.0 * F,
+        "eta_t": law.loss_factor() + 0.0 * F,
+        "K_loading": loading,
+        "approach": approach(law, p),
+        "elastic_fraction": elastic,
+        "friction_limit": law.mu * F,
+        "slip_length": law.mu * law.gamma * law.h / law.shear_ratio() + 0.0 * F,
+    }

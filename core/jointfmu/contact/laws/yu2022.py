@@ -1,0 +1,215 @@
+"""Yu et al. 2022 (doi:10.3390/app12084071): elliptical asperities, four regimes, curved flanks.
+
+Equation numbers are the paper's; where the print is wrong the corrected form is implemented
+(docs/errata.md). Areas are real contact areas throughout. Small spots are plastic: going up in
+area a spot is plastic, then in the second and the first elastic-plastic stage, then elastic.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...quantity import Number, check, choice, group, quantity, where
+from ..powerlaw import Power, Smooth, Spots
+from ..surface import (
+    Elastic,
+    FlankSurface,
+    Spectrum,
+    complete_elliptic,
+    contact_modulus,
+    hardness_coefficient,
+)
+from .kogut_etsion import FIRST, PLASTIC_AREA, PLASTIC_ONSET, SECOND, SECOND_AREA, SECOND_ONSET, Stage
+
+
+@dataclass(frozen=True, kw_only=True)
+class Yu2022:
+    """Parameters of the interface law of Yu 2022."""
+
+    surface1: FlankSurface = group("fractal parameters along the major axis")
+    surface2: FlankSurface = group("fractal parameters along the minor axis")
+    surface: Spectrum = group("what both directions share")
+    e: float = quantity("1", "eccentricity of the contact ellipses", ge=0.0, lt=1.0)
+    lambda_: float = quantity("1", "contact coefficient of the curved flanks", gt=0.0, le=1.0)
+    side1: Elastic = group("first body")
+    side2: Elastic = group("second body")
+    sigma_y: float = quantity("Pa", "yield strength of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction; does not enter this law", gt=0.0)
+    traction_ratio: float = quantity(
+        "1", "shear over friction limit; does not enter this law", ge=0.0, lt=1.0
+    )
+    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+    rigid_flat: bool = choice(
+        True, False, doc="true: the first body meets a rigid flat; false: both bodies deform (Eq. 21)"
+    )
+    plastic_area: str = choice(
+        "geometric",
+        "kogut_etsion",
+        doc="how the area of an elastic-plastic spot gives its deformation",
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def hardness(self) -> Number:
+        """H = 2.8 sigma_y [Pa], Eq. 25."""
+        return 2.8 * self.sigma_y
+
+    def spots(self) -> Spots:
+        """Regimes of one spot over the size distribution of Eqs. 44 and 46, reference area a_nec."""
+        return self._spots
+
+    @cached_property
+    def _spots(self) -> Spots:
+        return spots(self)
+
+    def state(self, u: Number) -> dict[str, Number]:
+        """F [N] Eq. 60; K_N [N/m] Eq. 76; A_r [m2] Eq. 54; elastic_fraction [1]."""
+        s = self.spots()
+        area, elastic = areas(s, u)
+        return {
+            "F": s.total("load", u),
+            "K_N": s.total("normal", u),
+            "A_r": area,
+            "elastic_fraction": elastic,
+        }
+
+
+def areas(spots: Spots, u: Number) -> tuple[Number, Number]:
+    """Real area [m2], Eq. 54, and its elastic part [1]."""
+    area = spots.total("area", u)
+    return area, spots.total("elastic_area", u) / area
+
+
+def modulus(law: Yu2022) -> Number:
+    """E' [Pa], Eq. 21; with a rigid flat only the first body deforms."""
+    alone = law.side1.E / (1.0 - law.side1.nu**2)
+    return where(law.rigid_flat, alone, contact_modulus(law.side1, law.side2))
+
+
+def shape_factors(e: Number) -> tuple[Number, Number]:
+    """f1, f2 [1] of the elastic ellipse, Eqs. 22-23; both are 1 at e = 0."""
+    K, E = complete_elliptic(e)
+    slender = np.sqrt((1.0 - e) * (1.0 + e))
+    f1 = E / (K * slender)
+    return f1, 0.5 * np.pi * np.sqrt(E) / (K**1.5 * slender)
+
+
+def size_exponent(law: Yu2022) -> Number:
+    """zeta (D1 + D2)/2 [1] with zeta = sqrt(1 - e^2)/2, Eqs. 42-43."""
+    zeta = 0.5 * np.sqrt((1.0 - law.e) * (1.0 + law.e))
+    return 0.5 * zeta * (law.surface1.D + law.surface2.D)
+
+
+def curvature_terms(law: Yu2022) -> tuple[tuple[Number, Number], tuple[Number, Number]]:
+    """((b, p), (b, p)) with 1/R_x = b1 a^-p1, 1/R_y = b2 a^-p2 [1/m], Eqs. 12-13."""
+    root = np.sqrt(np.log(law.surface.gamma))
+    log_axes = 0.25 * np.log1p(-(law.e**2))
+
+    def term(s: FlankSurface, sign: float) -> tuple[Number, Number]:
+        b = 2.0 ** (4.0 - s.D) * np.pi ** (0.5 * s.D) * s.G ** (s.D - 1.0) * root
+        return b * np.exp(sign * s.D * log_axes), 0.5 * s.D
+
+    return term(law.surface1, 1.0), term(law.surface2, -1.0)
+
+
+def yield_scale(law: Yu2022) -> Number:
+    """4 pi f1 K(e) E(e) (K H/E')^2 [1]: a (1/R_x + 1/R_y)^2 at the onset of yield, Eq. 28."""
+    K, E = complete_elliptic(law.e)
+    f1, _ = shape_factors(law.e)
+    strain = hardness_coefficient(law.side1.nu) * law.hardness / modulus(law)
+    return 4.0 * np.pi * f1 * K * E * strain**2
+
+
+def critical_log_area(law: Yu2022, multiple: float) -> Number:
+    """ln a [ln m2] of the spot whose a (1/R_x + 1/R_y)^2 is `multiple` of the onset, Eqs. 28, 31, 32.
+
+    Newton in ln a; the function falls with a slope between 1 - max(D) and 1 - min(D) and is convex,
+    so twelve steps reach round-off.
+    """
+    (b1, p1), (b2, p2) = curvature_terms(law)
+    target = np.log(multiple * yield_scale(law))
+    mean = 0.5 * (p1 + p2)
+    t = (target - 2.0 * np.log(b1 + b2)) / (1.0 - 2.0 * mean)
+    for _ in range(12):
+        first, second = b1 * np.exp(-p1 * t), b2 * np.exp(-p2 * t)
+        value = t + 2.0 * np.log(first + second) - target
+        t = t - value / (1.0 - 2.0 * (p1 * first + p2 * second) / (first + second))
+    return t
+
+
+def spots(law: Yu2022) -> Spots:
+    """Size distribution (lambda times Eq. 44) and the four regimes of one spot.
+
+    Quantities: load [N], Eqs. 38, 36, 34, 64; normal [N/m], Eqs. 72-75; area, elastic_area [m2].
+    """
+    stages, areas = _stages(law)
+    log_nec = critical_log_area(law, 1.0)
+    plastic, middle = (critical_log_area(law, area) - log_nec for area in areas)
+    a = np.exp(log_nec)
+    f1, f2 = shape_factors(law.e)
+    E = modulus(law)
+    (b1, p1), (b2, p2) = curvature_terms(law)
+    c1, c2 = b1 * np.exp(-p1 * log_nec), b2 * np.exp(-p2 * log_nec)
+    elastic = 2.0 * f2 * E / 3.0 * (a / (np.pi * f1)) ** 1.5
+    hertz = 2.0 * f2 * E * np.sqrt(a / (np.pi * f1))
+
+    def sharpness(t: Number) -> Number:
+        """(1/R_x + 1/R_y) over its value at a_nec [1]."""
+        return (c1 * np.exp(-p1 * t) + c2 * np.exp(-p2 * t)) / (c1 + c2)
+
+    def stage_load(stage: Stage, lower: Number, upper: Number) -> Smooth:
+        def load(t: Number) -> Number:
+            sharp = sharpness(t)
+            ratio = np.exp(t) * sharp**2  # a/a_nec of this spot's own curvature
+            return elastic * (c1 + c2) * stage.c * (ratio / stage.m) ** (stage.d / stage.n) / sharp**2
+
+        return Smooth(load, lower, upper)
+
+    def stage_stiffness(stage: Stage, lower: Number, upper: Number) -> Smooth:
+        def stiffness(t: Number) -> Number:
+            sharp = sharpness(t)
+            ratio = np.exp(t) * sharp**2
+            power = (ratio / stage.m) ** ((stage.d - 1.0) / stage.n)
+            return hertz / 1.5 * stage.c * stage.d * power / sharp
+
+        return Smooth(stiffness, lower, upper)
+
+    first, second = stages
+    H = law.hardness
+    return Spots(
+        reference=a,
+        m=size_exponent(law),
+        weight=law.lambda_,
+        terms={
+            "load": (
+                Power(H * a, 1.0, upper=plastic),
+                stage_load(second, plastic, middle),
+                stage_load(first, middle, 0.0),
+                Power(elastic * c1, 1.5 - p1, 0.0),
+                Power(elastic * c2, 1.5 - p2, 0.0),
+            ),
+            "normal": (
+                stage_stiffness(second, plastic, middle),
+                stage_stiffness(first, middle, 0.0),
+                Power(hertz, 0.5, 0.0),
+            ),
+            "area": (Power(a, 1.0),),
+            "elastic_area": (Power(a, 1.0, 0.0),),
+        },
+    )
+
+
+def _stages(law: Yu2022) -> tuple[tuple[Stage, Stage], tuple[float, float]]:
+    """The two elastic-plastic stages and where they begin, as multiples of a_nec(R_m).
+
+    geometric    : the spot keeps the elastic relation a = f1 pi R_m w, so w/w_nec = a/a_nec(R_m),
+                   which is (a/a_nec)^-(D - 1) for D1 = D2, with the limits 6 and 110 of Eqs. 31-32
+    kogut_etsion : a = a_nec(R_m) m (w/w_nec)^n as in Eqs. 33 and 35; limits 7.1197 and 205.38
+    """
+    if law.plastic_area == "kogut_etsion":
+        return (FIRST, SECOND), (PLASTIC_AREA, SECOND_AREA)
+    plain = (FIRST._replace(m=1.0, n=1.0), SECOND._replace(m=1.0, n=1.0))
+    return plain, (PLASTIC_ONSET, SECOND_ONSET)

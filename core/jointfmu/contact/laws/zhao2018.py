@@ -1,0 +1,190 @@
+"""Zhao et al. 2018: elastic and plastic spots, stiffness and damping.
+
+Areas are truncated areas a' = 2a, as in the paper. Equation numbers are the paper's; where the
+print is wrong the corrected form is implemented (docs/errata.md).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...quantity import Number, check, choice, group, quantity
+from ..powerlaw import Power, Spots
+from ..surface import (
+    Elastic,
+    ProfileSurface,
+    contact_modulus,
+    contact_shear_modulus,
+    domain_extension,
+    hardness_coefficient,
+)
+from . import mindlin
+
+
+@dataclass(frozen=True, kw_only=True)
+class Zhao2018:
+    """Parameters of the interface law of Zhao 2018."""
+
+    surface: ProfileSurface = group("equivalent rough surface")
+    side1: Elastic = group("first body")
+    side2: Elastic = group("second body")
+    H: float = quantity("Pa", "hardness of the softer body", gt=0.0)
+    mu: float = quantity("1", "coefficient of static friction", gt=0.0)
+    traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
+    A_0: float = quantity("m2", "nominal contact area", gt=0.0)
+    mass: float = quantity("kg", "mass of the structure, for the viscous equivalent", gt=0.0)
+    critical_area: str = choice(
+        "continuity", "printed", "yield", doc="area below which a spot is plastic (Eq. 4)"
+    )
+    spot_stiffness: str = choice(
+        "hertz", "family", doc="stiffness of an elastic spot: Hertz, or along the size family (Eq. 13)"
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def hardness(self) -> Number:
+        """H [Pa] of the softer body."""
+        return self.H
+
+    def spots(self) -> Spots:
+        """Regimes of one spot over the size distribution of Eq. 2, reference area a'_c."""
+        return spots(self)
+
+    def shear_ratio(self) -> Number:
+        """K_T/K_N [1], the same at every pressure: both sum the square root of the area of elastic spots."""
+        return tangential_stiffness(self, 1.0) / normal_stiffness(self, 1.0)
+
+    def loss_factor(self) -> Number:
+        """eta_t [1] at the traction ratio, Eqs. 27-29."""
+        return mindlin.loss_factor(self.traction_ratio)
+
+    def state(self, u: Number) -> dict[str, Number]:
+        """Everything the law defines when the largest spot has log-area `u`."""
+        return state(self, u)
+
+
+def critical_area(law: Zhao2018) -> Number:
+    """a'_c [m2] between plastic (below) and elastic spots, Eq. 4.
+
+    continuity : f_e = H a' (default: the only one without a jump of the force)
+    printed    : as printed
+    yield      : onset of yield at a Hertz pressure k H, delta = (pi k H/2E*)^2 R
+    """
+    D, G, log_gamma = law.surface.D, law.surface.G, np.log(law.surface.gamma)
+    ratio = contact_modulus(law.side1, law.side2) / law.H
+    if law.critical_area == "printed":
+        return 2.0 * (2.0 * ratio) ** (2.0 / (D - 1.0)) * G**2
+    if law.critical_area == "yield":
+        onset = 0.5 * np.pi * hardness_coefficient(law.side1.nu) / ratio
+        root = 2.0 ** (7.0 - 2.0 * D) * log_gamma * np.pi ** (D - 1.0) / onset**2
+        return root ** (1.0 / (D - 1.0)) * G**2
+    root = 2.0 ** (9.0 - 2.0 * D) * ratio**2 * log_gamma / (9.0 * np.pi ** (3.0 - D))
+    return root ** (1.0 / (D - 1.0)) * G**2
+
+
+def deformation(law: Zhao2018, a: Number) -> Number:
+    """delta [m] of a spot of truncated area a' [m2], Eq. 5."""
+    D, G = law.surface.D, law.surface.G
+    root = np.sqrt(np.log(law.surface.gamma))
+    factor = 2.0 ** (3.0 - D) * G ** (D - 1.0) * root * np.pi ** (0.5 * D - 1.0)
+    return factor * a ** (1.0 - 0.5 * D)
+
+
+def curvature_radius(law: Zhao2018, a: Number) -> Number:
+    """R [m] of a spot of truncated area a' [m2], Eq. 6."""
+    D, G = law.surface.D, law.surface.G
+    root = np.sqrt(np.log(law.surface.gamma))
+    return a ** (0.5 * D) / (2.0 ** (4.0 - D) * np.pi ** (0.5 * D) * G ** (D - 1.0) * root)
+
+
+def elastic_load(law: Zhao2018, a: Number) -> Number:
+    """f_e [N] of a spot of truncated area a' [m2], Eq. 7."""
+    modulus = contact_modulus(law.side1, law.side2)
+    return 4.0 / 3.0 * modulus * np.sqrt(curvature_radius(law, a)) * deformation(law, a) ** 1.5
+
+
+def normal_stiffness(law: Zhao2018, a: Number) -> Number:
+    """k_n [N/m] of an elastic spot of truncated area a' [m2].
+
+    family : (df/da')/(d delta/da'), Eq. 13
+    hertz  : 2 E* r at fixed R; the family form is 2(3-D)/(3(2-D)) times this
+    """
+    hertz = 2.0 * contact_modulus(law.side1, law.side2) * np.sqrt(a / (2.0 * np.pi))
+    if law.spot_stiffness == "hertz":
+        return hertz
+    return 2.0 * (3.0 - law.surface.D) / (3.0 * (2.0 - law.surface.D)) * hertz
+
+
+def tangential_stiffness(law: Zhao2018, a: Number) -> Number:
+    """k_t [N/m] = 8 G' r (1 - x)^(1/3) of an elastic spot of truncated area a' [m2], Eqs. 21-22."""
+    modulus = contact_shear_modulus(law.side1, law.side2)
+    stick, _ = mindlin.stick_root(law.traction_ratio)
+    return 8.0 * modulus * np.sqrt(a / (2.0 * np.pi)) * stick
+
+
+def spots(law: Zhao2018) -> Spots:
+    """Size distribution (Eq. 2) and regimes; `elastic` spots have t > 0, `plastic` ones t <= 0.
+
+    Quantities: load [N]; normal, tangential [N/m]; area [m2] real; plastic_work [J] (Eq. 15);
+    elastic_work [J] (Eq. 17); loop_area [m3], the sum of a'^(3/2) that Eqs. 24 and 26 need.
+    """
+    D = law.surface.D
+    a = critical_area(law)
+    delta, radius = deformation(law, a), curvature_radius(law, a)
+    modulus = contact_modulus(law.side1, law.side2)
+    work = 8.0 / 15.0 * modulus * np.sqrt(radius) * delta**2.5
+    terms = {
+        "load": (Power(law.H * a, 1.0, upper=0.0), Power(elastic_load(law, a), 1.5 - 0.5 * D, 0.0)),
+        "normal": (Power(normal_stiffness(law, a), 0.5, 0.0),),
+        "tangential": (Power(tangential_stiffness(law, a), 0.5, 0.0),),
+        "area": (Power(a, 1.0, upper=0.0), Power(0.5 * a, 1.0, 0.0)),
+        "plastic_work": (Power(law.H * a * delta, 2.0 - 0.5 * D, upper=0.0),),
+        "elastic_work": (Power(work, 2.5 - D, 0.0),),
+        "loop_area": (Power(a**1.5, 1.5, 0.0),),
+    }
+    weight = domain_extension(D) ** (1.0 - 0.5 * D)
+    return Spots(reference=a, m=0.5 * D, weight=weight, terms=terms)
+
+
+def state(law: Zhao2018, u: Number) -> dict[str, Number]:
+    """Interface quantities (whole area A_0) for a largest spot of log-area `u` relative to a'_c.
+
+    F [N] Eqs. 9-10; K_N [N/m] Eq. 14; K_T [N/m] Eq. 22; A_r [m2] Eq. 11; W_NP, W_NE [J] Eqs. 16, 18;
+    eta_n [1] Eq. 19; C_N [N.s/m] Eq. 20; W_d, W, W_e [J] Eqs. 24, 26, 27; eta_t [1] Eq. 28;
+    C_T [N.s/m] = eta_t sqrt(mass K_T). Where no spot is elastic (u <= 0) the stiffness is zero and
+    eta_n infinite.
+    """
+    s = spots(law)
+    F, A_r, K_N, K_T = (s.total(name, u) for name in ("load", "area", "normal", "tangential"))
+    plastic, elastic = s.total("plastic_work", u), s.total("elastic_work", u)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        eta_n = np.where(elastic > 0.0, plastic / np.where(elastic > 0.0, elastic, 1.0), np.inf)
+        C_N = np.where(K_N > 0.0, mindlin.viscous_equivalent(eta_n, law.mass, K_N), 0.0)
+    W_d, W = shear_energies(law, F, A_r, s.total("loop_area", u))
+    eta_t = law.loss_factor()
+    return {
+        "F": F,
+        "K_N": K_N,
+        "K_T": K_T,
+        "A_r": A_r,
+        "W_NP": plastic,
+        "W_NE": elastic,
+        "eta_n": eta_n,
+        "C_N": C_N,
+        "W_d": W_d,
+        "W": W,
+        "W_e": W - W_d,
+        "eta_t": eta_t + 0.0 * F,
+        "C_T": mindlin.viscous_equivalent(eta_t, law.mass, K_T),
+    }
+
+
+def shear_energies(law: Zhao2018, F: Number, A_r: Number, loop_area: Number) -> tuple[Number, Number]:
+    """W_d and W [J] of a shear cycle, Eqs. 24 (9 sqrt(2 pi)/40) and 26, from the sum of a'^(3/2)."""
+    traction = law.mu * F / A_r
+    common = traction**2 * np.sqrt(np.pi / 8.0) / contact_shear_modulus(law.side1, law.side2) * loop_area
+    dissipated = 0.9 * common * mindlin.loop(law.traction_ratio)
+    stored = 0.375 * np.pi * common * mindlin.storage(law.traction_ratio)
+    return dissipated, stored

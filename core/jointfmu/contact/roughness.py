@@ -1,0 +1,93 @@
+"""What a roughness says of a contact: height of both surfaces together, and the level of its stiffness.
+
+Names of what a parameter file may state of the two surfaces, in its section [roughness]: `Ra1`, `Ra2`
+(arithmetic mean height), `Rq1`, `Rq2` (rms height), over the longest wave that machining leaves; or `h`,
+the rms height of both together. A side that is not stated counts as smooth.
+"""
+
+from collections.abc import Mapping
+from dataclasses import Field
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from ..quantity import Number, problem, quantity
+
+GAMMA = 0.45
+"""Decay length of the pressure over the rms height [1]: p ~ exp(approach/(GAMMA h)) in elastic contact of
+many spots; boundary elements give 0.40 to 0.48 (docs/validity.md)."""
+FACTOR = (pi / 2.0) ** 0.5
+"""R_q/R_a [1] of a Gaussian surface, 1.25."""
+
+
+def _height(doc: str) -> Any:
+    return quantity("m", f"{doc} over the longest wave that machining leaves", gt=0.0)
+
+
+DECLARED: dict[str, Field[Any]] = {
+    "Ra1": _height("arithmetic mean height of the first surface"),
+    "Ra2": _height("arithmetic mean height of the second surface"),
+    "Rq1": _height("rms height of the first surface"),
+    "Rq2": _height("rms height of the second surface"),
+    "h": _height("rms height of both surfaces together"),
+}
+"""{name: field} of what may be stated."""
+
+
+def rms_of_mean(Ra: Number) -> Number:
+    """R_q [m] of a Gaussian surface of arithmetic mean height R_a [m]: sqrt(pi/2) R_a."""
+    return FACTOR * Ra
+
+
+def together(first: Number, second: Number) -> Number:
+    """Rms height h [m] of two independent surfaces of rms heights [m]."""
+    return np.sqrt(first**2 + second**2)
+
+
+def level(pressure: Number, h: Number, gamma: Number = GAMMA) -> Number:
+    """Normal stiffness per area k [N/m3] under a nominal pressure [Pa]: p/(gamma h).
+
+    Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011); h [m] is the rms height of
+    both surfaces together.
+    """
+    return pressure / (gamma * h)
+
+
+def excluded(name: str) -> tuple[str, ...]:
+    """Names that cannot stand beside one: they speak of the same side, or `h` of both."""
+    if name == "h":
+        return tuple(other for other in DECLARED if other != "h")
+    return ({"a": "Rq", "q": "Ra"}[name[1]] + name[2], "h")
+
+
+def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
+    """{name: height [m]} as stated. `prefix` is put before names in messages.
+
+    Raises ValueError, one line: an unknown name, no number, outside (0, inf), or two heights of one side.
+    """
+    problems = [f"unknown name {prefix + name!r}" for name in stated if name not in DECLARED]
+    if problems:
+        problems.append(f"allowed are {', '.join(prefix + name for name in DECLARED)}")
+    known = {name: value for name, value in stated.items() if name in DECLARED}
+    texts = (problem(prefix + name, value, DECLARED[name]) for name, value in known.items())
+    problems += [text for text in texts if text]
+    for name in known:
+        beside = [other for other in excluded(name) if other in known]
+        if beside:
+            others = ", ".join(prefix + other for other in beside)
+            problems.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
+            break
+    if problems:
+        raise ValueError("; ".join(problems))
+    return {name: float(value) for name, value in known.items()}
+
+
+def height(stated: Mapping[str, float]) -> float | None:
+    """Rms height h [m] of both surfaces together; None where nothing is stated."""
+    if not stated:
+        return None
+    if "h" in stated:
+        return stated["h"]
+    sides = (stated.get(f"Rq{side}", rms_of_mean(stated.get(f"Ra{side}", 0.0))) for side in (1, 2))
+    return float(together(*sides))

@@ -1,0 +1,1 @@
+"""Files: columns of numbers, and the date in what is written."""

@@ -1,0 +1,191 @@
+"""Columns of numbers in CSV: every column states its unit, nothing is guessed.
+
+The first line that is no comment (#) names the columns, `torque [N.m], angle [arcmin]`. Columns are
+separated by comma, semicolon or tab; numbers have a decimal point. Columns that are not asked for
+are passed over. What is written has commas.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..quantity.units import Sizes, measured
+
+Array = NDArray[np.float64]
+Column: TypeAlias = NDArray[Any]
+"""Real or whole numbers."""
+Head: TypeAlias = tuple[str, str | None]
+"""Name and unit of a column; None: it states none."""
+
+_HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Columns of a file in SI units, in the order of its rows, which are on the named lines.
+
+    units : {name: unit in the heading}
+    """
+
+    path: Path
+    columns: Mapping[str, Array]
+    lines: Sequence[int] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def require(self, name: str, spec: Mapping[str, Sizes]) -> Array:
+        """A column; ValueError if the file has none."""
+        if name not in self.columns:
+            raise ValueError(f"{self.path}: has no column {name!r}; expected {heading({name: spec[name]})}")
+        return self.columns[name]
+
+
+def heading(spec: Mapping[str, Sizes]) -> str:
+    """The columns with their units as text."""
+    return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
+
+
+def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
+    """Read the columns named in `spec` that a file has.
+
+    Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
+    without or with a foreign unit or given twice, a row of another length, a value that is no finite
+    number, fewer than `least` rows.
+    """
+    path = Path(path)
+    lines = content(path)
+    if not lines:
+        raise ValueError(f"{path}: is empty; expected columns {heading(spec)}")
+    mark = separator(lines[0][1])
+    head = cells(lines[0][1], mark)
+    places = _places(path, head, spec)
+    if len(lines) - 1 < least:
+        raise ValueError(f"{path}: has {len(lines) - 1} points, at least {least} are needed")
+    numbers = [number for number, _ in lines[1:]]
+    rows = [cells(line, mark) for _, line in lines[1:]]
+    for line, row in zip(numbers, rows, strict=True):
+        check_length(path, line, row, len(head))
+    columns = {
+        name: _column(path, name, numbers, [row[place] for row in rows]) * size
+        for name, (place, size, _) in places.items()
+    }
+    return Columns(path, columns, numbers, {name: unit for name, (_, _, unit) in places.items()})
+
+
+def names(path: str | Path) -> list[str]:
+    """Names of a file's columns, in lower case; none if it is empty. Raises ValueError as `read`."""
+    lines = content(Path(path))
+    if not lines:
+        return []
+    heads = (_HEADING.match(cell) for cell in cells(lines[0][1], separator(lines[0][1])))
+    return [match["name"].lower() for match in heads if match]
+
+
+def content(path: Path) -> list[tuple[int, str]]:
+    """Numbers and texts of a file's lines, without comments and empty ones.
+
+    Raises ValueError, one line, if the file cannot be read or is no text.
+    """
+    try:
+        whole = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a CSV file") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
+    lines = enumerate(whole.splitlines(), 1)
+    return [(i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
+
+
+def separator(line: str) -> str | None:
+    """What separates the columns of a line: the most frequent of semicolon, comma and tab; None: nothing."""
+    mark = max(";,\t", key=line.count)
+    return mark if mark in line else None
+
+
+def cells(line: str, mark: str | None) -> list[str]:
+    """The cells of a line; without a separator blanks divide nothing."""
+    return next(csv.reader([line], delimiter=mark or ","))
+
+
+def check_length(path: Path, line: int, row: Sequence[str], count: int) -> None:
+    """Raise ValueError naming the line if it has not as many columns as it should."""
+    if len(row) != count:
+        raise ValueError(f"{path}: line {line} has {len(row)} columns, expected {count}")
+
+
+def number(cell: str) -> float | None:
+    """A cell as a number with a decimal point; None if it is none."""
+    try:
+        return float(cell)
+    except ValueError:
+        return None
+
+
+def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float, str]]:
+    """{name: (place, size of its unit, the unit)} of the columns asked for."""
+    places: dict[str, tuple[int, float, str]] = {}
+    for place, cell in enumerate(head):
+        match = _HEADING.match(cell)
+        name = match["name"].lower() if match else ""
+        if not match or name not in spec:
+            continue
+        allowed = ", ".join(spec[name])
+        if name in places:
+            raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
+        if match["unit"] is None:
+            raise ValueError(
+                f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
+            )
+        try:
+            places[name] = place, measured(match["unit"], spec[name]), match["unit"]
+        except ValueError:
+            raise ValueError(
+                f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed} and others that "
+                "measure the same"
+            ) from None
+    if not places:
+        shown = ", ".join(cell.strip() for cell in head)[:80]
+        raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
+    return places
+
+
+def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]) -> Array:
+    values = np.array([np.nan if (value := number(cell)) is None else value for cell in column])
+    if np.any(wrong := ~np.isfinite(values)):
+        first = int(np.argmax(wrong))
+        raise ValueError(
+            f"{path}: line {numbers[first]}: {name} = {column[first].strip()!r} is no finite number with a "
+            "decimal point"
+        )
+    return values
+
+
+def text(
+    heads: Sequence[Head], columns: Sequence[Column], digits: int | None = None, above: Sequence[str] = ()
+) -> str:
+    """Columns (n) as the text of a file: heading `name [unit]`, one line per row.
+
+    digits : of real numbers; None: as many as give the number back to the last bit
+    above  : lines before the heading
+    """
+    first = io.StringIO()
+    names = [name if unit is None else f"{name} [{unit}]" for name, unit in heads]
+    csv.writer(first, lineterminator="").writerow(names)
+    return "\n".join([*above, first.getvalue(), *rows(columns, [digits] * len(heads)), ""])
+
+
+def rows(columns: Iterable[Column], digits: Sequence[int | None], between: str = ",") -> list[str]:
+    """The lines of `text`, each column with its own digits; rounded numbers have no negative zero."""
+    formats, values = [], []
+    for column, count in zip(columns, digits, strict=True):
+        exact = count is None or column.dtype.kind != "f"
+        formats.append("%r" if exact else f"%.{count}g")
+        values.append((column if exact else column + 0.0).tolist())
+    pattern = between.join(formats)
+    return [pattern % row for row in zip(*values, strict=True)]

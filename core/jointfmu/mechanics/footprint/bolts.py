@@ -1,0 +1,122 @@
+"""Pressure of a bolted frame: every bolt spreads its force over the contact by one decay law."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...quantity import check, quantity
+from .plate import EDGE, BoltedPlate
+from .shape import NodalField, PressureShape, mean_squares
+
+Array = NDArray[np.float64]
+
+CELLS_ACROSS = 7
+"""Cells across the flange: 1000 nodes for the default frame, as in Zhao's mesh of 1019."""
+_SUBCELLS = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoltPattern:
+    """Rectangular frame with eight bolts on its centre line: three in each row, one between per side.
+
+    The rows lie at y = +-row_spacing/2 with bolts at x = -column_spacing/2, 0, +column_spacing/2.
+    """
+
+    row_spacing: float = quantity("m", "distance of the two bolt rows", gt=0.0)
+    column_spacing: float = quantity("m", "distance of the outer bolts of a row", gt=0.0)
+    flange_width: float = quantity("m", "width of the contact frame", gt=0.0)
+    hole_diameter: float = quantity("m", "clearance hole of a bolt", gt=0.0)
+    decay_length: float = quantity("m", "length of the pressure decay", gt=0.0, calibration=True)
+    decay_exponent: float = quantity("1", "exponent of the pressure decay", gt=0.0, calibration=True)
+
+    def __post_init__(self) -> None:
+        check(self)
+        if self.hole_diameter >= self.flange_width:
+            raise ValueError(
+                f"hole_diameter = {self.hole_diameter:g} m is outside (0, {self.flange_width:g}): "
+                "the hole must fit into the flange"
+            )
+
+    @property
+    def bolts(self) -> Array:
+        """Bolt positions (8, 2) [m]: rows y > 0, y = 0, y < 0."""
+        x, y = 0.5 * self.column_spacing, 0.5 * self.row_spacing
+        return np.array([[-x, y], [0, y], [x, y], [-x, 0], [x, 0], [-x, -y], [0, -y], [x, -y]])
+
+    @property
+    def area(self) -> float:
+        """Area [m2] of the frame without its holes."""
+        frame = 2.0 * self.flange_width * (self.column_spacing + self.row_spacing)
+        return frame - 0.25 * np.pi * len(self.bolts) * self.hole_diameter**2
+
+    @property
+    def rows(self) -> tuple[float, float]:
+        """Bolts [1] and distance [m] of the two rows that carry a moment."""
+        return 3.0, self.row_spacing
+
+    @property
+    def bolt_spread(self) -> tuple[float, float]:
+        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
+        return mean_squares(self.bolts)
+
+    def decay(self, distance: Array) -> Array:
+        """Pressure of one bolt, up to its factor: (1 + (r/decay_length)^2)^-decay_exponent [1]."""
+        return np.asarray((1.0 + (distance / self.decay_length) ** 2) ** -self.decay_exponent)
+
+    def shape(self) -> PressureShape:
+        """Shares, positions and pressures of the cells of the frame."""
+        areas, points = cells(self)
+        unit = unit_pressures(self, areas, points, points) * areas.sum()
+        centroid = np.average(points, axis=0, weights=areas)
+        return PressureShape(
+            share=areas / areas.sum(),
+            position=points - centroid,
+            equal=unit.mean(axis=0),
+            tilt=unit[:3].mean(axis=0) - unit[5:].mean(axis=0),
+        )
+
+
+def cells(pattern: BoltPattern) -> tuple[Array, Array]:
+    """Areas (n) [m2] and centroids (n, 2) [m] of square cells of the frame, holes cut out."""
+    size = pattern.flange_width / CELLS_ACROSS
+    half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
+    outer, inner = half + 0.5 * pattern.flange_width, half - 0.5 * pattern.flange_width
+    count = np.maximum(np.round(2.0 * outer / size).astype(int), 1)
+    sub = [(np.arange(n * _SUBCELLS) + 0.5) / (n * _SUBCELLS) for n in count]
+    x, y = np.meshgrid(*(o * (2.0 * s - 1.0) for o, s in zip(outer, sub, strict=True)), indexing="ij")
+    solid = (np.abs(x) > inner[0] * EDGE) | (np.abs(y) > inner[1] * EDGE)
+    for bx, by in pattern.bolts:
+        solid &= np.hypot(x - bx, y - by) > 0.5 * pattern.hole_diameter * EDGE
+    area = 4.0 * outer[0] * outer[1] / solid.size
+
+    def total(values: Array) -> Array:
+        blocks = (values * solid).reshape(count[0], _SUBCELLS, count[1], _SUBCELLS)
+        return np.asarray(blocks.sum(axis=(1, 3)).ravel())
+
+    points = total(np.ones_like(x))
+    keep = points > 0
+    centroids = np.stack([total(x)[keep], total(y)[keep]], axis=1) / points[keep, None]
+    return points[keep] * area, centroids
+
+
+def unit_pressures(pattern: BoltPattern, areas: Array, points: Array, at: Array) -> Array:
+    """Pressure (8, k) [Pa] at points `at` (k, 2) [m] of 1 N in each bolt; its sum over cells is 1 N."""
+
+    def decay(where: Array) -> Array:
+        offset = where[None, :, :] - pattern.bolts[:, None, :]
+        return pattern.decay(np.hypot(offset[..., 0], offset[..., 1]))
+
+    return np.asarray(decay(at) / np.sum(areas * decay(points), axis=1)[:, None])
+
+
+PressureSource: TypeAlias = BoltPattern | BoltedPlate | NodalField
+"""What gives the pressure of a bolted joint."""
+
+
+@lru_cache(maxsize=8)
+def pressure_shape(source: PressureSource) -> PressureShape:
+    """The baked-in table of the bolted joint: shares, positions and pressure shapes."""
+    return source.shape()

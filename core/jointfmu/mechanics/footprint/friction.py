@@ -1,0 +1,247 @@
+"""Few patches that carry the friction of a bolted contact as all its nodes do, whatever its law.
+
+Under loads that stay, a node whose approach is delta carries p(delta) - p(delta - v) against a shift, v in
+units of mu/kappa (Jaeger 1995, Ciavarella 1998). A turn about the normal has the distance from its pole as a
+factor, which is no polynomial, and a tilt moves the pressure about: as many nodes with other shares as there
+is room for keep few of these sums. The patches may leave the nodes: their places and pressures are fitted as
+well, to the friction of rigid motions of the tilted contact under laws p ~ delta^N. What `few_points` keeps
+to round-off they keep, too. The fit is one of rounded numbers (`reproducible`), so that it ends in one place
+on every processor. benchmarks/patch_reduction.py prints how far friction is from that of all nodes.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .elimination import changes, solved
+from .patches import balanced, few_points, largest_moment
+from .reproducible import cleared, length, over, powers, product, root, rounded, to_power
+from .shape import PressureShape
+
+Array = NDArray[np.float64]
+
+POWERS = (4.0, 8.0, 8.0, 16.0)
+"""Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""
+CASES = 240
+"""States of the joint and motions from rest whose friction is fitted."""
+UNTILTED = 0.4
+"""Part of them without displacement and tilt [1]."""
+APART, TILTED = 0.1, 0.2
+"""Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
+MOST_MOMENT = 2.5
+"""Largest moment [1], over that at which nodes are open that carried a small part of the force."""
+LEAST_WAY, MOST_WAY = 0.05, 3.0
+"""Shortest and longest motion [1], over that at which a node at the radius of gyration carries all but the
+part STUCK of its friction."""
+STUCK = 2.0**-13
+STEPS = 50
+"""Steps of Levenberg and Marquardt's method."""
+FIRST_DAMPING, LEAST_DAMPING = 1e-2, 1e-6
+"""Damping over the diagonal of the equations [1]."""
+LESS, MORE = 0.2, 5.0
+"""Factors of it after a step that is better and one that is not [1]."""
+LARGEST_STEP = 0.5
+"""Most that a share, place or pressure changes in a step [1], over its size."""
+LEAST_DIAGONAL = 1e-9
+"""Of the equations of the steps, over the largest [1]."""
+HOLDS = 400.0
+"""Weight of what is exact beside that of a case [1]."""
+DIFFERENCE = 1e-6
+"""Change of a place or pressure over its size [1] by which derivatives are found."""
+TINY = float(np.finfo(float).tiny)
+_RATIOS = powers(1.0 / 1.0969815577985598, 7)
+"""An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
+
+
+def friction_patches(shape: PressureShape, count: int) -> PressureShape:
+    """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
+
+    Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
+
+    Raises ValueError if count is too small to keep the sums.
+    """
+    if shape.share.size <= count:
+        return shape
+    rough = rounded(shape)
+    gyration = float(np.sqrt(np.add.reduce(rough.share * np.add.reduce(rough.position**2, axis=1))))
+    highest, steep = float(np.max(rough.equal)), max(float(np.max(np.abs(rough.tilt))), TINY)
+    unit = np.array([1.0, gyration, gyration, highest, steep])[:, None]
+    nodes, there, points = (
+        np.stack([each.share, *each.position.T, each.equal, each.tilt]) / unit
+        for each in (rough, shape, few_points(rough, count))
+    )
+    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
+    moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
+    share, x, y, equal, tilt = unit * moved
+    return cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
+
+
+@dataclass(frozen=True, slots=True)
+class _Motions:
+    """Cases (m, 1) of a contact whose lengths are over its radius of gyration, pressures over the largest.
+
+    power            : N of the law [1]
+    moment           : factor of tilt [1]
+    apart            : motion apart [1], over the largest approach
+    about_x, about_y : tilts [1] that move the edge by these parts of the largest approach
+    along            : (3, m, 1) unit vector of the shift along x and y and of the turn [1]
+    way              : its length [1], in mu/kappa times the largest approach
+    """
+
+    power: Array
+    moment: Array
+    apart: Array
+    about_x: Array
+    about_y: Array
+    along: Array
+    way: Array
+
+    @classmethod
+    def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
+        """Even over what a contact with nodes (5, n) up to |x|, |y| (2) can do: shifts, turns about its
+        centre, and twice as many about places where it is pressed."""
+        number = np.arange(1, CASES + 1)
+        unit = (0.5 + number[:, None] * _RATIOS) % 1.0
+        moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
+        moves, kind = number > UNTILTED * CASES, np.minimum(number % 4, 2)
+        along = 2.0 * np.abs(angle) - 1.0  # on a square that stands on its corner
+        across = np.sign(angle) * (1.0 - np.abs(along))
+        force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones(CASES)
+        _, x, y, _, _ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
+        shift_or_turn = ((along, nothing, y), (across, nothing, -x), (nothing, one, one))
+        motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
+        motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
+        power = np.choose(number % len(POWERS), POWERS)
+        way = LEAST_WAY + (MOST_WAY - LEAST_WAY) * unit[:, 6] ** 2
+        columns = (
+            power,
+            largest_moment * moment,
+            APART * apart * moves,
+            TILTED / reach[1] * about_x * moves,
+            TILTED / reach[0] * about_y * moves,
+            motion,
+            way * (1.0 - root(np.full((CASES, 1), STUCK), power[:, None])[:, 0]),
+        )
+        return cls(*(each[..., None] for each in columns))
+
+    def friction(self, points: Array) -> tuple[Array, Array]:
+        """Of points (5, n), per share: force along x and y, moment and loss of a loop (4 m, n), and the force
+        (m, n) in gross slip."""
+        _, x, y, equal, tilt = points
+        start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
+        u, v = self.along[0] - self.along[2] * y, self.along[1] + self.along[2] * x
+        size = np.sqrt(u * u + v * v)
+        way = self.way * size
+        now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
+        then = np.maximum(now - way, 0.0)
+        most, rest = to_power(now, self.power), to_power(then, self.power)
+        force, work = most - rest, most * way - (now * most - then * rest) / (self.power + 1.0)
+        part = force / np.maximum(size, TINY)
+        each = (part * u, part * v, part * (x * v - y * u), 8.0 * (work - 0.5 * force * way))
+        return np.concatenate(each), most * size
+
+
+@dataclass(frozen=True, slots=True)
+class _Aim:
+    """What the sums over points (5, n) of share, x, y, equal and tilt should be.
+
+    reach : (2) largest |x| and |y| [1]
+    scale : (m) of the sums of friction [1]
+    hold  : (12) of the sums that are exact [1]
+    held  : (12) these
+    sums  : (m + 12) all of them, scaled
+    """
+
+    motions: _Motions
+    reach: Array
+    scale: Array
+    hold: Array
+    held: Array
+    sums: Array
+
+    @classmethod
+    def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
+        """Those over nodes (5, n)."""
+        reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
+        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
+        friction, gross = (over(each, share) for each in motions.friction(nodes))
+        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * CASES :]]), TINY)
+        exact = _exact(nodes, reach)
+        held, hold = over(exact, share), HOLDS / np.maximum(over(np.abs(exact), share), TINY)
+        return cls(motions, reach, scale, hold, held, np.concatenate([scale * friction, hold * held]))
+
+    def values(self, points: Array) -> Array:
+        """(m + 12, n) whose sums with the shares should be `sums`."""
+        friction = self.motions.friction(points)[0] * self.scale[:, None]
+        return np.concatenate([friction, _exact(points, self.reach) * self.hold[:, None]])
+
+
+def _balanced(points: Array, reach: Array, sums: Array) -> Array:
+    """Points (5, n) with the exact sums (12), by small changes of their shares, equal and tilt."""
+    share, x, y, equal, tilt = points
+    place = _exact(points, reach)[:6]
+    share = share + changes(share, place, sums[:6] - over(place, share))
+    force, place = share * equal, place[:3]
+    equal = equal + changes(force, place, sums[6:9] - over(place, force)) / share
+    force = share * equal
+    tilt = tilt + changes(force, place, sums[9:] - over(place, share * tilt)) / share
+    return np.stack([share, x, y, equal, tilt])
+
+
+def _exact(points: Array, reach: Array) -> Array:
+    """(12, n) the functions of points (5, n) whose sums are exact."""
+    _, x, y, equal, tilt = points
+    return balanced(x / reach[0], y / reach[1], equal, tilt)
+
+
+@dataclass(frozen=True, slots=True)
+class _Around:
+    """An aim, in linear terms of what points change by.
+
+    miss     : (m) how far the sums are off
+    size     : (5, n) of which the changes are parts
+    square   : (5 n, 5 n) of the derivatives
+    gradient : (5 n) of half the sum of miss^2
+    """
+
+    miss: Array
+    size: Array
+    square: Array
+    gradient: Array
+
+    @classmethod
+    def of(cls, points: Array, aim: _Aim) -> "_Around":
+        """At points (5, n)."""
+        share, *_, equal, _ = points
+        values, one = aim.values(points), np.ones_like(share)
+        size = np.stack([share, *np.outer(aim.reach, one), equal, equal])
+        slopes = [values * share]
+        for place in range(1, 5):
+            moved = points.copy()
+            moved[place] += DIFFERENCE * size[place]
+            slopes.append((aim.values(moved) - values) / DIFFERENCE * share)
+        slope, miss = np.concatenate(slopes, axis=1).T.copy(), over(values, share) - aim.sums
+        return cls(miss, size, product(slope, slope), over(slope, miss))
+
+    def step(self, damping: float) -> Array:
+        """Change (5, n) of the points."""
+        own = np.diag(self.square)
+        diagonal = damping * (own + LEAST_DIAGONAL * np.max(own))
+        parts = solved(self.square + np.diag(diagonal), -self.gradient)
+        parts = np.clip(parts, -LARGEST_STEP, LARGEST_STEP).reshape(self.size.shape)
+        return np.asarray(self.size * parts)
+
+
+def _moved(points: Array, aim: _Aim) -> Array:
+    """Points (5, n) after STEPS steps of Levenberg and Marquardt's method."""
+    here, damping = _Around.of(points, aim), FIRST_DAMPING
+    for _ in range(STEPS):
+        trial = _balanced(points + here.step(damping), aim.reach, aim.held)
+        miss = over(aim.values(trial), trial[0]) - aim.sums
+        allowed = np.all(trial[0] > 0.0) and np.all(trial[3] >= 0.0)
+        if allowed and length(miss) < length(here.miss):
+            points, here, damping = trial, _Around.of(trial, aim), max(LESS * damping, LEAST_DAMPING)
+        else:
+            damping *= MORE
+    return points

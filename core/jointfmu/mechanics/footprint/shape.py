@@ -1,0 +1,141 @@
+"""What a bolted contact's pressure looks like, and the shape that comes as numbers: a nodal field."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...quantity import check, quantity, series
+
+Array = NDArray[np.float64]
+
+BALANCE = 1e-6
+"""Largest error of a field's sums [1]: what the reduction of a field keeps."""
+ALIKE = 11
+"""Decimals to which `equal` and `tilt` of nodes agree that symmetry makes equal: they are numbers near 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class PressureShape:
+    """Nodes of the bolted contact and the pressure that unit bolt forces make.
+
+    share    : (n)    [1] part of the nominal area, sums to 1
+    position : (n, 2) [m] relative to the centroid of the contact
+    equal    : (n)    [1] pressure over mean pressure with equal bolt forces
+    tilt     : (n)    [1] the same for +1 on the row y > 0 and -1 on the row y < 0, over the mean
+                          pressure of one row
+    """
+
+    share: Array
+    position: Array
+    equal: Array
+    tilt: Array
+
+    def part(self, nodes: "slice | NDArray[np.intp]") -> "PressureShape":
+        """Some of the nodes, with their shares."""
+        return PressureShape(self.share[nodes], self.position[nodes], self.equal[nodes], self.tilt[nodes])
+
+    def merged(self, moment: bool = True) -> "MergedShape":
+        """Nodes that have the same pressure under every preload and moment as one.
+
+        Without `moment` they are those that have it under every preload.
+        """
+        tilt = self.tilt if moment else 0.0 * self.tilt
+        keys = np.round(np.column_stack([self.equal, tilt]), ALIKE)
+        _, first, group = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
+        x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
+        return MergedShape(share, self.equal[first], tilt[first], x2, y2)
+
+
+def growing(share: Array, y: Array, equal: Array) -> Array:
+    """What a moment of 1 N.m on 1 m2 adds to the pressure (n) [1/m] if it grows from the centre of pressure.
+
+    share, y, equal are (n) of a PressureShape. equal (y - y_p)/sum(share equal (y - y_p)^2), y_p the centre.
+
+    Raises ValueError if all nodes that touch have the same y.
+    """
+    force = share * equal
+    away = y - force @ y
+    spread = float(force @ away**2)
+    if not spread > 0.0:
+        raise ValueError("all nodes that touch have the same y, expected a contact across the bolt rows")
+    return np.asarray(equal * away / spread)
+
+
+def mean_squares(points: Array) -> tuple[float, float]:
+    """Means of x^2 and y^2 of points (n, 2)."""
+    x2, y2 = np.mean(points**2, axis=0).tolist()
+    return x2, y2
+
+
+@dataclass(frozen=True, slots=True)
+class MergedShape:
+    """Nodes of different pressure; share, equal and tilt as in PressureShape.
+
+    x2, y2 : (n) [m2] means of the squared distances from the centroid along and across the bolt rows
+    """
+
+    share: Array
+    equal: Array
+    tilt: Array
+    x2: Array
+    y2: Array
+
+
+_POINTS = ("share", "x", "y", "equal", "tilt")
+"""What a point of a field has."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodalField:
+    """The pressure of a bolted contact at points that stand for a nodal contact result.
+
+    Raises ValueError if the points are not equally many in every entry or do not balance: shares that
+    sum to 1, the centroid at the origin, a mean of 1 of `equal` and of 0 of `tilt`, within BALANCE.
+    """
+
+    share: tuple[float, ...] = series("1", "parts of the nominal area, which sum to 1", gt=0.0)
+    x: tuple[float, ...] = series("m", "positions along the bolt rows, from the centroid")
+    y: tuple[float, ...] = series("m", "positions across the bolt rows, from the centroid")
+    equal: tuple[float, ...] = series("1", "pressures over mean pressure with equal bolt forces", ge=0.0)
+    tilt: tuple[float, ...] = series(
+        "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
+    )
+    bolt_x2: float = quantity(
+        "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
+    )
+    bolt_y2: float = quantity(
+        "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
+    )
+
+    def __post_init__(self) -> None:
+        check(self)
+        for name in _POINTS:
+            if (count := len(getattr(self, name))) != len(self.share):
+                raise ValueError(
+                    f"{name} has {count} numbers, expected as many as share has: {len(self.share)}"
+                )
+        shape = self.shape()
+        reach = float(np.max(np.abs(shape.position)))
+        x, y = shape.share @ shape.position
+        steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
+        for text, value, expected, size in (
+            ("the sum of share", float(np.sum(shape.share)), 1.0, 1.0),
+            ("x of the centroid", float(x), 0.0, reach),
+            ("y of the centroid", float(y), 0.0, reach),
+            ("the mean of equal", float(shape.share @ shape.equal), 1.0, 1.0),
+            ("the mean of tilt", float(shape.share @ shape.tilt), 0.0, steep),
+        ):
+            if not abs(value - expected) <= BALANCE * size:
+                raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
+
+    @property
+    def bolt_spread(self) -> tuple[float, float]:
+        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
+        return self.bolt_x2, self.bolt_y2
+
+    def shape(self) -> PressureShape:
+        """The points as arrays."""
+        share, x, y, equal, tilt = (np.array(getattr(self, name)) for name in _POINTS)
+        return PressureShape(share, np.column_stack([x, y]), equal, tilt)

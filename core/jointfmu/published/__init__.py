@@ -1,0 +1,1 @@
+"""Published numbers beside the computed ones, and what is calibrated to them."""

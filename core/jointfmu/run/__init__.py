@@ -1,0 +1,1 @@
+"""Running FMUs: host, ramp and loops."""

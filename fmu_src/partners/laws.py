@@ -1,0 +1,211 @@
+"""What a joint meets in a system: inertia, mass and load; the equations of their FMUs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.quantity import Number, check, quantity
+
+GRAVITY = 9.80665
+"""Standard acceleration of free fall [m/s2]."""
+
+
+def smooth_step(x: Number) -> Number:
+    """From 0 at x <= 0 to 1 at x >= 1 with continuous first and second derivative."""
+    r = np.fmin(np.fmax(x, 0.0), 1.0)
+    return r * r * r * (10.0 + r * (6.0 * r - 15.0))
+
+
+def smooth_step_slopes(x: Number) -> tuple[Number, Number]:
+    """First and second derivative of `smooth_step`."""
+    r = np.fmin(np.fmax(x, 0.0), 1.0)
+    return 30.0 * (r * (1.0 - r)) ** 2, 60.0 * r * (1.0 - r) * (1.0 - 2.0 * r)
+
+
+def _lag(flange: str) -> Any:
+    doc = f"communication steps by which the load on {flange} comes late: 1 from a joint in a parallel master"
+    return quantity("1", doc, ge=0.0, le=1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RotationalInertia:
+    """An inertia under two torques, and under its weight."""
+
+    J: float = quantity("kg.m2", "moment of inertia about the axis", gt=0.0)
+    m: float = quantity("kg", "mass on which the weight acts", ge=0.0)
+    l: float = quantity("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
+    lag_a: float = _lag("a")
+    lag_b: float = _lag("b")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Angle [rad] from hanging down, speed [rad/s], acceleration [rad/s2]."""
+        weight = self.m * GRAVITY * self.l * np.sin(v["phi"])
+        return {"phi": v["phi"], "w": v["w"], "a": (v["tau_a"] + v["tau_b"] - weight) / self.J}
+
+
+@dataclass(frozen=True, kw_only=True)
+class TranslationalMass:
+    """A mass under two forces."""
+
+    m: float = quantity("kg", "mass", gt=0.0)
+    lag_a: float = _lag("a")
+    lag_b: float = _lag("b")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Position [m], speed [m/s], acceleration [m/s2]."""
+        return {"s": v["s"], "v": v["v"], "a": (v["f_a"] + v["f_b"]) / self.m}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Load:
+    """A ramp that stays and a pulse, over time; subclasses give both heights a unit."""
+
+    ramp_start: float = quantity("s", "begin of the ramp")
+    ramp_duration: float = quantity("s", "from the ramp's begin to its end", gt=0.0)
+    pulse_start: float = quantity("s", "begin of the pulse")
+    pulse_rise: float = quantity("s", "rise time of the pulse, and of its fall", gt=0.0)
+    pulse_hold: float = quantity("s", "time at the pulse's height", ge=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def corners(self) -> tuple[Number, ...]:
+        """Times [s] at which an edge of ramp or pulse begins or ends."""
+        top, fall = self.pulse_start + self.pulse_rise, self.pulse_start + self.pulse_rise + self.pulse_hold
+        ramp = (self.ramp_start, self.ramp_start + self.ramp_duration)
+        return (*ramp, self.pulse_start, top, fall, fall + self.pulse_rise)
+
+    def at(self, time: Number, ramp: Number, pulse: Number) -> Number:
+        """Ramp and pulse of these heights at a time [s]."""
+        rise = smooth_step((time - self.pulse_start) / self.pulse_rise)
+        fall = smooth_step((time - self.pulse_start - self.pulse_rise - self.pulse_hold) / self.pulse_rise)
+        return ramp * smooth_step((time - self.ramp_start) / self.ramp_duration) + pulse * (rise - fall)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueProfile(_Load):
+    """A torque over time."""
+
+    ramp_height: float = quantity("N.m", "torque of the ramp")
+    pulse_height: float = quantity("N.m", "torque of the pulse")
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Torque [N.m], with that of the input."""
+        return {"tau": v["tau_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceProfile(_Load):
+    """A force over time."""
+
+    ramp_height: float = quantity("N", "force of the ramp")
+    pulse_height: float = quantity("N", "force of the pulse")
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Force [N], with that of the input."""
+        return {"f": v["f_in"] + self.at(v["time"], self.ramp_height, self.pulse_height)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class AngleProfile:
+    """A turn from rest to rest, as a motor makes it that follows its command exactly."""
+
+    start: float = quantity("s", "begin of the turn")
+    duration: float = quantity("s", "from its begin to its end", gt=0.0)
+    height: float = quantity("rad", "angle of the turn")
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def corners(self) -> tuple[Number, ...]:
+        """Times [s] at which the turn begins and ends."""
+        return (self.start, self.start + self.duration)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Angle [rad] and speed [rad/s], with those of the inputs."""
+        x = (v["time"] - self.start) / self.duration
+        rate, _ = smooth_step_slopes(x)
+        return {
+            "phi": v["phi_in"] + self.height * smooth_step(x),
+            "w": v["w_in"] + self.height * rate / self.duration,
+        }
+
+
+POINTS = 17
+"""Of a TorqueCurve."""
+
+
+def _point(k: int) -> Any:
+    return quantity("N.m", f"torque at point {k + 1} of {POINTS} of the Bernstein polynomial")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueCurve:
+    """A torque over time as a Bernstein polynomial, held before and after it."""
+
+    start: float = quantity("s", "begin of the curve")
+    duration: float = quantity("s", "from its begin to its end", gt=0.0)
+    p1: float = _point(0)
+    p2: float = _point(1)
+    p3: float = _point(2)
+    p4: float = _point(3)
+    p5: float = _point(4)
+    p6: float = _point(5)
+    p7: float = _point(6)
+    p8: float = _point(7)
+    p9: float = _point(8)
+    p10: float = _point(9)
+    p11: float = _point(10)
+    p12: float = _point(11)
+    p13: float = _point(12)
+    p14: float = _point(13)
+    p15: float = _point(14)
+    p16: float = _point(15)
+    p17: float = _point(16)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @staticmethod
+    def shares(x: Number) -> list[Number]:
+        """Of each point in the torque, at a time over the duration [1]."""
+        r = np.fmin(np.fmax(x, 0.0), 1.0)
+        last = POINTS - 1
+        return [comb(last, k) * r**k * (1.0 - r) ** (last - k) for k in range(POINTS)]
+
+    @classmethod
+    def fitted(cls, x: NDArray[np.float64], torque: NDArray[np.float64]) -> dict[str, float]:
+        """Points by name of the curve closest to torques [N.m] over x [1] from 0 to 1, exact at both ends."""
+        shares = np.stack(cls.shares(x), axis=1)
+        ends = [0, POINTS - 1]
+        rest = torque - shares[:, ends] @ torque[[0, -1]]
+        inner, *_ = np.linalg.lstsq(shares[:, 1:-1], rest, rcond=None)
+        points = [torque[0], *inner, torque[-1]]
+        return {f"p{k + 1}": float(value) for k, value in enumerate(points)}
+
+    def corners(self) -> tuple[Number, ...]:
+        """Times [s] at which the curve begins and ends."""
+        return (self.start, self.start + self.duration)
+
+    def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
+        """Torque [N.m], with that of the input."""
+        shares = self.shares((v["time"] - self.start) / self.duration)
+        points = [getattr(self, f"p{k + 1}") for k in range(POINTS)]
+        return {"tau": v["tau_in"] + sum(point * share for point, share in zip(points, shares, strict=True))}
+
+
+PARTNERS: dict[str, type[Any]] = {
+    cls.__name__: cls
+    for cls in (RotationalInertia, TranslationalMass, TorqueProfile, ForceProfile, AngleProfile, TorqueCurve)
+}
+"""{FMU: parameters} of all."""

@@ -1,0 +1,484 @@
+"""Building: what comes out, and that a failure says why and leaves nothing behind."""
+
+import csv
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable
+from contextlib import redirect_stdout, suppress
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from shutil import copytree, ignore_patterns, rmtree
+
+import pytest
+import pythonfmu
+from browser import PROGRAM, browser
+from conftest import refused_line, run_host
+from fmpy import read_model_description
+from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_fmu_src.native import generate
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.python import build as python_build
+from jointfmu_tools import cli
+from jointfmu_tools.job import checks, pipeline
+from jointfmu_tools.systems import system as systems
+from proofs import BOTH
+from proofs import copy as changed_copy
+from pythonfmu import FmuBuilder
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import default, dump
+from jointfmu.published import validation
+from jointfmu.run import ramp
+
+pytestmark = pytest.mark.slow
+
+Capture = pytest.CaptureFixture[str]
+NAMES = list(MODELS)
+
+
+def everything(folder: Path) -> list[Path]:
+    return sorted(folder.rglob("*"))
+
+
+@pytest.fixture
+def gear_file(tmp_path: Path) -> Path:
+    path = tmp_path / "my gear.toml"
+    path.write_text(dump(default("gear_contact").with_values({"e": 0.3}, "user", "test")))
+    return path
+
+
+# What comes out
+
+
+def test_fixed_parameters_run_as_tunable_ones(tmp_path: Path, capsys: Capture) -> None:
+    found = {}
+    for said in ("fixed", "tunable"):
+        out = tmp_path / said
+        asked = ["--flavour", "fmi2", "fmi3", "--parameters", said, "--out", str(out)]
+        assert cli.main(["build", "GearContact", *asked]) == 0
+        for version in ("fmi2", "fmi3"):
+            path = out / version / "GearContact.fmu"
+            assert validate_fmu(str(path)) == []
+            variables = read_model_description(str(path)).modelVariables
+            assert {v.variability for v in variables if v.causality == "parameter"} == {said}
+            found[said, version] = ramp.run(path, "f", 1e3, 250.0, {"e": 0.3}).csv()
+    assert len(set(found.values())) == 1
+
+
+def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path, capsys: Capture) -> None:
+    out = tmp_path / "out with spaces äö"
+    arguments = ["build", "GearContact", "--flavour", "python", "--params", str(gear_file), "--out", str(out)]
+    assert cli.main(arguments) == 0
+    built = out / "python" / "GearContact.fmu"
+    assert capsys.readouterr().out == f"built {built}\n"
+    assert [p for p in everything(out) if p.is_file()] == [built]
+    start = {v.name: v.start for v in read_model_description(str(built)).modelVariables}
+    assert float(start["e"]) == 0.3
+    assert ramp.run(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
+
+
+def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
+    status = cli.main(["build", "BoltedJoint", "--flavour", "python", "--out", str(tmp_path), "--json"])
+    assert status == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["built"] == [str(tmp_path / "python" / "BoltedJoint.fmu")]
+    assert found.keys() == {"built", "joints"}
+    assert found["joints"]["bolted_joint"].keys() == {"level", "warnings"}
+
+
+def test_a_parameter_file_without_names_builds_the_fmus_of_its_joint(tmp_path: Path) -> None:
+    built = build([], ["python"], default("harmonic_drive"), tmp_path)
+    assert {p.stem for p in built} == {"HarmonicDriveSpring", "HarmonicDriveCompliance"}
+
+
+def test_a_second_build_replaces_the_first(tmp_path: Path) -> None:
+    (first,) = build(["GearContact"], ["python"], None, tmp_path)
+    before = read_model_description(str(first)).guid
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    (second,) = build(["GearContact"], ["python"], changed, tmp_path)
+    assert second == first
+    assert read_model_description(str(second)).guid != before
+    assert [p.name for p in (tmp_path / "python").iterdir()] == ["GearContact.fmu"]
+
+
+def test_an_fmu_starts_with_the_inputs_of_its_parameter_file(tmp_path: Path) -> None:
+    """All flavours list them, use them without being told, and the page says so."""
+    file = replace(default("bolted_joint"), inputs={"preload": 9e3})
+    model = MODELS["BoltedJoint"]
+    loaded = model.evaluate(model.spring(file.values), {v.name: file.start(v.name) for v in model.inputs})
+    for path in build([model.name], ["fmi3", "python"], file, tmp_path):
+        variables = read_model_description(str(path)).modelVariables
+        start = {v.name: float(v.start) for v in variables if v.causality == "input"}
+        assert start == {v.name: file.start(v.name) for v in model.inputs}
+        assert start["preload"] == 9e3
+        for settings, expected in (({}, float(loaded["K_zz"])), ({"preload": 0.0}, 0.0)):
+            found = ramp.run(path, "s_rel_z", 1e-9, 1e-9, settings).columns["K_zz"][0]
+            assert found == pytest.approx(expected, rel=1e-10)  # as C and Python agree elsewhere
+    with zipfile.ZipFile(tmp_path / "fmi3" / f"{model.name}.fmu") as archive:
+        page = archive.read("documentation/index.html").decode()
+    assert "pre-tightening force of each bolt; at least 0; starts at 9000<" in page
+    assert "all other inputs at their start values." in page
+
+
+def test_a_build_leaves_the_process_as_it_was(tmp_path: Path) -> None:
+    build(["GearContact"], ["python"], None, tmp_path)  # what building itself imports is there now
+    before = (
+        list(sys.path),
+        set(sys.modules),
+        dict(os.environ),
+        Path.cwd(),
+    )
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    build(["GearContact"], ["python"], changed, tmp_path)
+    after = (
+        list(sys.path),
+        set(sys.modules),
+        dict(os.environ),
+        Path.cwd(),
+    )
+    assert after == before
+
+
+BESIDE_AN_INSTANCE = """
+import sys
+from pathlib import Path
+from conftest import Fmu
+instance = Fmu(Path(sys.argv[1])).start()
+import pythonfmu
+assert not list(Path(pythonfmu.__file__).parent.rglob("binaries")), "the FMU has brought no copy"
+from jointfmu_fmu_src.building import build
+path, own = list(sys.path), pythonfmu.__file__
+build(["GearContact"], ["python"], None, Path(sys.argv[2]))
+assert (sys.path, sys.modules["pythonfmu"].__file__) == (path, own)
+instance.at({"f": 1.0})
+instance.free()
+"""
+
+
+def test_a_process_in_which_a_python_fmu_runs_builds_the_same(fmus: Path, tmp_path: Path) -> None:
+    """The FMU's own copy of pythonfmu, which has no libraries, is imported first."""
+    done = run_host(BESIDE_AN_INSTANCE, fmus / "GearContact.fmu", tmp_path)
+    assert done.returncode == 0, done.stderr
+    built = tmp_path / "python" / "GearContact.fmu"
+    contents = []
+    for path in (built, fmus / "GearContact.fmu"):
+        with zipfile.ZipFile(path) as archive:
+            files = {name: archive.read(name) for name in archive.namelist()}
+        del files["modelDescription.xml"]  # pythonfmu puts the date into it
+        contents.append(files)
+    assert contents[0] == contents[1]
+    assert any(name.startswith("binaries/") for name in contents[0])
+
+
+# Refusals
+
+
+@pytest.mark.parametrize(
+    ("names", "flavours", "joint", "parts"),
+    [
+        (["Gearbox"], ["python"], None, ["'Gearbox'", *NAMES]),
+        (["GearContact", "Gearbox"], ["python"], None, ["'Gearbox'"]),
+        (["GearContact"], ["fmi7"], None, ["'fmi7'", *FLAVOURS]),
+        (["GearContact"], ["python", "fmi7"], None, ["'fmi7'"]),
+        (["GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'", "'gear_contact'"]),
+        (["BoltedJoint", "GearContact"], ["python"], "bolted_joint", ["GearContact", "'bolted_joint'"]),
+    ],
+)
+def test_bad_choices_are_refused_before_anything_is_built(
+    tmp_path: Path,
+    capsys: Capture,
+    names: list[str],
+    flavours: list[str],
+    joint: str | None,
+    parts: list[str],
+) -> None:
+    parameters = default(joint) if joint else None
+    with pytest.raises(ValueError, match=re.escape(parts[0])):
+        build(names, flavours, parameters, tmp_path / "out")
+    arguments = ["build", *names, "--flavour", *flavours, "--out", tmp_path / "out"]
+    if parameters:
+        (tmp_path / "file.toml").write_text(dump(parameters))
+        arguments += ["--params", tmp_path / "file.toml"]
+    line = refused_line(capsys, *arguments)
+    assert [p for p in parts if p not in line] == []
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        (None, "No such file"),
+        ("", "schema"),
+        ("schema = 1\njoint = [", "TOML"),
+        ('schema = 1\njoint = "gearbox"\n', "'gearbox'"),
+        ("{good}\nextra = 1\n", "extra"),
+        ("{bad}", "e = 1.3 is outside [0, 1)"),
+    ],
+)
+def test_bad_parameter_files_are_refused(
+    tmp_path: Path, capsys: Capture, gear_file: Path, text: str | None, part: str
+) -> None:
+    path, good = tmp_path / "file.toml", gear_file.read_text()
+    bad = good.replace("value = 0.3,", "value = 1.3,")
+    if text is not None:
+        path.write_text(text.replace("{good}", good).replace("{bad}", bad))
+    line = refused_line(capsys, "build", "--params", path, "--out", tmp_path / "out")
+    assert str(path) in line
+    assert part in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_unwritable_place_is_refused(tmp_path: Path, capsys: Capture) -> None:
+    file = tmp_path / "file"
+    file.write_text("mine")
+    out = file / "below"
+    with pytest.raises(ValueError, match="cannot be written") as raised:
+        build(["GearContact"], ["python"], None, out)
+    assert str(out) in str(raised.value)
+    assert "\n" not in str(raised.value)
+    line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", out)
+    assert str(out) in line
+    assert everything(tmp_path) == [file]
+    assert file.read_text() == "mine"
+
+
+def test_a_python_fmu_without_its_libraries_is_refused(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    copy = tmp_path / "broken"
+    copytree(Path(pythonfmu.__file__).parent, copy / "pythonfmu", ignore=ignore_patterns("binaries"))
+    monkeypatch.setattr(python_build, "_installed", lambda: str(copy))
+    assert cli.main(["build", "GearContact", "--flavour", "python", "--out", str(tmp_path / "out")]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"pythonfmu in {copy} has no libraries" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_is_heard_after_what_swallows_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+
+    def swallowing(*_: object) -> dict[str, str]:
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        return {}
+
+    monkeypatch.setattr(generate, "code", swallowing)
+    with pytest.raises(KeyboardInterrupt):
+        build(["GearContact"], ["fmi3"], None, tmp_path / "new")
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert everything(tmp_path) == []
+
+
+def test_a_refused_build_leaves_no_folder(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    monkeypatch.setitem(sys.modules, "ziglang", None)
+    line = refused_line(capsys, "build", "GearContact", "--out", tmp_path / "new" / "dist")
+    assert "the package ziglang is missing" in line
+    assert everything(tmp_path) == []
+
+
+def test_a_folder_in_the_place_of_the_fmu_is_refused(tmp_path: Path) -> None:
+    place = tmp_path / "python" / "GearContact.fmu"
+    place.mkdir(parents=True)
+    with pytest.raises(ValueError, match="cannot be written"):
+        build(["GearContact"], ["python"], None, tmp_path)
+    assert everything(tmp_path) == [tmp_path / "python", place]
+
+
+@pytest.mark.parametrize(
+    "failure", [OSError(28, "No space left on device"), KeyboardInterrupt(), RuntimeError("x")]
+)
+def test_an_existing_fmu_survives_a_failed_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException
+) -> None:
+    (built,) = build(["GearContact"], ["python"], None, tmp_path)
+    before, path, modules = built.read_bytes(), list(sys.path), set(sys.modules)
+    genuine: Callable[..., Path] = FmuBuilder.build_FMU
+
+    def fail_at_the_end(*arguments: object, **options: object) -> Path:
+        genuine(*arguments, **options)
+        raise failure
+
+    monkeypatch.setattr(FmuBuilder, "build_FMU", fail_at_the_end)
+    expected = ValueError if isinstance(failure, OSError) else type(failure)
+    changed = default("gear_contact").with_values({"e": 0.25}, "user", "test")
+    with pytest.raises(expected) as raised:
+        build(["GearContact"], ["python"], changed, tmp_path)
+    if isinstance(failure, OSError):
+        assert "No space left on device" in str(raised.value)
+    assert everything(tmp_path) == [tmp_path / "python", built]
+    assert built.read_bytes() == before
+    assert sys.path == path
+    assert set(sys.modules) == modules
+
+
+def test_a_bad_source_date_is_refused_by_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
+    line = refused_line(capsys, "build", "GearContact", "--flavour", "python", "--out", tmp_path)
+    assert "SOURCE_DATE_EPOCH" in line
+    assert [p for p in everything(tmp_path) if p.is_file()] == []
+
+
+# The main job
+
+
+class Links(HTMLParser):
+    """Everything a page would load, and its tags."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: set[str] = set()
+        self.loaded: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.add(tag)
+        loading = {"src", "srcset", "data", "poster"} | (
+            {"href"} if tag in ("link", "use", "image") else set()
+        )
+        self.loaded += [v or "" for k, v in attrs if k.removeprefix("xlink:") in loading]
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """The folder of one main job, and what it printed."""
+    folder = tmp_path_factory.mktemp("job")
+    with redirect_stdout(io.StringIO()) as out:
+        assert pipeline.main(folder) == 0, out.getvalue()
+    return folder, out.getvalue()
+
+
+def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
+    folder, out = job
+    assert f"built: {3 * len(NAMES)} FMUs" in out
+    assert "missed: 0" in out
+    proved = re.search(r"proved in fmpy: (\d+) FMUs by (\d+) runs", out)
+    assert proved is not None
+    assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
+    assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
+    for flavour in ("fmi2", "fmi3", "python"):
+        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        partners = [] if flavour == "python" else [*PARTNERS, *own]
+        assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
+    archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
+    for ssp in ("ssp", "ssp2"):
+        assert {p.stem for p in (folder / ssp).iterdir()} == archives
+    report = folder / "report"
+    assert {p.name for p in report.iterdir()} == {
+        "index.html",
+        "laboratory.html",
+        *(f"{n}.csv" for n in NAMES),
+    }
+    for name in NAMES:
+        with (report / f"{name}.csv").open(newline="") as file:
+            header, *rows = csv.reader(file)
+        model = MODELS[name]
+        assert header[0].split(" [")[0] == model.ramp.input
+        assert [h.split(" [")[0] for h in header[1:]] == [v.name for v in model.outputs]
+        assert len(rows) == round(model.ramp.end / model.ramp.step) + 1
+        assert float(rows[-1][0]) == pytest.approx(model.ramp.end, rel=1e-12)
+    page = (report / "index.html").read_text(encoding="utf-8")
+    links = Links()
+    links.feed(page)
+    assert "svg" in links.tags
+    assert not re.findall(r"(?:src|href)\s*=\s*[\"']?(?:https?:)?//", page)
+    assert not re.findall(r"@import|url\(\s*[\"']?(?:https?:)?//", page)
+    assert [x for x in links.loaded if not x.startswith(("#", "data:"))] == []
+    assert [name for name in NAMES if name not in page] == []
+    counted = validation.summary(validation.validate())  # the command, the job and the page count alike
+    assert f"compared: {counted}; " in out
+    assert f"<p>{counted}.</p>" in page
+
+
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+def test_the_report_can_be_read_on_a_phone(job: tuple[Path, str]) -> None:
+    """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
+    with browser() as shown:
+        shown.shape(390, 800, phone=True)
+        shown.open(job[0] / "report" / "index.html")
+        rows = 0
+        for name in KINDS:
+            shown.run(f"document.getElementById('tab-{name}').click()")
+            panel = f"document.getElementById('of-{name}')"
+            assert not shown.run(f"{panel}.hidden")
+            assert shown.run("document.querySelectorAll('[role=tabpanel]:not([hidden])').length") == 1
+            drawn = shown.run(
+                f"[...{panel}.querySelectorAll('svg.plot')].map((s) => s.querySelector('path') !== null)"
+            )
+            assert drawn
+            assert all(drawn)
+            assert shown.run("document.documentElement.scrollWidth") <= 390
+            sizes = f"[...{panel}.querySelectorAll('*')].map((e) => parseFloat(getComputedStyle(e).fontSize))"
+            assert shown.run(f"Math.min(...{sizes})") >= 11.0
+            rows += (
+                shown.run(f"{panel}.querySelectorAll('[aria-label=\"Checks of the ramps\"] tr').length") - 1
+            )
+        assert f"; {rows} checks of the ramps" in job[1]
+
+
+def test_the_main_job_fails_when_a_check_misses(
+    job: tuple[Path, str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With what the other job has built: whatever is built, the checks decide."""
+    copytree(job[0], tmp_path, dirs_exist_ok=True)
+    rmtree(tmp_path / "report")
+    monkeypatch.setattr(pipeline, "build", lambda *_: [tmp_path / "fmi2" / f"{name}.fmu" for name in NAMES])
+    monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
+    monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
+    assert pipeline.main(tmp_path) == 1
+    out = capsys.readouterr().out
+    missed = f"missed: {len(NAMES)}\n"  # one integral per FMU
+    assert missed in out
+    lines = out.partition(missed)[2].splitlines()
+    assert [line.split(":")[0].strip() for line in lines] == NAMES
+    assert (tmp_path / "report" / "index.html").exists()  # the report shows what was missed
+
+
+def test_the_main_job_fails_when_an_fmu_does_not_prove_itself(
+    job: tuple[Path, str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An FMU with a reference that is changed, in place of what was built."""
+    copytree(job[0], tmp_path, dirs_exist_ok=True)
+    name = NAMES[0]
+    path = tmp_path / "fmi2" / f"{name}.fmu"
+
+    def change(member: str, data: bytes) -> bytes:
+        is_meant = member.endswith("load_ramp_ref.csv")
+        return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
+
+    changed_copy(job[0] / "fmi2" / f"{name}.fmu", path, change)
+    monkeypatch.setattr(pipeline, "build", lambda *_: [path])
+    monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
+    assert pipeline.main(tmp_path) == 1
+    missed = capsys.readouterr().out.partition("missed: 2\n")[2].splitlines()
+    assert [line.strip().partition(": ")[0] for line in missed] == 2 * [f"fmi2/{name}"]
+    assert [interface in line for interface, line in zip(BOTH, missed, strict=True)] == [True, True]
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    assert '<td class="miss">miss</td>' in page
+
+
+def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    script = Path(__file__).parents[2] / "build_fmus.py"
+    done = subprocess.run(
+        [sys.executable, script, "--out", tmp_path / "file" / "below"],
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "cannot be written" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert everything(tmp_path) == [tmp_path / "file"]

@@ -1,0 +1,135 @@
+"""What is known of the surfaces: the section [roughness] of parameter files, and the level it stands for."""
+
+import math
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields.joint_parameters import with_field
+
+from jointfmu.contact import roughness
+from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.parameters import default, dump, load
+
+SECTION = "\n[roughness]\n"
+
+
+def entry(name, value, unit="m"):
+    return f'{name} = {{ value = {value}, unit = "{unit}", kind = "user", source = "drawing" }}\n'
+
+
+@pytest.fixture
+def loaded(tmp_path):
+    """Reads the default gear contact, which states no roughness, with further lines."""
+
+    def read(lines):
+        path = tmp_path / "joint.toml"
+        path.write_text(dump(default("gear_contact")) + SECTION + lines)
+        return load(path)
+
+    return read
+
+
+def test_height_of_both_surfaces():
+    """Gaussian: R_q is 1.25 R_a; a side that is not stated is smooth; h stands for both."""
+    assert roughness.rms_of_mean(1.0) == pytest.approx(1.2533, abs=1e-4)
+    assert roughness.height({"Ra1": 1.6e-6, "Ra2": 1.6e-6}) == pytest.approx(2.83e-6, rel=0.003)
+    assert roughness.height({"Rq1": 3e-6, "Rq2": 4e-6}) == pytest.approx(5e-6)
+    assert roughness.height({"Rq1": 3e-6, "Ra2": 4e-6 / roughness.FACTOR}) == pytest.approx(5e-6)
+    assert roughness.height({"Rq2": 4e-6}) == pytest.approx(4e-6)
+    assert roughness.height({"h": 1e-6}) == 1e-6
+    assert roughness.height({}) is None
+
+
+def test_mean_height_of_a_gaussian_surface():
+    """R_q/R_a by the integral of |z| over the normal density."""
+    step = 1e-3
+    mean = sum(2.0 * z * math.exp(-0.5 * z * z) * step for z in (step * (i + 0.5) for i in range(10_000)))
+    assert math.sqrt(2.0 * math.pi) / mean == pytest.approx(roughness.FACTOR, rel=1e-6)
+
+
+def test_level():
+    """Box specimen at 9 kN: F/(0.45 h) = 5.65e10 N/m."""
+    h = roughness.height(default("bolted_joint").roughness)
+    assert roughness.level(8 * 9e3, h) == pytest.approx(5.65e10, rel=0.005)
+
+
+# The section
+
+
+def load_text(text):
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "again.toml"
+        path.write_text(text)
+        return load(path)
+
+
+def test_nothing_is_lost(loaded):
+    file = loaded(entry("Ra1", 0.8e-6) + entry("Rq2", 1e-6))
+    assert file.roughness == {"Ra1": 0.8e-6, "Rq2": 1e-6}
+    assert file.sources["roughness.Ra1"] == "drawing"
+    again = file.with_values({"lambda": 0.5}, "user", "measured")
+    assert again.roughness == file.roughness
+    text = dump(again)
+    assert SECTION in text
+    assert "roughness" not in again.flat
+    assert "[roughness]" not in dump(default("gear_contact"))
+    assert load_text(text) == again
+
+
+@pytest.mark.parametrize("joint", KINDS)
+def test_every_joint_may_state_it(joint):
+    file = default(joint).with_roughness({"h": 2e-6}, "user", "scan")
+    again = load_text(dump(file))
+    assert (again.roughness, again.sources["roughness.h"]) == ({"h": 2e-6}, "scan")
+
+
+def test_what_is_new_replaces_what_spoke_of_the_same_side():
+    file = default("gear_contact").with_roughness({"Ra1": 1e-6, "Ra2": 2e-6}, "user", "drawing")
+    one = file.with_roughness({"Rq1": 3e-6}, "derived", "scan")
+    assert one.roughness == {"Ra2": 2e-6, "Rq1": 3e-6}
+    assert (one.origins["roughness.Rq1"], one.sources["roughness.Ra2"]) == ("derived", "drawing")
+    assert "roughness.Ra1" not in one.sources
+    both = one.with_roughness({"h": 1e-6}, "user", "scan of both")
+    assert both.roughness == {"h": 1e-6}
+    assert [name for name in both.origins if name.startswith("roughness.")] == ["roughness.h"]
+    assert both.with_roughness({"Ra2": 1e-6}, "user", "drawing").roughness == {"Ra2": 1e-6}
+    with pytest.raises(ValueError, match=r"roughness\.Ra3"):
+        file.with_roughness({"Ra3": 1e-6}, "user", "wrong")
+
+
+def test_a_field_keeps_it():
+    file = default("bolted_joint")
+    shape = pressure_shape(file.values.pattern)
+    pressure = pressures(file.values, shape, 9e3, 0.0)
+    field = ContactField(shape.share * file.values.A_0, shape.position, pressure)
+    made, _ = with_field(file, field, 9e3, "test")
+    assert made.roughness == file.roughness
+    assert made.sources["roughness.Ra1"] == file.sources["roughness.Ra1"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (entry("Ra1", 0.0), ["roughness.Ra1 = 0 m", "(0, inf)", "arithmetic mean height of the first"]),
+        (entry("h", -1e-6), ["roughness.h = -1e-06 m", "(0, inf)"]),
+        (entry("h", "nan"), ["roughness.h = nan m", "(0, inf)"]),
+        (entry("h", "true"), ["roughness.h = True", "not a number"]),
+        (entry("h", '"fine"'), ["roughness.h = 'fine'", "not a number"]),
+        (entry("Ra1", 0.8, "um"), ["roughness.Ra1", "unit 'um'", "expected 'm'"]),
+        (entry("Rz1", 1e-6), ["'roughness.Rz1'", "roughness.Ra1, roughness.Ra2, roughness.Rq1"]),
+        (entry("Ra1", 1e-6) + entry("Rq1", 1e-6), ["roughness.Ra1 beside roughness.Rq1", "one height"]),
+        (entry("h", 1e-6) + entry("Ra2", 1e-6), ["roughness.h beside roughness.Ra2", "or h alone"]),
+        ("h = 1e-6\n", ["roughness.h = 1e-06", "{ value, unit, kind, source }"]),
+    ],
+)
+def test_a_wrong_entry_is_refused(loaded, lines, words):
+    with pytest.raises(ValueError, match=r"joint\.toml: ") as error:
+        loaded(lines)
+    message = str(error.value)
+    assert len(message.splitlines()) == 1
+    for word in words:
+        assert word in message

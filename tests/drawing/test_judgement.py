@@ -1,0 +1,231 @@
+"""What stands beside every stiffness: its level over that of the roughness, and where the law ends."""
+
+import json
+
+import numpy as np
+import pytest
+from jointfmu_tools import cli
+from jointfmu_tools.drawing.proof import proof_load
+from jointfmu_tools.drawing.tables import threads
+from jointfmu_tools.drawing.vdi2230 import stress_area
+from jointfmu_tools.fem.symmetry import unlike_holes
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.judgement import FACTOR, judge, judge_file, known_height
+from jointfmu_tools.pressing import pressing
+
+from jointfmu.contact.interface import at_pressure, beyond
+from jointfmu.contact.roughness import GAMMA, level
+from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default, dump, load
+
+BOLTED = default("bolted_joint")
+REST = (0.0, 0.0, 0.0)
+
+
+def rough(joint, h):
+    return default(joint).with_roughness({"h": h}, "user", "test")
+
+
+# The level
+
+
+def test_the_ratio_is_that_of_the_joint():
+    """K_zz of the uneven joint over F/(0.45 h): the law at the mean pressure says it within 10 %."""
+    found = judge_file(BOLTED, [9e3, 15e3])
+    for ratio, preload in zip(found.level.ratio, (9e3, 15e3), strict=True):
+        K = BoltedJointSpring.of(BOLTED.values).motion(preload, 0.0, REST, REST)["K_zz"]
+        assert ratio == pytest.approx(K * GAMMA * known_height(BOLTED) / (8 * preload), rel=0.1)
+    assert found.warnings == ()
+
+
+def test_the_law_roughness_is_judged_by_its_own_height():
+    """Many spots on 0.04 m2: the line itself, and a little for the few spots."""
+    found = judge_file(default("bolted_joint", "roughness"), [9e3])
+    assert found.level.ratio == pytest.approx([1.0], abs=0.05)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_factor_of_three_either_way(side):
+    p = 1e6
+    k = at_pressure(BOLTED.values, p)["K_N"] / BOLTED.values.A_0
+    for factor, doubtful in ((0.99 * FACTOR, False), (1.01 * FACTOR, True)):
+        h = factor**side * p / (GAMMA * k)
+        found = judge(BOLTED.values, [p], h)
+        assert found.level.ratio == pytest.approx([factor**side], rel=1e-9)
+        assert bool(found.warnings) == found.level.doubtful == doubtful
+    assert f"{found.level.ratio[0]:.3g} times" in found.warnings[0]
+    assert "a measurement decides" in found.warnings[0]
+
+
+def test_what_is_not_known_is_not_judged():
+    for joint in KINDS:
+        file = default(joint)
+        found = judge_file(file)
+        assert (found.level is None) == (known_height(file) is None)
+        assert judge_file(file).document()["warnings"] == []
+    assert judge(BOLTED.values, [0.0], 1e-6).level is None
+
+
+@pytest.mark.parametrize("joint", [name for name in KINDS if pressing(KINDS[name])])
+def test_every_joint_is_judged_under_its_load(joint):
+    file = rough(joint, 2e-6)
+    how, found = pressing(KINDS[joint]), judge_file(file)
+    assert how.load in KINDS[joint].variables
+    pressure = how.mean(file.values, how.usual(file.values))
+    assert found.level.pressure == pytest.approx([pressure])
+    law = KINDS[joint].law_of(file.values)
+    expected = at_pressure(law, pressure)["K_N"] / law.A_0 * how.scale(file.values, how.usual(file.values))
+    assert found.level.stiffness == pytest.approx([float(expected)], rel=1e-9)
+    assert found.level.ratio == pytest.approx([float(expected) / level(pressure, 2e-6)], rel=1e-9)
+
+
+def test_the_start_value_of_the_load_is_a_working_point(tmp_path):
+    text = dump(BOLTED).replace("preload = { value = 0.0", "preload = { value = 12e3")
+    (tmp_path / "tight.toml").write_text(text)
+    found = judge_file(load(tmp_path / "tight.toml"))
+    assert found.level.pressure == pytest.approx([8 * 12e3 / BOLTED.values.A_0])
+
+
+# Where the law ends
+
+
+def test_beyond_the_hardness_and_the_nominal_area():
+    law, H = BOLTED.values, BOLTED.values.H
+    assert beyond(law, 1e8) == []
+    (area,) = beyond(law, 1e9)
+    hard, same = beyond(law, 1.01 * H)
+    assert f"{H:.4g} Pa" in hard
+    limit = float(area.split(" at ")[-1].split()[0])
+    assert limit == float(same.split(" at ")[-1].split()[0])
+    assert at_pressure(law, limit)["A_r"] == pytest.approx(law.A_0, rel=0.01)  # three digits are printed
+
+
+@pytest.mark.parametrize(
+    ("d", "area", "proof"), [(12, 84.3, 81_800), (16, 157, 152_000), (20, 245, 238_000), (30, 561, 544_000)]
+)
+def test_bolts_of_iso_898_1(d, area, proof):
+    """Stress areas and proof loads of class 12.9 as the standard's tables print them, three digits."""
+    assert 1e6 * stress_area(threads()[f"M{d}"]) == pytest.approx(area, rel=4e-3)
+    load, name = proof_load(1e-3 * (d + 1.5))
+    assert load == pytest.approx(proof, rel=4e-3)
+    assert f"M{d}, class 12.9" in name
+
+
+def test_holes_of_no_bolt():
+    assert proof_load(1e-3) is None
+    assert proof_load(0.5) is None
+    assert proof_load(16e-3)[1].startswith("the proof load of M14")
+
+
+def test_a_preload_that_no_bolt_bears():
+    assert judge_file(BOLTED, [150e3]).warnings[0].startswith("the law's K")
+    first, *_ = judge_file(BOLTED, [155e3]).warnings
+    assert first.startswith("preload = 155000 N is above 1.52e+05 N, the proof load of M16, class 12.9")
+
+
+# The commands
+
+
+@pytest.fixture
+def fine(tmp_path):
+    """Path of the specimen with a surface eight times finer."""
+    path = tmp_path / "fine.toml"
+    path.write_text(dump(BOLTED.with_roughness({"Ra1": 0.2e-6, "Ra2": 0.2e-6}, "user", "test")))
+    return path
+
+
+COMMANDS = {
+    "law": ["law", "zhao2018", "--pressure", "1e6"],
+    "export": ["export", "csv", "springs", "--preload", "9e3", "--out", "{out}.csv"],
+    "export without a load": ["export", "csv", "contact", "--out", "{out}.csv"],
+}
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_prints_the_ratio_and_warns(command, fine, tmp_path, capsys):
+    words = [word.format(out=tmp_path / "out") for word in COMMANDS[command]]
+    assert cli.main([*words, "--params", str(fine)]) == 0
+    out, err = capsys.readouterr()
+    assert "times p/(0.45 h) at" in out
+    assert err.startswith("warning: the law's K is 0.0")
+    assert err.count("\n") == 1
+    assert cli.main([*words, "--params", str(fine), "--json"]) == 0
+    out, err = capsys.readouterr()
+    found = json.loads(out)
+    assert err == ""
+    assert found["level"]["h"] == pytest.approx(0.3545e-6, rel=1e-3)
+    assert all(0.03 < point["ratio"] < 0.1 for point in found["level"]["points"])
+    assert [text for text in found["warnings"] if "a measurement decides" in text]
+
+
+@pytest.mark.slow
+def test_bands_are_judged_along_their_ramp(fine, capsys):
+    words = ["uncertainty", "--set", "H=+-10%", "--samples", "16", "--points", "3", "--to", "2e4", "--json"]
+    assert cli.main([*words, "--params", str(fine)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    pressures = [8 * load / BOLTED.values.A_0 for load in (1e4, 2e4)]
+    assert [point["pressure"] for point in found["level"]["points"]] == pytest.approx(pressures)
+    assert len(found["warnings"]) == 1
+
+
+def test_the_specimen_states_its_level_without_a_warning(capsys):
+    assert cli.main(["law", "zhao2018", "--pressure", "1e6"]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines()[-1] == "the law's K is 0.448 times p/(0.45 h) at 1 MPa, h = 2.84 um"
+    assert err == ""
+
+
+def test_another_surface_has_not_the_roughness_of_the_default(capsys):
+    assert cli.main(["law", "zhao2018", "--pressure", "1e6", "--set", "surface.D=1.5", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["level"] is None
+
+
+def test_a_real_area_beyond_the_nominal_one(capsys):
+    assert cli.main(["law", "zhao2018", "--pressure", "5e9", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["rows"][0]["A_r"] > found["parameters"]["A_0"]
+    hardness, area, _ = found["warnings"]
+    assert "above the hardness of the softer body, 1.96e+09 Pa" in hardness
+    assert "a real area beyond the nominal one, 0.0382 m2, which the interface law reaches at" in area
+
+
+def test_pressures_of_the_users_nodes(tmp_path, capsys):
+    """Springs at stated pressures are judged at their mean, weighted by the areas."""
+    x, y = (g.ravel() for g in np.meshgrid(np.linspace(-50, 50, 5), np.linspace(-80, 80, 5)))
+    area = BOLTED.values.A_0 * 1e6 / x.size
+    rows = [
+        f"{i + 1},{i + 101},{a},{b},{area},{2 + b / 100}" for i, (a, b) in enumerate(zip(x, y, strict=True))
+    ]
+    mesh = tmp_path / "mesh.csv"
+    mesh.write_text(
+        "\n".join(["node_1 [1],node_2 [1],x [mm],y [mm],area [mm2],pressure [MPa]", *rows]) + "\n"
+    )
+    words = ["export", "csv", "springs", "--nodes", str(mesh), "--out", str(tmp_path / "s.csv"), "--json"]
+    assert cli.main(words) == 0
+    (point,) = json.loads(capsys.readouterr().out)["level"]["points"]
+    assert point["pressure"] == pytest.approx(2e6)
+
+
+# The mesh
+
+
+def test_alike_bolts_with_unlike_pressures():
+    """Eight bolts of a frame; the one hot hole is named, under a moment its mirror along y may differ."""
+    bolts = np.array([(x, y) for y in (-0.15, 0.0, 0.15) for x in (-0.1, 0.0, 0.1) if x or y])
+    rng = np.random.default_rng(3)
+    around = rng.uniform(-0.01, 0.01, (200, 2))
+    position = (bolts[:, None] + around[None]).reshape(-1, 2)
+    pressure = np.tile(1e6 * np.exp(-np.hypot(*around.T) / 0.01), len(bolts))
+    field = ContactField(np.full(len(position), 1e-6), position, pressure)
+    assert unlike_holes(field, bolts, False) == []
+    hot = np.repeat(np.arange(len(bolts)) >= 5, 200)  # the row y > 0: what a moment does
+    tilted = ContactField(field.area, position, np.where(hot, 2.0, 1.0) * pressure)
+    assert unlike_holes(tilted, bolts, True) == []
+    (warning,) = unlike_holes(tilted, bolts, False)
+    assert "2 times" in warning
+    one = ContactField(field.area, position, np.where(np.repeat(np.arange(8) == 7, 200), 1.3, 1.0) * pressure)
+    for moment in (False, True):
+        (warning,) = unlike_holes(one, bolts, moment)
+        assert "the bolt at (0.1, 0.15) m is 1.3 times" in warning
+    assert unlike_holes(one, bolts + 0.01 * np.arange(8)[:, None] ** 2, False) == []  # no symmetry

@@ -1,0 +1,152 @@
+"""`jointfmu new` for every joint that has it, and its tables."""
+
+import json
+import math
+import shlex
+
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.drawing.reading import number, numbers
+from jointfmu_tools.drawing.tables import MATERIAL, classes, row, table, threads
+from jointfmu_tools.parts import part
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import load
+
+NEW = {kind.name.replace("_", "-"): found.NEW for kind in KINDS.values() if (found := part(kind, "new"))}
+
+
+def said(capsys, *words):
+    assert cli.main([str(word) for word in words]) == 0
+    return capsys.readouterr()
+
+
+def test_there_are_some():
+    assert len(NEW) >= 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NEW)
+def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
+    path = tmp_path / "joint.toml"
+    words = ["new", name, *shlex.split(NEW[name].example), "--out", path]
+    text = said(capsys, *words).out
+    assert text.endswith(f"wrote {path}\n")
+    file = load(path)
+    assert file.joint == name.replace("-", "_")
+    found = json.loads(said(capsys, *words, "--json").out)
+    assert found["parameters"] == json.loads(json.dumps(file.flat))
+    assert found["inputs"] == file.inputs
+    assert all(f"# {fact} = " in path.read_text() for fact in found["facts"])
+    assert all(fact["unit"] and fact["text"] for fact in found["facts"].values())
+    assert set(file.origins.values()) <= {
+        "user",
+        "derived",
+        "estimate",
+        "published",
+        "catalogue",
+        "calibration",
+    }
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_what_is_required_is_asked_for(capsys, tmp_path, name):
+    options = NEW[name].options
+    required = [f"--{option.name}" for option in options if option.required]
+    required = required or [f"--{option.name}" for option in options]  # or one of several ways
+    line = refused_line(capsys, "new", name, "--out", tmp_path / "joint.toml")
+    assert any(option in line for option in required)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_a_place_that_cannot_be_written_is_refused_first(capsys, tmp_path, name):
+    line = refused_line(capsys, "new", name, *shlex.split(NEW[name].example), "--out", tmp_path)
+    assert "is a folder; expected a file to write" in line
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_the_help_has_every_option_and_an_example(capsys, name):
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(["new", name, "--help"])
+    text = capsys.readouterr().out
+    assert all(f"--{option.name.replace('_', '-')}" in text for option in NEW[name].options)
+    assert f"example: jointfmu new {name}" in " ".join(text.split())
+
+
+# Tables
+
+
+@pytest.mark.parametrize("name", ["materials", "finishes", "bolts"])
+def test_tables_are_printed(capsys, name):
+    rows = json.loads(said(capsys, "new", name, "--json").out)
+    lines = said(capsys, "new", name).out.splitlines()
+    assert len(lines) == len(rows) + 1
+    assert [line.startswith(row["name"]) for line, row in zip(lines[1:], rows, strict=True)] == [True] * len(
+        rows
+    )
+
+
+def test_materials_are_physical_and_have_sources():
+    for material in table("materials").values():
+        values = {name: known.value for name, known in material.numbers.items()}
+        assert values.keys() == MATERIAL.keys()
+        assert 5e10 < values["E"] < 2.5e11
+        assert 0.2 < values["nu"] < 0.4
+        assert 2000 < values["density"] < 9000
+        assert 5e8 < values["H"] < 1e10
+        assert all(known.source for known in material.numbers.values())
+        assert material.numbers["H"].kind == "estimate"  # of one usual state
+    names = [name for found in table("materials").values() for name in (found.name, *found.also)]
+    assert len(names) == len({name.lower() for name in names})
+
+
+def test_a_finish_is_the_middle_of_its_range():
+    for finish in table("finishes").values():
+        Ra, low, high = (finish.numbers[name].value for name in ("Ra", "Ra_low", "Ra_high"))
+        assert pytest.approx(math.sqrt(low * high), rel=1e-3) == Ra
+        assert high > low
+        assert 0.0 < finish.numbers["hurst"].value < 1.0
+
+
+def test_a_row_is_found_by_any_of_its_names():
+    assert row("materials", "Cast-Iron") is row("materials", "GG25") is row("materials", "cast iron")
+    with pytest.raises(ValueError, match=r"material 'wood' is unknown, allowed are steel, .* new materials"):
+        row("materials", "wood")
+    with pytest.raises(ValueError, match="finish 'rough' is unknown"):
+        row("finishes", "rough")
+
+
+def test_bolts_grow():
+    sizes = list(threads().values())
+    for column in ("d", "hole", "hexagon", "socket"):
+        values = [getattr(thread, column) for thread in sizes]
+        assert values == sorted(values)
+    for thread in sizes:
+        assert thread.pitch < thread.d < thread.hole < thread.hexagon < thread.socket
+        assert thread.d == pytest.approx(float(thread.name[1:]) * 1e-3)
+    for strength in classes().values():
+        assert all(p < y for p, y in zip(strength["proof"], strength["yield"], strict=True))
+
+
+# Numbers
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("40", 0.04), ("40mm", 0.04), ("0.04 m", 0.04), ("4e4um", 0.04), (".5", 5e-4), ("1E2", 0.1)],
+)
+def test_lengths(text, value):
+    assert number("grip", text, "mm", "m") == pytest.approx(value, rel=1e-15)
+
+
+def test_numbers_with_a_sign_between():
+    assert numbers("plate", "200x0.1m", "mm", "m", by="x", count=2) == pytest.approx([0.2, 0.1])
+    assert numbers("at", "-80,3e1", "mm", "m", by=",", count=2, least=None) == pytest.approx([-0.08, 0.03])
+
+
+@pytest.mark.parametrize("text", ["", "x", "1e999", "0", "-3", "inf", "40furlong", "40N", "4O"])
+def test_bad_numbers_are_refused(text):
+    with pytest.raises(ValueError, match=r"^--grip = "):
+        number("grip", text, "mm", "m")

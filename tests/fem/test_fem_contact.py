@@ -1,0 +1,291 @@
+"""The contact of two elastic bodies against closed forms, and the balance of bolted joints."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from jointfmu_tools.fem import newton
+from jointfmu_tools.fem.balance import RigidBalance
+from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
+from jointfmu_tools.fem.elasticity import ElasticBody
+from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.sparse import Cholesky
+from scipy.sparse import diags_array
+from skfem import MeshHex, MeshQuad
+
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.parameters import default
+
+pytestmark = pytest.mark.slow
+
+ROUND_OFF = 1e-9  # of a solution by factorisation: condition number (1e6 here) times 1e-16, and to spare
+STEEL = {"E": 2.1e11, "nu": 0.3, "density": 7850.0}
+PLATE = Plate(length=0.12, width=0.06, thickness=0.012, **STEEL)
+BOLTS = BoltList(x=(0.0, 0.0), y=(-0.015, 0.015), hole_diameter=0.0066, head_diameter=0.011)
+
+
+class Linear:
+    """p = k delta while closed."""
+
+    def __init__(self, k: float) -> None:
+        self.k = k
+
+    def derivatives(self, x, order=1):
+        return [self.k * np.maximum(x, 0.0), np.where(x > 0.0, self.k, 0.0)]
+
+    def inverse(self, load):
+        return load / self.k
+
+
+@pytest.fixture(scope="module")
+def law():
+    return approach_curve(replace(default("bolted_joint").values, A_0=PLATE.length * PLATE.width))
+
+
+# two blocks pressed uniformly: p is the load over the area, each block shortens by p h / E
+
+
+def test_two_blocks_pressed_uniformly(law):
+    lines, depths, moduli, p = np.linspace(0.0, 0.05, 4), (0.03, 0.05), (1.1e11, 2.1e11), 2e6
+    bodies = []
+    for sign, depth, modulus in zip((-1, 1), depths, moduli, strict=True):
+        z = np.linspace(0.0, depth, 4)
+        mesh = MeshHex.init_tensor(lines, lines, np.sort(sign * z))
+        far = {"far": lambda x, end=sign * depth: np.isclose(x[2], end)}
+        bodies.append(ElasticBody(mesh.with_boundaries(far), modulus, 0.3, 7800.0))
+    interface = Interface.of(MeshQuad.init_tensor(lines, lines))
+    area = 0.05**2
+    loads = [
+        -sign * p * area * body.pressing(body.mesh.boundaries["far"])
+        for sign, body in zip((-1, 1), bodies, strict=True)
+    ]
+    solution = ContactModel(tuple(bodies), interface, law).solve(loads, 0.3 * p)
+    assert solution.pressure == pytest.approx(np.full(interface.area.size, p), rel=ROUND_OFF)
+    assert solution.at_nodes == pytest.approx(
+        np.full(interface.nodes.shape[1], law.inverse(p)), rel=ROUND_OFF
+    )
+    ends = [
+        u[2::3][np.isclose(body.nodes[2], sign * depth)].mean()
+        for sign, depth, body, u in zip((-1, 1), depths, bodies, solution.displacement, strict=True)
+    ]
+    shortening = p * depths[0] / moduli[0] + p * depths[1] / moduli[1]
+    assert ends[0] - ends[1] == pytest.approx(float(law.inverse(p)) - solution.offset + shortening, rel=1e-7)
+    for out, load in zip(solution.imbalance(), loads, strict=True):
+        assert np.abs(out).max() < ROUND_OFF * np.abs(load).sum()  # the supports carry nothing
+
+
+# two wavy half-spaces, one wave long: closed forms for full contact on springs and for Westergaard's
+
+
+def wavy(n: int, mean: float, k: float, amplitude: float) -> ContactSolution:
+    """Half a wave of length 1 in n elements, symmetric at both ends, plane strain, 1.5 waves deep.
+
+    At that depth exp(-2 kappa h) = 7e-9 of the wave is left.
+    """
+    x, y, depth = np.linspace(0.0, 0.5, n + 1), np.array([0.0, 0.5 / n]), 1.5
+    steps = np.cumsum(0.5 / n * 1.15 ** np.arange(200))
+    z = np.concatenate([[0.0], steps[: np.searchsorted(steps, depth) + 1]])
+    z *= depth / z[-1]
+    mesh = MeshHex.init_tensor(x, y, z).with_boundaries({"far": lambda p: np.isclose(p[2], depth)})
+    body = ElasticBody(mesh, 1.0, 0.3, 1.0)
+    ends = np.isclose(body.nodes[0], 0.0) | np.isclose(body.nodes[0], 0.5)
+    held = np.concatenate([3 * np.flatnonzero(ends), 3 * np.arange(ends.size) + 1])
+    interface = Interface.of(MeshQuad.init_tensor(x, y))
+    model = ContactModel(
+        (body,), interface, Linear(k), lambda x, y: amplitude * (1.0 - np.cos(2.0 * np.pi * x)), (held,)
+    )
+    return model.solve([-mean * interface.area.sum() * body.pressing(mesh.boundaries["far"])], mean)
+
+
+MODULUS = 0.5 / (1.0 - 0.3**2)  # 1/E* is the sum of (1 - nu^2)/E of both bodies
+
+
+def observed(errors: list[float]) -> list[float]:
+    return [float(np.log2(a / b)) for a, b in pairwise(errors)]
+
+
+def test_full_contact_on_springs_converges_with_order_three():
+    k, amplitude = 2.0, 1e-3
+    wave = k * amplitude / (1.0 + 2.0 * k / (MODULUS * 2.0 * np.pi))
+    errors = []
+    for n in (4, 8, 16):
+        solution = wavy(n, 2.0 * wave, k, amplitude)
+        x, weight = solution.model.interface.position[:, 0], solution.model.interface.area
+        exact = 2.0 * wave + wave * np.cos(2.0 * np.pi * x)
+        errors.append(float(np.sqrt(weight @ (solution.pressure - exact) ** 2 / (weight @ exact**2))))
+    assert errors[-1] < 3e-5  # 1.4e-5 measured
+    assert min(observed(errors)) > 2.9  # quadratic elements: 3
+
+
+def test_partial_contact_converges_to_westergaard():
+    amplitude, half = 1e-3, 0.25
+    sine = np.sin(np.pi * half)
+    mean = np.pi * MODULUS * amplitude * sine**2
+    errors, peaks = [], []
+    for n in (8, 16, 32):
+        solution = wavy(n, mean, 20.0 * n * np.pi * MODULUS, amplitude)
+        x, weight = solution.model.interface.position[:, 0], solution.model.interface.area
+        root = np.sqrt(np.maximum(sine**2 - np.sin(np.pi * x) ** 2, 0.0))
+        exact = 2.0 * mean * np.cos(np.pi * x) / sine**2 * root
+        errors.append(float(weight @ np.abs(solution.pressure - exact) / (weight @ exact)))
+        peaks.append(abs(solution.node_pressure.max() * sine / (2.0 * mean) - 1.0))
+        assert solution.pressure.min() == 0.0
+    assert min(observed(errors)) > 1.4  # the pressure falls like a root at the edge: 1.5
+    assert peaks[-1] < 2e-3  # 1.0e-3 measured, with the stiffness of the springs growing like n
+
+
+# bolted plates
+
+
+@pytest.fixture(scope="module")
+def plates():
+    return BoltedContact.of(Assembly("plates", PLATE, PLATE, BOLTS), 0.5)
+
+
+def test_contact_carries_the_bolts(plates, law):
+    solution = plates.solve(law, 4e3)
+    field = solution.field
+    assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
+    assert np.abs((field.area * field.pressure) @ field.position).max() < ROUND_OFF * 8e3 * 0.06
+    assert np.all(field.area > 0.0)
+    assert solution.peak >= field.pressure.max()
+    for out in solution.contact.imbalance():
+        assert np.abs(out).max() < ROUND_OFF * 8e3
+
+
+def test_pressures_balance_the_moment(plates, law):
+    field = plates.solve(law, 4e3, 30.0).field
+    assert (field.area * field.pressure) @ field.position[:, 1] == pytest.approx(30.0, rel=ROUND_OFF)
+    assert field.force == pytest.approx(8e3, rel=ROUND_OFF)
+
+
+def test_another_load_is_found_from_the_first(plates, law, monkeypatch):
+    """The same as from the beginning, without a factorisation, in fewer steps."""
+    expected = plates.solve(law, 4e3, 30.0)
+    first = plates.solve(law, 4e3)
+    factorised = []
+    monkeypatch.setattr(newton, "Cholesky", lambda matrix: factorised.append(1) or Cholesky(matrix))
+    found = first.under(4e3, 30.0)
+    # both end at TOLERANCE of the load, 1e-11, which may lie on a part of the nodes
+    np.testing.assert_allclose(found.contact.pressure, expected.contact.pressure, rtol=1e-7)
+    np.testing.assert_array_equal(found.force, expected.force)
+    assert found.contact.steps < expected.contact.steps
+    assert not factorised
+
+
+def test_a_mirror_image_equals_two_bodies(plates, law):
+    assembly = plates.assembly
+    sides = [elastic_body(plates.plan, assembly, side, 0.5) for side in (1, 2)]
+    heads = [
+        np.stack([body.pressing(body.mesh.boundaries[f"head{i}"]) for i in (1, 2)], axis=1) for body in sides
+    ]
+    whole = replace(plates, bodies=tuple(sides), heads=tuple(heads))
+    one, two = (joint.solve(law, 4e3, 30.0).contact for joint in (plates, whole))
+    assert two.pressure == pytest.approx(one.pressure, rel=1e-7)  # round-off over the approach's spread
+    assert two.node_pressure == pytest.approx(one.node_pressure, rel=1e-7)
+
+
+def test_bodies_of_different_kind(law):
+    thick = replace(PLATE, thickness=0.02, length=0.16, E=7e10)
+    joint = BoltedContact.of(Assembly("plates", PLATE, thick, BOLTS), 0.5)
+    solution = joint.solve(law, 4e3, -30.0)
+    area = PLATE.length * PLATE.width
+    assert joint.assembly.contact_area == pytest.approx(area - 2.0 * np.pi * 0.0033**2, rel=1e-12)
+    assert solution.field.area.sum() == pytest.approx(joint.assembly.contact_area, rel=1e-12)
+    assert solution.field.force == pytest.approx(8e3, rel=ROUND_OFF)
+    moment = (solution.field.area * solution.field.pressure) @ solution.field.position[:, 1]
+    assert moment == pytest.approx(-30.0, rel=1e-8)
+
+
+# what has no equilibrium, whether or not a factorisation notices
+
+
+def pulled(plates, law, *forces, held=None):
+    """Both heads pulled by forces [N] along +z, away from the contact."""
+    model = ContactModel(plates.bodies, plates.interface, law, held=held)
+    return model, [plates.heads[0] @ np.array(forces)]
+
+
+@pytest.fixture(params=[False, True], ids=["factor", "perturbed factor"])
+def factor(request, monkeypatch):
+    """The factorisation as it is, and one of a matrix so perturbed that it never breaks down."""
+    if request.param:
+
+        def perturbed(matrix):
+            return Cholesky(matrix + 1e-9 * diags_array(matrix.diagonal()))
+
+        monkeypatch.setattr(newton, "Cholesky", perturbed)
+
+
+def test_without_a_load_to_close_it_the_contact_is_refused(plates, law, factor):
+    model, loads = pulled(plates, law, 1.0, 1.0)
+    with pytest.raises(RuntimeError, match=r"only pushes leaves 0\.\d+ of them over, allowed is 1e-06$"):
+        model.solve(loads, 1e5)
+
+
+def test_a_contact_that_flew_apart_is_refused(plates, law, factor, monkeypatch):
+    """Without the look at the loads: by the solver, or by the look at the contact that it returns."""
+    monkeypatch.setattr(RigidBalance, "check_loads", lambda self: None)
+    model, loads = pulled(plates, law, 1.0, 1.0)
+    with pytest.raises(RuntimeError, match=r"positive definite|not settled|stays closed|not in balance"):
+        model.solve(loads, 1e5)
+
+
+def test_contact_forces_are_checked_by_their_sums(plates, law):
+    model, loads = pulled(plates, law, -4e3, -4e3)
+    solution, balance = model.solve(loads, 1e6), model.balance(loads)
+    force = 0.5 * model.interface.area * solution.pressure  # the mirror image takes the other half
+    balance.check_contact(force * (1.0 + 1e-8))
+    with pytest.raises(RuntimeError, match=r"leaves \S+ of the loads over, allowed is 1e-06$"):
+        balance.check_contact(force * (1.0 + 1e-5))
+    with pytest.raises(RuntimeError, match="stays closed at 1 of 2412 points"):
+        balance.check_contact(np.where(np.arange(force.size) == 7, force, 0.0))
+    with pytest.raises(RuntimeError, match="not in balance: it leaves nan"):
+        balance.check_contact(np.where(np.arange(force.size) == 7, np.nan, force))
+
+
+def test_the_resultant_must_meet_the_contact(plates, law):
+    """Bolts at y = 15 mm, faces to 30 mm: forces f1, f2 have their resultant at 15 mm (f1 - f2)/(f1 + f2)."""
+    model, inside = pulled(plates, law, 0.3e3, -1e3)  # at 27.9 mm
+    pressure = model.solve(inside, 1e6).pressure
+    assert 0.0 < np.mean(pressure > 0.0) < 0.5
+    for outside in (0.34e3, 0.5e3, 1e3):  # at 30.5 mm, at 45 mm, nowhere
+        model, loads = pulled(plates, law, outside, -1e3)
+        with pytest.raises(RuntimeError, match="the loads do not balance"):
+            model.solve(loads, 1e6)
+
+
+def test_a_side_load_is_refused(plates, law):
+    """Without friction nothing carries it: the supports must not do so in silence."""
+    model, loads = pulled(plates, law, -4e3, -4e3)
+    loads[0][::3] += 10.0 * plates.heads[0][2::3, 0]
+    with pytest.raises(RuntimeError, match="the loads do not balance"):
+        model.solve(loads, 1e6)
+
+
+def test_bodies_without_supports_are_refused(plates, law):
+    model, loads = pulled(plates, law, -4e3, -4e3, held=(np.zeros(0, dtype=np.int64),))
+    with pytest.raises(RuntimeError, match="leave a rigid motion of a body free"):
+        model.solve(loads, 1e6)
+
+
+def test_loads_within_a_body_close_no_contact(plates, law):
+    model, loads = pulled(plates, law, 0.0, 0.0)
+    with pytest.raises(RuntimeError, match="all loads are 0 N"):
+        model.solve(loads, 1e6)
+    x, y, z = plates.bodies[0].nodes
+    ends = [int(np.argmin(side * x + 1e-3 * (y + z))) for side in (1.0, -1.0)]  # of one edge, drawn out
+    loads[0][[3 * end for end in ends]] = -5.0, 5.0
+    with pytest.raises(RuntimeError, match=r"its force is \S+ of the loads, needed is more than 1e-06$"):
+        model.solve(loads, 1e6)
+
+
+def test_neighbours_of_bolts():
+    frame = np.array([[x, y] for x in (-0.1, 0.0, 0.1) for y in (-0.15, 0.0, 0.15) if (x, y) != (0.0, 0.0)])
+    middles = {tuple(np.round(m, 9)) for m in midway(frame) if max(abs(m[0]) / 0.1, abs(m[1]) / 0.15) > 0.9}
+    assert len(middles) == 8
+    assert (0.05, 0.15) in middles
+    assert (0.1, -0.075) in middles

@@ -1,0 +1,15 @@
+"""Few nodes keep the sums of many."""
+
+import numpy as np
+from jointfmu_tools.fields.recombination import recombined
+
+
+def test_few_nodes_keep_the_sums():
+    """Polynomials on random nodes: as many nodes as sums, positive weights, sums to round-off."""
+    rng = np.random.default_rng(1)
+    x, weights = rng.uniform(-1.0, 1.0, 4000), rng.uniform(0.5, 1.5, 4000)
+    values = np.polynomial.chebyshev.chebvander(x, 19)
+    nodes, few = recombined(values, weights, np.eye(20))
+    assert nodes.size <= 20
+    assert np.all(few > 0.0)
+    np.testing.assert_allclose(few @ values[nodes], weights @ values, atol=1e-9 * weights.sum())

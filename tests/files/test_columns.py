@@ -1,0 +1,108 @@
+"""CSV with units: what is written is read back to the last bit, and every fault is named with its place."""
+
+import csv
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from jointfmu.files.columns import read, rows, text
+from jointfmu.quantity.units import sizes
+
+SPEC = {"load": sizes("N", "kN"), "angle": sizes("rad", "deg", "arcmin")}
+HEAD = "load [kN], angle [arcmin]"
+
+
+def saved(folder, content, encoding="utf-8"):
+    path = folder / "a.csv"
+    path.write_text(content, encoding=encoding)
+    return path
+
+
+@given(st.lists(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 2), min_size=1, max_size=20))
+def test_round_trip_to_the_last_bit(tmp_path_factory, values):
+    load, angle = np.array(values).T
+    path = saved(tmp_path_factory.mktemp("round"), text([("load", "N"), ("angle", "rad")], [load, angle]))
+    found = read(path, SPEC, 1)
+    np.testing.assert_array_equal(found.columns["load"], load)
+    np.testing.assert_array_equal(found.columns["angle"], angle)
+    assert found.lines == list(range(2, 2 + load.size))
+
+
+def test_what_is_written():
+    columns = [np.array([1, 20]), np.array([-0.0, 2.0 / 3.0]), np.array([1e-30, 1e22])]
+    heads = [("node", "1"), ("a [b, c]", None), ("K_N", "N/m")]
+    assert text(heads, columns, above=["# said before"]).splitlines() == [
+        "# said before",
+        'node [1],"a [b, c]",K_N [N/m]',
+        "1,-0.0,1e-30",
+        "20,0.6666666666666666,1e+22",
+    ]
+    assert text(heads, columns, digits=3).splitlines()[1:] == ["1,0,1e-30", "20,0.667,1e+22"]
+    assert rows(columns[1:], [2, None], between=" ") == ["0 1e-30", "0.67 1e+22"]
+    with pytest.raises(ValueError, match="zip"):
+        text(heads, [columns[0][:1], *columns[1:]])
+
+
+def test_an_empty_table_is_its_heading():
+    assert text([("load", "N")], [np.array([])]) == "load [N]\n"
+
+
+@pytest.mark.parametrize("mark", [",", ";", "\t"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+def test_separators_order_and_strangers(tmp_path, mark, encoding):
+    cells = ("Angle [deg]", " note", "LOAD[ kN ]"), ("1", "x", " 2"), ("3", "", "4e0")
+    head, *rows = map(mark.join, cells)
+    lines = ["# by hand", head, "", "  # indented", *rows]
+    found = read(saved(tmp_path, "\n".join(lines), encoding), SPEC, 2)
+    np.testing.assert_array_equal(found.columns["load"], [2e3, 4e3])
+    np.testing.assert_allclose(found.columns["angle"], np.radians([1.0, 3.0]), rtol=4e-16)
+    assert found.lines == [5, 6]
+
+
+def test_cells_in_quotes(tmp_path):
+    path = saved(tmp_path, 'load [N],"note, or not"\n"1.5","a, b"\n2,"open\n')
+    np.testing.assert_array_equal(read(path, SPEC, 2).columns["load"], [1.5, 2.0])
+    first, *rest = csv.reader(text([("a,b", "N")], [np.ones(1)]).splitlines())
+    assert (first, rest) == (["a,b [N]"], [["1.0"]])
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("", r"is empty; expected columns load \[N \| kN\], angle \[rad \| deg \| arcmin\]"),
+        ("1,2\n3,4", r"the first line is '1, 2'; expected columns load \[N \| kN\], "),
+        ("load,angle [deg]\n1,2", r"column 'load' has no unit, expected e.g. load \[N\]"),
+        (
+            "load [lbf]\n1",
+            r"column 'load' has unit 'lbf', allowed are N, kN and others that measure the same",
+        ),
+        ("load [N],Load [kN]\n1,2", r"column 'load' is given twice, allowed is once"),
+        (f"{HEAD}", r"has 0 points, at least 1 are needed"),
+        (f"#\n{HEAD}\n1,2\n\n3", r"line 5 has 1 columns, expected 2"),
+        (f"{HEAD}\n1,2\n3,4,5", r"line 3 has 3 columns, expected 2"),
+        (f"{HEAD}\n1,2\n3,", r"line 3: angle = '' is no finite number with a decimal point"),
+        (f"{HEAD}\n1,2\n inf ,4", r"line 3: load = 'inf' is no finite number with a decimal point"),
+        (f"{HEAD.replace(',', ';')}\n1,5;2", r"line 2: load = '1,5' is no finite number"),
+    ],
+)
+def test_faults_are_named_with_their_place(tmp_path, content, said):
+    path = saved(tmp_path, content)
+    with pytest.raises(ValueError, match=f"a.csv: {said}") as error:
+        read(path, SPEC, 1)
+    assert "\n" not in str(error.value)
+
+
+def test_files_that_are_none(tmp_path):
+    with pytest.raises(ValueError, match=r"none.csv: cannot be read \(No such file .*; expected a CSV file"):
+        read(tmp_path / "none.csv", SPEC, 1)
+    (tmp_path / "b.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ValueError, match=r"b.csv: is no text file; expected CSV \(UTF-8\)"):
+        read(tmp_path / "b.csv", SPEC, 1)
+
+
+def test_a_column_that_is_missing_is_named_with_its_units(tmp_path):
+    found = read(saved(tmp_path, "load [N]\n1\n"), SPEC, 1)
+    with pytest.raises(ValueError, match=r"a.csv: has no column 'angle'; expected angle \[rad \| deg"):
+        found.require("angle", SPEC)

@@ -1,0 +1,330 @@
+"""Fits of measured curves: round trips, what the data do not determine, loops, bad files."""
+
+import importlib.util
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.fitting.least_squares import Unknown, solve
+from jointfmu_tools.fitting.loop import backbone
+from jointfmu_tools.joints.bolted_joint.fit import preload
+from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+
+from jointfmu.files import columns
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default, dump, load
+
+pytestmark = pytest.mark.slow
+
+SCRIPT = Path(__file__).resolve().parents[2] / "benchmarks" / "fit_round_trips.py"
+SPEC = importlib.util.spec_from_file_location(SCRIPT.stem, SCRIPT)
+trips = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(trips)
+ARCMIN = np.pi / 10800.0
+
+
+@pytest.fixture
+def loops(tmp_path):
+    torque, angle = trips.loops(np.random.default_rng(1))
+    return trips.save(tmp_path / "loops.csv", "torque [N.m], angle [arcmin]", torque, angle / ARCMIN)
+
+
+@pytest.fixture
+def stiffness(tmp_path):
+    columns = trips.preloads(np.random.default_rng(1), "stiffness", 0.02)
+    return trips.save(tmp_path / "stiffness.csv", "preload [N], stiffness [N/m]", *columns)
+
+
+# Least squares
+
+
+def test_a_line_has_its_textbook_covariance():
+    """ln y = ln a + b ln x: the covariance is noise^2 (X^T X)^-1 with the columns 1 and b ln x."""
+    rng, x = np.random.default_rng(1), np.geomspace(1.0, 10.0, 50)
+    y = np.log(3.0 * x**0.7) + 0.01 * rng.standard_normal(x.size)
+    unknowns = [Unknown("a", "1", 1.0, 0.0, np.inf), Unknown("b", "1", 1.0, 0.0, np.inf)]
+    found = solve(unknowns, lambda v: np.log(v["a"] * x ** v["b"]) - y)
+    b, ln_a = np.polyfit(np.log(x), y, 1)
+    # the ridge is 1e-4 of a data point's weight, the data count 50
+    assert found.values["b"] == pytest.approx(b, rel=1e-4)
+    assert np.log(found.values["a"]) == pytest.approx(ln_a, rel=1e-4)
+    X = np.stack([np.ones_like(x), b * np.log(x)], axis=1)
+    expected = found.noise**2 * np.linalg.inv(X.T @ X)
+    np.testing.assert_allclose(found.covariance, expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize("case", trips.CASES)
+def test_round_trip(case, tmp_path):
+    """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
+    found = [trips.errors(trips.CASES[case], seed, tmp_path) for seed in range(4)]
+    within = [all(abs(z) <= 3.0 for _, z in one.values()) for one in found]
+    assert sum(within) >= 3
+    assert all(abs(error) < 0.6 for one in found for error, _ in one.values())
+
+
+def test_the_script_counts(monkeypatch, capsys):
+    monkeypatch.setattr(trips, "SEEDS", 1)
+    monkeypatch.setattr(trips, "CASES", {"stiffness over preload": trips.stiffness_fit})
+    monkeypatch.setattr(trips.memory_measurements, "CASES", {})
+    monkeypatch.setattr(trips.drive_measurements, "CASES", {})
+    trips.main()
+    assert " of 1 " in capsys.readouterr().out.splitlines()[1]
+
+
+# Torque-angle
+
+
+def test_loop_is_taken_apart(loops):
+    """What the script put in: gap 1 arcmin, area 2/3 gap 2A, drift 0.3 arcmin, offset 5 arcmin."""
+    facts = torque_angle.fit(loops).facts
+    expected = {"backlash": ARCMIN, "loop_area": 2.0 / 3.0 * ARCMIN * 50.0, "drift": 0.3 * ARCMIN}
+    for name, value in expected.items():
+        # four standard deviations, and half a percent: the gap is found as a polygon of 40 pieces
+        assert abs(facts[name][0] - value) < 4.0 * facts[f"{name}_deviation"][0] + 5e-3 * value, name
+    assert facts["offset"][0] == pytest.approx(5.0 * ARCMIN, abs=0.01 * ARCMIN)
+    assert facts["noise"][0] == pytest.approx(0.03 * ARCMIN, rel=0.1)
+
+
+def test_torque_before_angle_before_unit(loops, tmp_path):
+    """Units and column order are the heading's; other columns are passed over."""
+    torque, arcmin = np.loadtxt(loops, delimiter=",", skiprows=1).T
+    other = tmp_path / "other.csv"
+    text = [
+        f"{i};{a / 60.0:.12g};{T * 1e3:.12g}" for i, (T, a) in enumerate(zip(torque, arcmin, strict=True))
+    ]
+    other.write_text("# drive 7\ntime [s]; Angle [deg]; Torque [mN.m]\n" + "\n".join(text))
+    one, two = torque_angle.fit(loops).solution.values, torque_angle.fit(other).solution.values
+    assert two == pytest.approx(one, rel=1e-5)  # twelve digits, and the end of the fit
+
+
+def test_one_direction_has_no_loop():
+    drive = default("harmonic_drive").values
+    torque = np.linspace(0.0, 20.0, 100)
+    line = backbone(torque, windup(drive, torque))
+    assert (line.loop_area, line.backlash, line.drift) == (None, None, None)
+    np.testing.assert_array_equal(line.torque, torque)
+
+
+def test_single_open_loop_has_no_drift():
+    drive = default("harmonic_drive").values
+    torque = np.concatenate([np.linspace(-9.0, 9.0, 200), np.linspace(9.0, -9.0, 200)])
+    gap = 1e-4 * np.repeat([-0.5, 0.5], 200) * (1.0 - (torque / 9.0) ** 2)
+    line = backbone(torque, windup(drive, torque) + gap)
+    assert line.drift is None
+    assert line.backlash[0] == pytest.approx(1e-4, rel=0.01)  # polygon of 20 pieces
+    assert line.loop_area[0] == pytest.approx(2.0 / 3.0 * 1e-4 * 18.0, rel=0.01)
+
+
+def test_what_is_not_determined_is_said_by_name(loops):
+    """drive_scale and mean_over_peak act only as a product."""
+    found = torque_angle.fit(loops, free=[*torque_angle.FREE, "mean_over_peak"])
+    rows = {row["name"]: row["determined"] for row in found.rows()}
+    assert rows == {
+        "K_FTS0": True,
+        "drive_scale": False,
+        "zero_torque_pressure": True,
+        "mean_over_peak": False,
+    }
+    assert (
+        "the data do not determine drive_scale, mean_over_peak: other values fit as well" in found.warnings()
+    )
+    known = torque_angle.fit(loops).solution.values
+    mean = default("harmonic_drive").values.mean_over_peak
+    product = found.solution.values["drive_scale"] * found.solution.values["mean_over_peak"] / mean
+    assert product == pytest.approx(known["drive_scale"], rel=1e-4)
+
+
+def test_a_small_range_leaves_the_end_open(tmp_path):
+    """Up to 2 N m hardly anything of K_FTS0 is seen."""
+    torque, angle = trips.loops(np.random.default_rng(1), amplitude=2.0, gap=0.0)
+    path = trips.save(tmp_path / "small.csv", "torque [N.m], angle [rad]", torque, angle)
+    assert "K_FTS0" in torque_angle.fit(path).warnings()[0]
+
+
+def test_another_size_of_drive(tmp_path):
+    """A drive 50 times stiffer at 50 times the torque has the same wind-up."""
+    torque, angle = trips.loops(np.random.default_rng(1))
+    path = trips.save(tmp_path / "big.csv", "torque [N.m], angle [rad]", 50.0 * torque, angle)
+    found = torque_angle.fit(path, rated_torque=250.0)
+    assert found.parameters.values.max_torque == pytest.approx(1500.0)
+    assert found.solution.values["K_FTS0"] == pytest.approx(50.0 * trips.DRIVE["K_FTS0"], rel=0.05)
+
+
+def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
+    out, picture = tmp_path / "drive.toml", tmp_path / "fit.png"
+    assert (
+        cli.main(["fit", "torque-angle", str(loops), "--out", str(out), "--plot", str(picture), "--json"])
+        == 0
+    )
+    document = json.loads(capsys.readouterr().out)
+    file = load(out, "harmonic_drive")
+    assert {
+        n for n, s in file.sources.items() if s.startswith("fitted to loops.csv, 2026-01-01, torque -2")
+    } == {*torque_angle.FREE}
+    assert {file.origins[name] for name in torque_angle.FREE} == {"calibration"}
+    assert document["parameters"]["K_FTS0"] == file.values.K_FTS0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+# Preload
+
+
+@pytest.mark.parametrize("direction", preload.DIRECTIONS)
+def test_joint_stiffness_is_the_exported_one(direction):
+    """Also at 20 N of preload, where most nodes are still closing."""
+    joint = default("bolted_joint").values
+    spring = BoltedJointSpring.of_nodes(replace(joint, memory=False))
+    loads = np.array([20.0, 2e3, 3e4])
+    name = {"normal": "K_zz", "tangential": "K_xx"}[direction]
+    exported = [spring.motion(load, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))[name] for load in loads]
+    # the table's error
+    np.testing.assert_allclose(preload.joint_stiffness(joint, loads, direction), exported, rtol=1e-8)
+
+
+def test_area_has_no_effect(stiffness):
+    """The law knows loads, no pressures: a start elsewhere stays there."""
+    start = default("bolted_joint").with_values({"A_0": 0.05}, "user", "test")
+    found = preload.fit(stiffness, start, ["surface.D", "surface.G", "A_0"])
+    rows = {row["name"]: row["determined"] for row in found.rows()}
+    assert rows == {"surface.D": True, "surface.G": True, "A_0": False}
+    assert found.solution.values["A_0"] == pytest.approx(0.05, rel=0.01)  # held by the ridge
+
+
+def test_frequency_without_mass_keeps_the_surface(tmp_path):
+    path = trips.save(
+        tmp_path / "f.csv",
+        "preload [N], frequency [Hz]",
+        *trips.preloads(np.random.default_rng(1), "frequency", 1e-3),
+    )
+    found = preload.fit(path)
+    assert set(found.solution.values) == {"surface.D", "mass"}
+    assert any("state the modal mass" in line for line in found.warnings())
+
+
+def test_series_stiffness_is_in_series(tmp_path):
+    """K/2 where the joint is as stiff as the structure."""
+    joint = default("bolted_joint").values
+    P = np.array([1e4])
+    K = float(preload.joint_stiffness(joint, P)[0])
+    assert preload.Measured("stiffness", P, P).predicted(joint, K, "normal") == pytest.approx([K / 2.0])
+
+
+# Bad data
+
+HEADING = "torque [N.m], angle [rad]"
+GOOD = [f"{T},{T / 5e3}" for T in np.linspace(-5.0, 5.0, 20)]
+FALLING = [f"{T},{-T / 5e3}" for T in np.linspace(-5.0, 5.0, 20)]
+WAVY = [f"{T},{np.sin(T)}" for T in np.linspace(0.0, 6.0, 40)]
+LEADING = [
+    f"{T},{T / 5e3 + way * 1e-4 * (1 - (T / 5) ** 2)}"
+    for way in (1, -1, 1, -1)
+    for T in way * np.linspace(-5.0, 5.0, 40)
+]
+UNITS = [
+    ("Nm", 1.0, "°", 180.0 / np.pi),
+    ("kgf.m", 1.0 / 9.80665, "\u2032", 10800.0 / np.pi),
+    ("N·cm", 100.0, "urad", 1e6),
+]
+BAD = {
+    "no text": (b"\xff\xfe\x00\x01", "is no text file"),
+    "empty": ("# nothing", "is empty; expected columns torque [N.m"),
+    "no heading": (GOOD, "the first line is"),
+    "no unit": ("torque, angle [rad]", "column 'torque' has no unit"),
+    "foreign unit": ("torque [lbf.in], angle [rad]", "unit 'lbf.in', allowed are N.m, mN.m, kN.m"),
+    "one column": (["torque [N.m], other [rad]", *GOOD], "has no column 'angle'; expected angle [rad"),
+    "twice": ("torque [N.m], torque [N.m], angle [rad]", "given twice"),
+    "few": ([HEADING, *GOOD[:9]], "has 9 points, at least 10 are needed"),
+    "nan": ([HEADING, *GOOD, "nan,1"], "line 22: torque = 'nan' is no finite"),
+    "comma": ([HEADING.replace(",", ";"), *["1,5;2"] * 10], "'1,5' is no finite number with a decimal"),
+    "ragged": ([HEADING, *GOOD, "1"], "line 22 has 1 columns, expected 2"),
+    "constant": ([HEADING, *["2,1"] * 12], "torque is 2 N.m throughout"),
+    "reversed": ([HEADING, *FALLING], "reverse the sign of one column"),
+    "wavy": ([HEADING, *WAVY], "does not rise with the torque between"),
+    "huge": (
+        [HEADING.replace("rad", "deg"), *[f"{T},{100 * T}" for T in np.linspace(-5, 5, 20)]],
+        "likely the angle is in arcsec, where the heading says deg",
+    ),
+    "degrees": (
+        [HEADING, *[f"{T},{np.degrees(T / 4e3)}" for T in np.linspace(-25, 25, 20)]],
+        "likely the angle is in deg, where the heading says rad; if both are right, start from",
+    ),
+    "stiff": (
+        [HEADING.replace("rad", "arcsec"), *[f"{T},{0.1 * T}" for T in np.linspace(-5, 5, 20)]],
+        "1e-05 to",
+    ),
+    "leading": ([HEADING, *LEADING], "the loop creates energy, loop_area = -"),
+    "far": ([HEADING, *[f"{T},{T}" for T in range(40)]], "(--rated-torque)"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_torque_angle(case, tmp_path, capsys):
+    text, message = BAD[case]
+    path = tmp_path / "bad.csv"
+    text = text if isinstance(text, str | bytes) else "\n".join(text)
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    line = refused_line(capsys, "fit", "torque-angle", path)
+    assert str(path) in line
+    assert message in line
+
+
+@pytest.mark.parametrize(("force", "times", "turn", "by"), UNITS)
+def test_units_of_a_record_do_not_matter(force, times, turn, by, tmp_path):
+    found = []
+    for head, x, y in ((HEADING, 1.0, 1.0), (f"torque [{force}], angle [{turn}]", times, by)):
+        path = tmp_path / "curve.csv"
+        rows = (f"{T * x!r},{(T / 5e3 - T**3 / 1e6) * y!r}" for T in np.linspace(-5.0, 5.0, 30).tolist())
+        path.write_text("\n".join([head, *rows]))
+        found.append(columns.read(path, torque_angle.COLUMNS, 10).columns)
+    for name, column in found[0].items():
+        assert found[1][name] == pytest.approx(column, rel=1e-14, abs=1e-18)
+
+
+RISING = ["1e3,1e9", "2e3,2e9", "3e3,3e9", "4e3,4e9"]
+
+
+@pytest.mark.parametrize(
+    ("rows", "options", "message"),
+    [
+        ((*RISING, "-5e3,5e9"), (), "preload = -5000 N is outside (0, inf)"),
+        ((*RISING, "5e3,0"), (), "stiffness = 0 N/m is outside (0, inf)"),
+        (RISING[:3], (), "has 3 points, at least 4"),
+        ([*RISING[:3]] * 2, (), "has 3 different preloads"),
+        (("1e3,4e9", "2e3,3e9", "3e3,2e9", "4e3,1e9"), (), "does not rise with the preload"),
+        (RISING, ("--free", "surface.D", "surface.G", "H", "A_0"), "too few for 4 unknowns"),
+        (RISING, ("--free", "surface.X"), "'surface.X' is no parameter to fit; allowed are surface.D"),
+        (RISING, ("--free", "H", "H"), "'H' is given twice"),
+        (RISING, ("--modal-mass", "5"), "the file has stiffnesses, no frequencies"),
+        (RISING, ("--series-stiffness", "-1"), "series stiffness = -1 N/m is outside (0, inf)"),
+        (RISING, ("--plot", "fit.pdf"), "'.pdf' is no picture"),
+    ],
+)
+def test_bad_preload(rows, options, message, tmp_path, capsys):
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(["preload [N], stiffness [N/m]", *rows]))
+    assert message in refused_line(capsys, "fit", "preload", path, *options)
+
+
+def test_neither_or_both(tmp_path, capsys):
+    path = tmp_path / "bad.csv"
+    path.write_text("preload [N]\n1\n2\n3\n4\n")
+    assert "neither of stiffness and frequency" in refused_line(capsys, "fit", "preload", path)
+
+
+def test_zero_cannot_be_fitted(loops, capsys):
+    line = refused_line(capsys, "fit", "torque-angle", loops, "--free", "eccentricity")
+    assert "eccentricity = 0 m cannot be fitted from there" in line
+
+
+def test_another_joints_file(loops, tmp_path, capsys):
+    path = tmp_path / "bolts.toml"
+    path.write_text(dump(default("bolted_joint")))
+    assert "expected a parameter file of a 'harmonic_drive'" in refused_line(
+        capsys, "fit", "torque-angle", loops, "--params", path
+    )

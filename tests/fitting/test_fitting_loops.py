@@ -1,0 +1,407 @@
+"""Fits of joints with memory: the law of a loop, what is read off data, round trips, refused files."""
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+
+import memory_measurements as measurements
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.fitting import branches, decay
+from jointfmu_tools.fitting.heads import Heads, read
+from jointfmu_tools.fitting.hysteresis import Elastic, Hysteresis
+from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.joints.bolted_joint.fit import loop
+
+from jointfmu.joints.bolted_joint.law import shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default, load
+from jointfmu.quantity.units import sizes
+
+PRELOAD = measurements.PRELOAD
+K, C = 2e9, 4e13
+PARABOLA = Hysteresis(lambda u: K * u - C * u**2, lambda u: K * u**2 / 2.0 - C * u**3 / 3.0)
+"""B = K u - C u^2: everything below about it is worked out by hand."""
+SPRING = Elastic(lambda u: K * u, lambda u: 0.5 * K * u**2)
+AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
+
+# The law of a loop
+
+
+def test_first_loading_is_the_normal_curve_once_more():
+    """B(u) = mu (F_N(0) - F_N(kappa u/mu)) with the normal force of the exported joint, all of its nodes."""
+    joint = default("bolted_joint").values
+    law, told = loop.first_loading(joint, PRELOAD)
+    spring = BoltedJointSpring.of_nodes(joint)
+
+    def state(apart):
+        return spring.motion(PRELOAD, 0.0, (0.0, 0.0, apart), (0.0, 0.0, 0.0))
+
+    rest = state(0.0)
+    kappa = float(shear_ratio(joint))
+    motion = np.array([1e-8, 1e-7, 1e-6, 5e-6, 9e-6])
+    expected = [-joint.mu * state(kappa * u / joint.mu)["f_z"] for u in motion]
+    np.testing.assert_allclose(law.friction(motion), expected, rtol=3e-6)  # the table of 48 steps
+    assert law.friction(np.array([1.0])) == pytest.approx([joint.mu * joint.n_bolts * PRELOAD])
+    assert told["shear_stiffness"][0] == pytest.approx(kappa * rest["K_zz"], rel=1e-5)
+    assert told["shear_stiffness"][0] == pytest.approx(rest["K_xx"], rel=5e-3)  # that of the patches
+    near = [state(s)["K_zz"] for s in (-1e-9, 1e-9)]
+    load = joint.n_bolts * PRELOAD
+    power = (near[0] - near[1]) / 2e-9 * load / rest["K_zz"] ** 2  # d ln K/d ln P at dP = K du
+    assert told["exponent"][0] == pytest.approx(power, rel=1e-4)
+
+
+def test_work_is_the_integral_of_the_friction():
+    law, u = measurements.joint_law(), np.linspace(0.0, 12e-6, 20001)
+    whole = np.concatenate([[0.0], np.cumsum(0.5 * (law.friction(u)[1:] + law.friction(u)[:-1])) * u[1]])
+    np.testing.assert_allclose(law.work(u)[1000:], whole[1000:], rtol=1e-6)  # trapezoids
+
+
+def test_loop_of_a_parabola():
+    """In phase K - C a, area 4/3 C a^3; the loop by trapezoids has the same area."""
+    stiffness, loss = PARABOLA.equivalent(AMPLITUDES)
+    np.testing.assert_allclose(stiffness, K - C * AMPLITUDES, rtol=1e-12)
+    area = 4.0 / 3.0 * C * AMPLITUDES**3
+    np.testing.assert_allclose(loss, area / (np.pi * stiffness * AMPLITUDES**2), rtol=1e-9)
+    u = 1e-6 * np.cos(np.linspace(0.0, np.pi, 4001))
+    falling = PARABOLA.change(u, np.full(u.size, 1e-6))
+    middle = falling - 0.5 * falling[-1]
+    assert 2.0 * np.sum(0.5 * (middle[1:] + middle[:-1]) * np.diff(u)) == pytest.approx(area[1], rel=1e-5)
+
+
+def test_decay_of_a_parabola():
+    """First and second order of the decrement by hand: (2/3) e (1 + 2 e), e = C h/K."""
+    e = np.array([1e-3, 2e-3])
+    omega, decrement = PARABOLA.decay(e * K / C, 5.0)
+    np.testing.assert_allclose(decrement, 2.0 / 3.0 * e * (1.0 + 2.0 * e), rtol=2e-5)  # third order
+    np.testing.assert_allclose(omega, np.sqrt((K - C * e * K / C) / 5.0), rtol=2e-6)  # second order
+
+
+def test_decay_of_a_viscous_spring():
+    """No friction: sqrt(K/M), and the decrement pi d/(2 sqrt(K M)) of half a period."""
+    law = Hysteresis(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous=200.0)
+    omega, decrement = law.decay(AMPLITUDES, 5.0)
+    np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
+    np.testing.assert_allclose(decrement, 0.5 * np.pi * 200.0 / np.sqrt(K * 5.0), rtol=1e-5)  # second order
+
+
+def test_free_vibration_agrees_with_integration_in_time():
+    """Velocity Verlet, 1e-5 with 500 steps a period; the windows miss what their own spreads say."""
+    found = decay.points(*measurements.joint_decay())
+    law, mass = measurements.joint_law(), measurements.MASS
+    frequency, damping = Oscillator(law, mass).free(found.amplitude)
+    assert np.all(np.abs(found.frequency / frequency - 1.0) < found.frequency_spread + 2e-4)
+    assert np.all(np.abs(found.damping / damping - 1.0) < found.damping_spread / damping + 5e-3)
+    assert found.damping[0] > 2.0 * found.damping[-1]
+
+
+def test_response_agrees_with_integration_in_time():
+    """Amplitude of a steady state; the first harmonic alone leaves out 1/9 of the third: below 1 %."""
+    law, mass, force, frequency = measurements.joint_law(), measurements.MASS, 800.0, 1080.0
+    expected = Oscillator(law, mass).response(np.array([frequency]), np.array([force]), np.array([1e-6]))[0]
+    found = measurements.forced(law, mass, force, frequency, 3.0 * expected)
+    assert found == pytest.approx(expected, rel=1e-2)
+
+
+# Branches
+
+
+def joint_loops(**noise):
+    return measurements.loops(measurements.joint_law(), (2e-6, 6e-6), np.random.default_rng(1), **noise)
+
+
+def test_branches_follow_their_law():
+    run, motion, force = joint_loops()
+    parts = [("", motion[run == k], force[run == k]) for k in (1.0, 2.0)]
+    found = branches.cut(parts)
+    assert found.start.size == 6  # three turning points inside each run of two periods
+    law = measurements.joint_law()
+    _, start, rest = found.fitted(law, np.full(found.motion.size, 30.0))
+    # the noise is 0.3 % of the force, and 0.1 % of the motion
+    assert np.std(rest[found.run == 1]) < 6e-3 * force.max()
+    np.testing.assert_allclose(np.abs(start[found.start > 3e-6]), 6e-6, rtol=5e-3)
+
+
+def test_a_branch_ends_where_it_passes_the_turning_point_before():
+    """Growing swings: what goes beyond the last loop has another history."""
+    turns = np.array([0.0, 1.0, -1.5, 2.0, -2.0])
+    motion = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in pairwise(turns)])
+    found = branches.cut([("", motion, motion)])
+    ends = [(found.motion[found.branch == k].min(), found.motion[found.branch == k].max()) for k in range(3)]
+    assert ends[0][0] == pytest.approx(-1.5, abs=0.1)
+    assert ends[1][1] == pytest.approx(1.0, abs=0.1)
+    assert ends[2][0] == pytest.approx(-1.5, abs=0.1)
+
+
+def swung(law, turns):
+    """Force (n) over motions (n) from rest over turning points, each way within the one before."""
+    motion, force, reached = [], [], 0.0
+    for a, b in pairwise(turns):
+        way = np.linspace(a, b, 200, endpoint=False)
+        motion.append(way)
+        force.append(reached + law.change(way, np.full(way.size, a)))
+        reached += float(law.change(np.array([b]), np.array([a]))[0])
+    return np.concatenate(motion), np.concatenate(force)
+
+
+@pytest.mark.parametrize("middle", [0.0, 4e-6])
+def test_the_place_of_rest_is_found_in_loops(middle):
+    """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
+    hardening = Elastic(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
+    law = replace(PARABOLA, elastic=hardening)
+    motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
+    found = branches.cut([("", motion + 3e-5, force - 7e3)])
+    rest = found.rest(law, found.scale)
+    assert rest == pytest.approx(3e-5, rel=1e-6)
+    # steps of 50 nm: the turning points are the outermost samples
+    assert np.max(np.abs(found.fitted(law.about(rest), found.scale)[2])) < 1e-9 * np.ptp(force)
+
+
+def test_a_linear_spring_has_no_place_of_rest():
+    law = replace(PARABOLA, elastic=SPRING)
+    motion, force = swung(law, [5e-6, -5e-6, 5e-6, -5e-6])
+    found = branches.cut([("", motion + 3e-5, force - 7e3)])
+    assert found.rest(law, found.scale) in (0.0, pytest.approx(3e-5, rel=2e-3))
+    assert np.max(np.abs(found.residuals(law, found.scale))) < 1e-9
+
+
+def test_noise_does_not_widen_the_loops():
+    """The largest of several noisy samples lies two deviations too far out; the parabola does not."""
+    rng = np.random.default_rng(1)
+    motion = np.cos(np.linspace(1.0, 99.0, 98 * 300)) + 1e-3 * rng.standard_normal(98 * 300)
+    turns = branches.turning_points(motion)
+    values = [abs(branches.turning_value(motion, k, branches.noise(motion))) for k in turns]
+    assert turns.size == 31
+    assert np.mean(np.abs(motion[turns])) > 1.0 + 1.5e-3
+    assert np.mean(values) == pytest.approx(1.0, abs=4e-4)
+
+
+def test_motion_at_the_turning_points_is_part_of_the_doubt():
+    """Coarse triangles miss their corners by up to half a step."""
+    motion = np.abs((np.arange(200) * 0.07 + 0.03) % 4.0 - 2.0)
+    found = branches.cut([("", motion, 2.0 * motion)])
+    assert np.all(found.doubt > 0.02)
+
+
+# Round trips
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", measurements.CASES)
+def test_round_trip(case, tmp_path):
+    """The benchmark's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
+    found, true = measurements.CASES[case](np.random.default_rng(3), tmp_path / "measured.csv")
+    for name, deviation in found.solution.deviations.items():
+        assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
+    assert found.solution.noise == pytest.approx(1.0, abs=0.35)  # the groups are weighted by their own
+
+
+@pytest.mark.slow
+def test_the_command_writes_what_it_found(tmp_path, capsys):
+    path, out, picture = tmp_path / "shear.csv", tmp_path / "joint.toml", tmp_path / "fit.png"
+    run, motion, force = joint_loops()
+    measurements.save(path, "run [1], displacement [um], force [kN]", (run, 1e6 * motion, 1e-3 * force))
+    words = [
+        "fit",
+        "loop",
+        path,
+        "--preload",
+        "9e3",
+        "--free",
+        "mu",
+        "surface.G",
+        "--out",
+        out,
+        "--plot",
+        picture,
+    ]
+    assert cli.main([*map(str, words), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["joint"] == "bolted_joint"
+    assert document["facts"]["friction_limit"]["value"] == pytest.approx(
+        document["parameters"]["mu"] * 8 * 9e3
+    )
+    file = load(out, "bolted_joint")
+    assert file.values.mu == document["parameters"]["mu"]
+    assert file.sources["mu"].startswith("fitted to shear.csv")
+    assert "preload 9000 N" in file.sources["mu"]
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
+def test_law_of_a_roughness_has_a_level_and_no_exponent(tmp_path):
+    file = load("models/bolted_joint/box_specimen_roughness.toml", "bolted_joint")
+    law = loop.first_loading(file.with_values({"mu": 0.3, "h": 4e-6}, "user", "true").values, PRELOAD)[0]
+    run, motion, force = measurements.loops(law, (1e-6, 4e-6), np.random.default_rng(1))
+    path = measurements.save(
+        tmp_path / "m.csv", "run [1], displacement [um], force [N]", (run, 1e6 * motion, force)
+    )
+    found = loop.fit(path, file, preload=PRELOAD).solution
+    assert found.values.keys() == {"mu", "h"}
+    for name, true in (("mu", 0.3), ("h", 4e-6)):
+        assert abs(np.log(found.values[name] / true)) < 3.0 * found.deviations[name]
+
+
+# Files that are refused
+
+TURNS = "run [1], displacement [um], force [N]"
+VIBRATION = ["--preload", "9e3", "--modal-mass", "50"]
+
+
+def write(folder, heading, *columns):
+    return measurements.save(folder / "bad.csv", heading, columns)
+
+
+def ringing(folder, growth=-3.0, samples=500):
+    t = np.linspace(0.0, 1.0, samples)
+    return write(folder, "time [s], displacement [um]", t, np.exp(growth * t) * np.cos(60.0 * t))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda run, u, F: (run, u, -F), "run 1: the force falls as the motion rises; reverse the sign"),
+        (lambda run, u, F: (run[::-1], u[::-1], F[::-1]), "the loop creates energy, area = -"),
+        (lambda run, u, F: (run, np.linspace(0.0, 1.0, u.size), u), "the motion does not turn around"),
+    ],
+    ids=["sign", "direction", "ramp"],
+)
+def test_loops_that_are_none(change, message, tmp_path, capsys):
+    run, motion, force = change(*joint_loops())
+    path = write(tmp_path, TURNS, run, 1e6 * motion, force)
+    line = refused_line(capsys, "fit", "loop", path, "--preload", "9e3")
+    assert str(path) in line
+    assert message in line
+
+
+def test_a_small_loop_that_runs_back_is_refused(tmp_path, capsys):
+    """Its area is below a percent of its box, yet many times its noise."""
+    run, motion, force = measurements.loops(
+        measurements.joint_law(), (1e-7,), np.random.default_rng(1), noise=1e-5
+    )
+    path = write(tmp_path, TURNS, run, 1e6 * motion[::-1], force[::-1])
+    assert "creates energy" in refused_line(capsys, "fit", "loop", path, "--preload", "9e3")
+
+
+def test_a_growing_vibration_is_refused(tmp_path, capsys):
+    line = refused_line(capsys, "fit", "loop", ringing(tmp_path, growth=5.0), *VIBRATION)
+    assert "the joint creates energy" in line
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ([], "preload = 0 N is outside (0, inf); state that of each bolt in the test (--preload)"),
+        (["--preload", "9e3"], "has a vibration (decay); state the modal mass (--modal-mass)"),
+        (["--preload", "9e3", "--modal-mass", "-1"], "modal mass = -1 is outside (0, inf)"),
+        ([*VIBRATION, "--damping-ratio", "0.5"], "damping ratio = 0.5 is outside [0, 0.3)"),
+        (
+            [*VIBRATION, "--inertia", "1"],
+            "is of a bolted_joint; --inertia is allowed with a harmonic_drive only",
+        ),
+        (["--preload", "1e9", "--modal-mass", "50"], "allowed is up to"),
+        ([*VIBRATION, "--free", "surface.X"], "'surface.X' is no parameter to fit"),
+    ],
+)
+def test_options_that_are_refused(options, message, tmp_path, capsys):
+    assert message in refused_line(capsys, "fit", "loop", ringing(tmp_path), *options)
+
+
+def test_a_mass_says_nothing_about_loops(tmp_path, capsys):
+    run, motion, force = joint_loops()
+    path = write(tmp_path, TURNS, run, 1e6 * motion, force)
+    assert "has loops, nothing vibrates" in refused_line(capsys, "fit", "loop", path, *VIBRATION)
+
+
+@pytest.mark.parametrize(
+    ("heading", "rows", "message"),
+    [
+        (
+            "force [N], time [s]",
+            (1, 2),
+            "has no column of angle (harmonic_drive) or displacement (bolted_joint); expected one",
+        ),
+        ("displacement [um], angle [rad]", (1, 2), "has more than one column of angle"),
+        ("displacement [um], load [N]", (1, 2), "has displacement alone; expected displacement with force"),
+        (
+            "displacement [um], frequency [Hz], damping [1]",
+            (1, -2, 3),
+            "frequency = -2 Hz is outside (0, inf)",
+        ),
+        ("displacement [um], frequency [Hz], force [N]", (1, 2, 0), "force = 0 N is outside (0, inf)"),
+        ("displacement [um], time [s]", (1, 2), "time does not rise at its value 2"),
+    ],
+)
+def test_columns_that_are_refused(heading, rows, message, tmp_path, capsys):
+    path = write(tmp_path, heading, *(np.full(20, float(x)) for x in rows))
+    assert message in refused_line(capsys, "fit", "loop", path, *VIBRATION)
+
+
+def test_a_record_needs_samples_and_periods(tmp_path, capsys):
+    line = refused_line(capsys, "fit", "loop", ringing(tmp_path, samples=40), *VIBRATION)
+    assert "samples a period, at least 10 are needed" in line
+    line = refused_line(capsys, "fit", "loop", ringing(tmp_path, growth=-40.0), *VIBRATION)
+    assert "stand out of the noise, at least 4 are needed" in line
+
+
+def test_kinds_of_files(tmp_path):
+    heads = Heads("force", "displacement", sizes("N"), sizes("m", "um"))
+    for names, kind in (
+        ("displacement [um], force [N], time [s]", "loops"),
+        ("time [s], displacement [um]", "decay"),
+        ("frequency [Hz], displacement [um], damping [1]", "backbone"),
+        ("frequency [Hz], displacement [um], force [N]", "response"),
+    ):
+        path = write(tmp_path, names, *(np.ones(10) for _ in names.split(",")))
+        assert read(path, heads)[0] == kind
+
+
+@pytest.mark.slow
+def test_frequency_and_damping_over_the_amplitude(tmp_path):
+    """A backbone that somebody else has evaluated; the structure's own damping ratio is found beside."""
+    a = np.geomspace(1e-7, 3e-6, 25)
+    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS, 0.004).free(a)
+    rng = np.random.default_rng(1)
+    frequency, damping = (
+        x * np.exp(s * rng.standard_normal(25)) for x, s in ((frequency, 1e-3), (damping, 0.03))
+    )
+    path = write(tmp_path, "displacement [um], frequency [Hz], damping [1]", 1e6 * a, frequency, damping)
+    known = measurements.file("bolted_joint", {"surface.D": measurements.JOINT["surface.D"]})
+    found = loop.fit(
+        path, known, ["mu", "surface.G", "damping_ratio"], preload=PRELOAD, modal_mass=measurements.MASS
+    )
+    true = measurements.JOINT | {"damping_ratio": 0.004}
+    for name, deviation in found.solution.deviations.items():
+        assert abs(np.log(found.solution.values[name] / true[name])) < 3.0 * deviation, name
+    assert found.beside is not None
+
+
+def test_runs_of_their_own_size_have_their_own_noise():
+    run, motion, force = joint_loops()
+    force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
+    found = branches.cut([("", motion[run == k], force[run == k]) for k in (1.0, 2.0)])
+    rest = found.fitted(measurements.joint_law(), found.scale)[2]
+    assert np.std(rest[found.run == 1]) > 20.0 * np.std(rest[found.run == 0])
+    assert replace(found, areas=()).groups is found.run
+
+
+@pytest.mark.slow
+def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(tmp_path):
+    """The stiffness is known a hundred times better than level and exponent; the search ends all the same."""
+    a = np.geomspace(1e-7, 6e-6, 25)
+    frequency, damping = Oscillator(measurements.joint_law(), measurements.MASS).free(a)
+    rng = np.random.default_rng(1)
+    frequency, damping = (
+        x * np.exp(s * rng.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
+    )
+    path = write(tmp_path, "displacement [um], frequency [Hz], damping [1]", 1e6 * a, frequency, damping)
+    names = list(loop.FREE["zhao2018"])
+    found = loop.fit(path, free=names, preload=PRELOAD, modal_mass=measurements.MASS)
+    for name, deviation in found.solution.deviations.items():
+        assert abs(np.log(found.solution.values[name] / measurements.JOINT[name])) < 3.0 * deviation, name
+    assert found.facts["shear_stiffness"][0] == pytest.approx(
+        loop.rest_stiffness(measurements.file("bolted_joint", measurements.JOINT).values, PRELOAD), rel=1e-3
+    )
+    assert found.solution.deviations["surface.G"] > 100.0 * 1e-4

@@ -1,0 +1,274 @@
+"""A block on the bolted joint: its six frequencies, and how it rings down as the joint's loops foretell."""
+
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import Fmu
+from jointfmu_tools.systems.master import peak
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+from scipy.optimize import brentq
+
+from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.law import shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default
+
+pytestmark = pytest.mark.slow
+
+Array = NDArray[np.float64]
+Force = Callable[[Array, bool], Array]
+
+JOINT = default("bolted_joint").values
+SPRING = BoltedJointSpring.of(JOINT)
+PRELOAD, MOMENT = 9e3, 1500.0
+AXES = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+MASS = np.diag([100.0, 100.0, 100.0, 4.0, 3.0, 5.0])
+
+
+def all_nodes(preload: float, moment: float) -> Array:
+    """Stiffness (6, 6) of all nodes in full stick, each with the law's own stiffness."""
+    nodes = BoltedJointSpring.of_nodes(JOINT)
+    shape = nodes.shape
+    k = JOINT.A_0 * shape.share * nodes.curve.derivatives(nodes.tightened(preload, moment), 1)[1]
+    x, y = shape.position.T
+    none, one = np.zeros_like(x), np.ones_like(x)
+    normal = np.array([none, none, one, y, -x, none])
+    along = [np.array([one, none, none, none, none, -y]), np.array([none, one, none, none, none, x])]
+    ratio = shear_ratio(JOINT)
+    return np.asarray((normal * k) @ normal.T + ratio * sum((row * k) @ row.T for row in along))
+
+
+def force_of(fmu: Fmu) -> Force:
+    """Force and moment (6) at a place (6); with `done` the place is accepted."""
+    inputs = [fmu.variables[name].valueReference for name in AXES]
+    outputs = [fmu.variables[name].valueReference for name in FORCES]
+
+    def force(place: Array, done: bool) -> Array:
+        fmu.write(inputs, place.tolist())
+        if done and fmu.exchange:
+            fmu.fmu.completedIntegratorStep()
+        elif done:
+            fmu.step(1.0)
+        return np.array(fmu.read(outputs))
+
+    return force
+
+
+def leapfrog(force: Force, mass: Array, place: Array, speed: Array, step: float, count: int) -> Array:
+    """Places (count + 1, n) of a block, by the leapfrog scheme."""
+    inverse, places = np.linalg.inv(mass), [place]
+    speed = speed + 0.5 * step * inverse @ force(place, True)
+    for _ in range(count):
+        place = place + step * speed
+        speed = speed + step * inverse @ force(place, True)
+        places.append(place)
+    return np.array(places)
+
+
+def started(native: Path, version: str, exchange: bool, **values: Any) -> Fmu:
+    fmu = Fmu(native / f"fmi{version}" / "BoltedJoint.fmu", exchange=exchange)
+    fmu.start({"preload": PRELOAD, **values})
+    if exchange:
+        fmu.fmu.enterContinuousTimeMode()
+    return fmu
+
+
+@pytest.mark.parametrize("exchange", [False, True], ids=["co-simulation", "model exchange"])
+def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
+    """Within 0.1 % of the matrix of all nodes, under a moment; the scheme's own error is taken out."""
+    squares, shapes = eigh(all_nodes(PRELOAD, MOMENT), MASS)
+    for square, shape in zip(squares, shapes.T, strict=True):
+        fmu = started(native, "3", exchange, moment=MOMENT)
+        omega = float(np.sqrt(square))
+        step, size = 2.0 * np.pi / omega / 40.0, 1e-9 / float(np.max(np.abs(shape)))
+        places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
+        found = peak(places @ MASS @ shape, step)
+        assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=1e-3)
+        fmu.free()
+
+
+@pytest.mark.parametrize("degrees", [10.0, 90.0])
+def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
+    """A block pushed in a turned frame gets the turned force, also in partial slip."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    turned = np.array([[c, -s], [s, c]])
+    rates, rest = (0.0,) * 6, SPRING.at_rest()
+
+    def shear(u: Array) -> Array:
+        place = Place((float(u[0]), float(u[1]), -1e-7))
+        found, _ = SPRING.evolve(PRELOAD, 0.0, place, rates, rest)
+        return np.array([found["f_x"], found["f_y"]], dtype=float)
+
+    push = np.array([1e-6, 0.0])
+    np.testing.assert_allclose(shear(turned @ push), turned @ shear(push), rtol=1e-12)
+
+
+PERIOD = 2.0 * np.pi * np.sqrt(100.0 / 1.0249e10)
+FIRST = 1e-6
+"""Where the block is let go along x [m]: 63 % of the friction is used."""
+
+
+GUIDED = np.diag([100.0, *5 * [1e30]])
+"""A block that moves along x alone."""
+
+
+def ring_down(force: Force, per_period: int, periods: float) -> Array:
+    count = round(per_period * periods)
+    start = FIRST * np.eye(6)[0]
+    return leapfrog(force, GUIDED, start, np.zeros(6), PERIOD / per_period, count)[:, 0]
+
+
+def cvode(fmu: Fmu, stop: float) -> float:
+    """Where the block is after a time, the joint as model exchange under CVode."""
+    from fmpy.sundials import CVodeSolver
+
+    force, state = force_of(fmu), np.array([FIRST, 0.0])
+
+    def place() -> Array:
+        return state[0] * np.eye(6)[0]
+
+    def view(pointer: Any) -> Array:
+        return np.ctypeslib.as_array(pointer, (2,))
+
+    def fill(values: Callable[[], Array]) -> Callable[[Any, int], None]:
+        def callback(pointer: Any, n: int) -> None:
+            view(pointer)[:] = values()
+
+        return callback
+
+    def put(pointer: Any, n: int) -> None:
+        state[:] = view(pointer)
+
+    class Inputs:
+        def apply(self, time: float) -> None: ...
+
+    solver = CVodeSolver(
+        2, 0, fill(lambda: state), put, fill(lambda: np.array([state[1], force(place(), False)[0] / 100.0])),
+        lambda pointer, n: None, fill(lambda: np.array([FIRST, FIRST * 1e4])), lambda time: None,
+        Inputs(), 0.0,
+        relativeTolerance=1e-12, maxNumSteps=100_000, maxStep=PERIOD / 2000.0,
+    )  # fmt: skip
+    time = 0.0
+    force(place(), True)
+    for end in np.linspace(0.0, stop, 4501)[1:].tolist():
+        _, _, time = solver.step(time, end)
+        force(place(), True)
+    return float(state[0])
+
+
+def test_co_simulation_and_cvode_agree(native: Path) -> None:
+    """Step size halved: the error falls with its square, and without it the two are equal."""
+    ends = []
+    for per_period in (2000, 4000):
+        fmu = started(native, "3", False)
+        ends.append(ring_down(force_of(fmu), per_period, 2.25)[-1])
+        fmu.free()
+    limit = (4.0 * ends[1] - ends[0]) / 3.0
+    exchange = started(native, "3", True)
+    assert cvode(exchange, 2.25 * PERIOD) == pytest.approx(limit, abs=1e-6 * FIRST)
+    exchange.free()
+
+
+def gone_on(fmu: Fmu, places: list[float]) -> list[float]:
+    """Forces along x at places, one step each."""
+    force = force_of(fmu)
+    return [float(force(place * np.eye(6)[0], True)[0]) for place in places]
+
+
+def continued(file: str, state: bytes, places: list[float], time: float) -> list[float]:
+    """The same of an instance that goes on from a serialized state."""
+    fmu = Fmu(Path(file)).start()
+    saved = fmu.fmu.deserializeFMUState(state)
+    fmu.fmu.setFMUState(saved)
+    fmu.fmu.freeFMUState(saved)
+    fmu.time = time
+    return gone_on(fmu, places)
+
+
+CONTINUE = """
+import pickle, sys
+sys.path[:0] = {path!r}
+from test_bolted_joint_rings import continued
+with open({file!r}, "rb") as given:
+    print(continued(*pickle.load(given)))
+"""
+
+
+def test_a_state_goes_on_in_another_process(native: Path, tmp_path: Path) -> None:
+    """Bit by bit: all that friction remembers is in the state."""
+    file = native / "fmi3" / "BoltedJoint.fmu"
+    places = (1e-6 * np.sin(0.4 * np.arange(60)) * np.linspace(1.5, 0.3, 60)).tolist()
+    fmu = started(native, "3", False)
+    gone_on(fmu, places[:30])
+    saved = fmu.fmu.getFMUState()
+    given = (str(file), fmu.fmu.serializeFMUState(saved), places[30:], fmu.time)
+    (tmp_path / "given").write_bytes(pickle.dumps(given))
+    code = CONTINUE.format(path=sys.path, file=str(tmp_path / "given"))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert done.stdout == f"{gone_on(fmu, places[30:])}\n"
+    fmu.fmu.freeFMUState(saved)
+    fmu.free()
+
+
+def test_flavours_agree(native: Path, fmus: Path) -> None:
+    """FMI 2 and 3, both interfaces, the python flavour: the same ring-down with the same scheme."""
+    places = {}
+    for version in ("2", "3"):
+        for exchange in (False, True):
+            fmu = started(native, version, exchange)
+            places[version, exchange] = ring_down(force_of(fmu), 40, 3.0)
+            fmu.free()
+    fmu = Fmu(fmus / "BoltedJoint.fmu").start({"preload": PRELOAD})
+    places["python", False] = ring_down(force_of(fmu), 40, 3.0)
+    fmu.free()
+    reference = places["3", False]
+    for found in places.values():
+        np.testing.assert_allclose(found, reference, rtol=0.0, atol=1e-9 * FIRST)
+
+
+def swings(first: float, least: float) -> Array:
+    """How far a block that is let go at a displacement moves from turn to turn.
+
+    By the theorem of Jaeger and Ciavarella and Masing's rule over all nodes, to a least part of the friction:
+    from a turn with the force q to the next one the force falls twice as far as it rose on half the way at
+    first, B, and does no work. So their distance 2 s follows from q s = 2 I(s), I the integral of B, and the
+    force there is q - 2 B(s).
+    """
+    nodes = BoltedJointSpring.of_nodes(JOINT)
+    approach, law = nodes.tightened(PRELOAD, 0.0), nodes.foundation()
+    share, limit = nodes.shape.share, JOINT.mu * PRELOAD * JOINT.n_bolts / JOINT.A_0
+
+    def force(u: float) -> float:
+        return float(share @ law.backbone(approach, u))
+
+    def idle(s: float, q: float) -> float:
+        return q * s - 2.0 * float(share @ law.work(approach, s))
+
+    found, s, q = [], first, force(first)
+    while q > least * limit:
+        s = brentq(idle, 0.3 * s, s, (q,), xtol=1e-18)
+        found.append(2.0 * s)
+        q = 2.0 * force(s) - q
+    return np.array(found)
+
+
+def test_a_ring_down_loses_what_the_loop_does(native: Path) -> None:
+    """From 0.63 to 0.1 of the friction: by how much less far it swings a period later, within 2 %."""
+    fmu = started(native, "3", False)
+    place = ring_down(force_of(fmu), 400, 16.0)
+    fmu.free()
+    turns = np.diff(place)[:-1] * np.diff(place)[1:] <= 0.0
+    seen = np.abs(np.diff([FIRST, *place[1:-1][turns]]))
+    expected = swings(FIRST, 0.1)
+    assert expected.size >= 8
+    fall, should = (swing[:-2] - swing[2:] for swing in (seen[: expected.size], expected))
+    np.testing.assert_allclose(fall, should, rtol=0.02)

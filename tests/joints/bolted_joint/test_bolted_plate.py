@@ -1,0 +1,231 @@
+"""Bolts anywhere on a plate: layouts, equilibrium, contradictions, and bolts that carry the open joint."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jointfmu.contact.surface import Elastic
+from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.plate import BoltedPlate, cells, decay, lever
+from jointfmu.parameters import default, dump, load
+
+STILL = (0.0, 0.0, 0.0)
+SUM = 1e-12
+"""Sums of a thousand nodes; Newton's method of a bolt's balance ends at 1e-13."""
+CIRCLE = 2.0 * np.pi * np.arange(6) / 6
+LAYOUTS = {
+    "one bolt": ([0.0], [0.0]),
+    "one bolt off the middle": ([0.05], [-0.02]),
+    "one row": ([-0.06, 0.0, 0.06], [0.01, 0.01, 0.01]),
+    "a column": ([0.0, 0.0, 0.0], [-0.03, 0.0, 0.03]),
+    "two by two": ([-0.08, 0.08, -0.08, 0.08], [-0.03, -0.03, 0.03, 0.03]),
+    "four rows": ([0.0] * 4, [-0.036, -0.012, 0.012, 0.036]),
+    "a triangle at the edges": ([-0.09, 0.0, 0.09], [-0.04, 0.04, -0.01]),
+    "a circle": (0.04 * np.cos(CIRCLE), 0.04 * np.sin(CIRCLE)),
+}
+
+
+def plate(x, y, **changes):
+    sizes = {"length": 0.2, "width": 0.1, "hole_diameter": 0.0135, "cone_diameter": 0.036}
+    places = {"x": tuple(map(float, x)), "y": tuple(map(float, y))}
+    return BoltedPlate(**sizes | places | changes)
+
+
+def joint(pattern, **changes):
+    row_bolts, row_distance = pattern.rows
+    steel = Elastic(E=210e9, nu=0.3)
+    values = {
+        "h": 1e-6, "gamma": 0.45, "longest_wave": 0.8e-3, "hurst": 0.8, "slope": 0.1, "side1": steel,
+        "side2": steel, "H": 2e9, "mu": 0.15, "traction_ratio": 0.1, "A_0": pattern.area, "mass": 10.0,
+        "n_bolts": float(len(pattern.x)), "row_bolts": row_bolts, "row_distance": row_distance,
+        "pattern": pattern,
+    }  # fmt: skip
+    return RoughBoltedJoint(**values | changes)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_every_layout_balances_its_bolts(name):
+    pattern = plate(*LAYOUTS[name])
+    shape, areas = pattern.shape(), cells(pattern)[0]
+    assert areas.sum() == pytest.approx(pattern.area, rel=5e-4)  # the edge of a hole in eighths of a cell
+    assert shape.share.sum() == pytest.approx(1.0, rel=SUM)
+    assert shape.share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
+    assert shape.share @ shape.equal == pytest.approx(1.0, rel=SUM)
+    # the centre of pressure is that of the bolts, from the centroid of plate without holes
+    _, points = cells(pattern)
+    centroid = areas @ points / areas.sum()
+    centre = shape.share @ (shape.equal[:, None] * shape.position)
+    assert centre == pytest.approx(pattern.bolts.mean(axis=0) - centroid, abs=1e-12)
+    # a moment about x changes no force and is balanced by the pressure
+    assert shape.share @ shape.tilt == pytest.approx(0.0, abs=1e-11)
+    assert shape.share @ (shape.tilt * shape.position[:, 1]) == pytest.approx(pattern.rows[1], rel=1e-11)
+    assert np.all(shape.equal >= 0.0)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_pressures_carry_preload_and_moment(name):
+    pattern = plate(*LAYOUTS[name])
+    one = joint(pattern)
+    moment = 0.2 * 1e4 * one.row_distance * one.row_bolts
+    shape = pattern.shape()
+    p = pressures(one, shape, 1e4, moment)
+    force = one.A_0 * shape.share * p
+    assert force.sum() == pytest.approx(1e4 * len(pattern.x), rel=1e-9)
+    even = one.A_0 * shape.share * pressures(one, shape, 1e4, 0.0)
+    assert (force - even) @ shape.position[:, 1] == pytest.approx(moment, rel=1e-9)
+
+
+def test_one_pressure_falls_as_the_polynomial_and_has_the_moment_of_its_cone():
+    pattern = plate([0.0], [0.0])
+    a, R = 0.5 * pattern.hole_diameter, pattern.reach
+    r = np.linspace(a, R, 20001)
+    p = decay(pattern, r)
+    assert p[0] == 1.0
+    assert decay(pattern, np.array([0.5 * a, 2.0 * R])).tolist() == [1.0, 0.0]
+    slope = np.gradient(p, r)
+    assert abs(slope[0]) < 1e-3 * abs(slope).max()
+    assert abs(slope[-1]) < 1e-6 * abs(slope).max()
+    square = np.trapezoid(p * r**3, r) / np.trapezoid(p * r, r)
+    assert square == pytest.approx(0.5 * (a**2 + (0.5 * pattern.cone_diameter) ** 2), rel=1e-6)
+    shape = pattern.shape()  # and the cells have it too
+    found = shape.share @ (shape.equal * np.sum(shape.position**2, axis=1))
+    assert found == pytest.approx(square, rel=0.01)
+
+
+def test_two_rows_have_their_own_distance_and_more_rows_help():
+    assert lever(np.array([-0.03, -0.03, 0.03, 0.03])) == pytest.approx((2.0, 0.06))
+    assert lever(np.array([-0.03, 0.0, 0.03])) == pytest.approx((1.0, 0.06))
+    # M y_i/sum(y^2) at the outer bolts is M/(N_b L_a)
+    y = np.array([-0.036, -0.012, 0.012, 0.036])
+    count, distance = lever(y)
+    assert 1.0 / (count * distance) == pytest.approx(0.036 / (y @ y))
+
+
+def test_as_many_places_along_as_across():
+    with pytest.raises(ValueError, match="y has 1 numbers, expected as many as x has: 2"):
+        plate([0.0, 0.05], [0.0])
+
+
+def test_the_moment_of_two_rows_is_that_of_a_frame():
+    """Bolt forces of a plate: those of Zhao 2018, section 3, for two rows."""
+    pattern = plate(*LAYOUTS["two by two"])
+    shape = pattern.shape()
+    upper = shape.position[:, 1] > 0.0
+    one = joint(pattern)
+    p = pressures(one, shape, 2e4, 600.0)
+    force = one.A_0 * shape.share * p
+    shift = 600.0 / (0.06 * 2)
+    # a bolt's disc does not reach across the middle here
+    assert force[upper].sum() == pytest.approx(2 * (2e4 + shift), rel=1e-9)
+    assert force[~upper].sum() == pytest.approx(2 * (2e4 - shift), rel=1e-9)
+
+
+def test_the_contact_of_one_row_opens_where_the_rows_say():
+    pattern = plate(*LAYOUTS["one row"])
+    one, shape = joint(pattern), pattern.shape()
+    opening = 1e4 * one.row_distance * one.row_bolts
+    pressed = shape.equal > 0.0
+    held, open_ = (
+        np.array([pressures(one, shape, 1e4, sign * part * opening)[pressed] for sign in (1.0, -1.0)])
+        for part in (0.999, 1.001)
+    )
+    assert np.all(held > 0.0)
+    assert np.any(open_ == 0.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"x": (0.0, 0.0), "y": (0.0, 0.013)}, ("overlap", "(0, 0.013)")),
+        ({"x": (0.096,)}, ("bolt 1 at (0.096, 0) m", "leaves the plate", "|x| < 0.09325 m")),
+        ({"x": (0.0, 0.01), "y": (0.0, 0.0)}, ("bolts 1 and 2 overlap", "0.0135 m is outside (0, 0.01)")),
+        ({"hole_diameter": 0.12, "cone_diameter": 0.2}, ("leaves the plate",)),
+        ({"cone_diameter": 0.0135}, ("cone_diameter = 0.0135 m is outside (0.0135, inf)",)),
+        ({"length": -0.2}, ("length = -0.2 m",)),
+    ],
+)
+def test_a_plate_that_cannot_be_is_refused(changes, words):
+    with pytest.raises(ValueError, match=" m ") as error:
+        plate(**{"x": [0.0], "y": [0.0]} | changes)
+    assert all(word in str(error.value) for word in words), error.value
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        ({"n_bolts": 5.0}, "n_bolts = 5 contradicts [plate], which has 4 bolts"),
+        ({"A_0": 0.0185}, "A_0 = 0.0185 m2 contradicts [plate], which has 0.0194274 m2 without its holes"),
+        ({"row_bolts": 1.0}, "row_bolts = 1 contradicts [plate], whose rows have 2"),
+        ({"row_distance": 0.05}, "row_distance = 0.05 m contradicts [plate], where it is 0.06 m"),
+    ],
+)
+def test_a_file_that_contradicts_itself_is_refused(tmp_path, changes, text):
+    one = joint(plate(*LAYOUTS["two by two"]))
+    assert list(contradictions(one)) == []
+    path = tmp_path / "joint.toml"
+    file = replace(default("bolted_joint"), values=replace(one, **changes), roughness={})
+    path.write_text(dump(file))
+    with pytest.raises(ValueError, match=r"joint\.toml") as error:
+        load(path)
+    assert text in str(error.value)
+    path.write_text(dump(replace(file, values=one)))
+    assert load(path).values == one
+
+
+def test_a_frame_of_eight_bolts_with_four_is_refused(tmp_path):
+    path = tmp_path / "four.toml"
+    text = dump(default("bolted_joint"))
+    path.write_text(
+        text.replace("n_bolts = { value = 8.0", "n_bolts = { value = 4.0").replace(
+            "row_bolts = { value = 3.0", "row_bolts = { value = 2.0"
+        )
+    )
+    with pytest.raises(ValueError, match=r"n_bolts = 4 contradicts \[pattern\], which has 8 bolts"):
+        load(path)
+    path.write_text(text.replace("A_0 = { value = 0.0382", "A_0 = { value = 0.0482"))
+    with pytest.raises(ValueError, match=r"A_0 = 0.0482 m2 contradicts \[pattern\], which has 0.03807\d+ m2"):
+        load(path)
+
+
+def test_one_row_says_what_to_do():
+    one = joint(plate(*LAYOUTS["one row"]))
+    with pytest.raises(ValueError, match=r"row_bolts = 3 is outside \[1, 1.5\]: .* set row_bolts = 1 where"):
+        replace(one, row_bolts=3.0)
+    single = joint(plate([0.0], [0.0]))
+    assert single.row_bolts == 1.0  # where half of a bolt would be the limit
+
+
+# The bolts' own stiffness
+
+
+def test_without_bolt_stiffness_nothing_changes():
+    old = default("bolted_joint").values
+    assert old.bolt_stiffness == 0.0
+    state = (9e3, 800.0, (1e-6, -2e-6, 5e-7), (1e-3, 2e-3, -1e-3))
+    plain = BoltedJointSpring.of(old).motion(*state)
+    again = BoltedJointSpring.of(replace(old, bolt_stiffness=1e8)).motion(*state)
+    same = {"f_x", "f_y", "K_xx", "K_yy", "C_xx", "C_zz", "K_rz", "p_mean", "p_max", "eta_t", "eta_n"}
+    assert {name: plain[name] for name in same} == {name: again[name] for name in same}
+    assert again["f_z"] - plain["f_z"] == pytest.approx(-8e8 * 5e-7, rel=1e-9)
+    assert again["K_zz"] - plain["K_zz"] == pytest.approx(8e8, rel=1e-9)
+    # six bolts at y = +-0.15 m, six at x = +-0.1 m
+    assert again["K_rx"] - plain["K_rx"] == pytest.approx(6 * 1e8 * 0.15**2, rel=1e-6)
+    assert again["K_ry"] - plain["K_ry"] == pytest.approx(6 * 1e8 * 0.1**2, rel=1e-6)
+
+
+def test_bolts_carry_the_open_joint_and_the_stiffness_is_the_derivative():
+    pattern = plate(*LAYOUTS["two by two"])
+    spring = BoltedJointSpring.of(joint(pattern, bolt_stiffness=3e8))
+    far = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL)
+    assert far["f_z"] == pytest.approx(-4 * (3e4 + 3e8 * 1e-4), rel=1e-12)
+    assert far["K_zz"] == pytest.approx(4 * 3e8, rel=1e-12)
+    assert far["K_rx"] == pytest.approx(4 * 3e8 * 0.03**2, rel=1e-6)
+    assert far["K_ry"] == pytest.approx(4 * 3e8 * 0.08**2, rel=1e-6)
+    assert far["K_xx"] == far["K_rz"] == 0.0
+    h, state = 1e-10, (3e4, 400.0)
+    for z in (-2e-7, 0.0, 6e-7):
+        up, down = (spring.motion(*state, (0.0, 0.0, z + d), STILL)["f_z"] for d in (h, -h))
+        K = spring.motion(*state, (0.0, 0.0, z), STILL)["K_zz"]
+        assert (down - up) / (2.0 * h) == pytest.approx(K, rel=1e-5)

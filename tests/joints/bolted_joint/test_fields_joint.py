@@ -1,0 +1,307 @@
+"""A field in the joint: few points for many nodes, its moment, its parameter file and its FMU."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from jointfmu_fmu_src.building import build
+from jointfmu_tools import cli
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
+from jointfmu_tools.fields.loads import PRELOADS, PRESSED, Load
+from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
+from jointfmu_tools.fields.sums import Sums
+from jointfmu_tools.modelica import library
+
+from jointfmu import plots
+from jointfmu.joints import register, unregister
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
+from jointfmu.joints.bolted_joint.published import p_between
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint import bolts
+from jointfmu.mechanics.footprint.reproducible import rounded
+from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.parameters import default, dump, load
+from jointfmu.quantity import flatten
+from jointfmu.run import ramp
+
+pytestmark = pytest.mark.slow
+
+FILE = default("bolted_joint")
+JOINT = FILE.values
+PRELOAD = 9e3
+OFFSET = np.array([0.2, -0.1])
+
+
+def field(closed=0.0, moment=0.0):
+    """Nodes of the default frame with its pressure; below `closed` of the mean they are open."""
+    shape = bolt_pattern(JOINT).shape()
+    mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
+    p = np.maximum(shape.equal - closed, 0.0)
+    p *= mean / (shape.share @ p)
+    p += moment / (JOINT.row_distance * JOINT.A_0) * shape.tilt
+    return ContactField(shape.share * JOINT.A_0, shape.position + OFFSET, p)
+
+
+FIELD = field()
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.45], ids=["closed", "open"])
+def reduced(request):
+    shape = pressure_shape(JOINT, field(request.param), PRELOAD)
+    joint = replace(JOINT, A_0=float(FIELD.area.sum()))
+    return joint, shape, reduce(joint, shape, PRELOAD, pressures)
+
+
+def direct(joint, shape, load):
+    """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
+    elastic = replace(joint, memory=False)
+    spring = BoltedJointSpring(elastic, Sums.of(joint, PRELOAD, pressures).curve, shape, shape)
+    force = load.preload * PRELOAD
+    moment = load.moment * force * joint.row_distance * joint.row_bolts
+    start = spring.tightened(force, moment)
+    found = []
+    for s_z in (load.apart, 0.0):
+        state = spring.motion(force, moment, (0.0, 0.0, s_z), (0.0, 0.0, 0.0))
+        state["force"] = state["p_mean"] * joint.A_0
+        found.append(np.array([state[n] for n in ("force", "K_zz", "K_xx", "K_rx", "K_ry")]))
+        last = state
+    return start, found, last["p_max"]
+
+
+def test_points_keep_the_sums(reduced):
+    """At loads that the reduction never saw, within what it promises; the peak pressure exactly."""
+    joint, shape, found = reduced
+    assert found.points < 0.35 * found.nodes
+    assert found.deviation <= TOLERANCE
+    rng = np.random.default_rng(11)
+    lowest = Sums.of(joint, PRELOAD, pressures).curve.displacement[0]
+    for _ in range(60):
+        load = Load(float(np.exp(rng.uniform(*np.log(PRELOADS)))), found.moment * rng.uniform(-1, 1), 0.0)
+        start, _, peak = direct(joint, shape, load)
+        apart = rng.choice([0.0, rng.uniform(-PRESSED, 1.0)]) * (start.max() - lowest)
+        _, full, _ = direct(joint, shape, load._replace(apart=apart))
+        _, few, same = direct(joint, found.shape, load._replace(apart=apart))
+        np.testing.assert_array_less(np.abs(few[0] - full[0]), TOLERANCE * np.maximum(full[0], full[1]))
+        assert same == pytest.approx(peak, rel=TOLERANCE)  # scaled to balance
+
+
+def test_points_balance(reduced):
+    _, shape, found = reduced
+    points = found.shape
+    assert np.all(points.share > 0.0)
+    for one in (shape, points):
+        assert one.share.sum() == pytest.approx(1.0, rel=1e-12)
+        assert one.share @ one.equal == pytest.approx(1.0, rel=1e-12)
+        assert one.share @ one.tilt == pytest.approx(0.0, abs=1e-12)
+        np.testing.assert_allclose(one.share @ one.position, 0.0, atol=1e-14)
+        # a moment M shifts M/L_a from row to row: the pressures balance it if this is L_a
+        assert one.share @ (one.tilt * one.position[:, 1]) == pytest.approx(JOINT.row_distance, rel=1e-6)
+
+
+def test_a_field_that_is_a_bit_off_is_the_same():
+    """Reduced are the same bits: 200 times with every number of the file off by 1e-15 of itself."""
+    rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
+    before, numbers = rounded(shape, DIGITS), ("share", "position", "equal", "tilt")
+    for _ in range(200):
+        area, position, pressure = (
+            values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
+            for values in (FIELD.area, FIELD.position, FIELD.pressure)
+        )
+        other = pressure_shape(JOINT, ContactField(area, position, pressure), PRELOAD)
+        for name in numbers:
+            assert np.array_equal(getattr(rounded(other, DIGITS), name), getattr(before, name)), name
+    one, two = (reduce(JOINT, each, PRELOAD, pressures).shape for each in (shape, other))
+    for name in numbers:
+        was = getattr(one, name)
+        np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
+
+
+def test_few_nodes_stay_as_they_are():
+    shape = pressure_shape(JOINT, ContactField(*(a[:50] for a in _parts(FIELD))), _preload(FIELD, 50))
+    assert reduce(JOINT, shape, PRELOAD, pressures).shape is shape
+
+
+def _parts(one):
+    return one.area, one.position, one.pressure
+
+
+def _preload(one, count):
+    return float(one.area[:count] @ one.pressure[:count]) / JOINT.n_bolts
+
+
+def test_second_field_gives_the_tilt():
+    """The pattern's own two fields give back the pattern's own tilt, up to the sum it leaves (round-off)."""
+    moment = 900.0
+    found = pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), moment)
+    pattern = bolt_pattern(JOINT).shape()
+    scale = FIELD.area.sum() / JOINT.A_0
+    np.testing.assert_allclose(found.tilt, scale * pattern.tilt, atol=1e-9 * np.abs(pattern.tilt).max())
+    with pytest.raises(ValueError, match=r"balance -0.877 of the moment of -900 N.m, allowed is 0.5 to 1.5"):
+        pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment), -moment)
+    with pytest.raises(ValueError, match=r"moment = None N.m is outside"):
+        pressure_shape(JOINT, FIELD, PRELOAD, field(moment=moment))
+    moved = replace(FIELD, position=FIELD.position + 0.01 * OFFSET)
+    with pytest.raises(ValueError, match=r"node 1 of the field with a moment is at .* expected"):
+        pressure_shape(JOINT, FIELD, PRELOAD, moved, moment)
+
+
+@pytest.mark.parametrize("factor", [0.989, 1.011])
+def test_a_force_more_than_one_per_cent_off_is_refused(factor):
+    wrong = replace(FIELD, pressure=factor * FIELD.pressure)
+    with pytest.raises(
+        ValueError, match=r"the force of the field is .* N, expected 72000 N within 1 %: 8 bolts"
+    ):
+        with_field(FILE, wrong, PRELOAD, "test")
+    assert pressure_shape(JOINT, replace(FIELD, pressure=1.009 * FIELD.pressure), PRELOAD)
+
+
+def test_other_joints_have_no_field():
+    with pytest.raises(ValueError, match=r"joint = 'gear_contact' has no field"):
+        with_field(default("gear_contact"), FIELD, PRELOAD, "test")
+
+
+def test_a_joint_of_another_name_may_have_a_field():
+    """Whatever joint has the part `field` gets its own parameter set with the field."""
+    toy = replace(KIND, name="toy", models=())
+    register(toy)
+    try:
+        few = ContactField(*(a[:50] for a in _parts(FIELD)))
+        file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
+    finally:
+        unregister(toy)
+    assert (file.joint, found.nodes) == ("toy", 50)
+    assert isinstance(file.values, toy.parameters)
+    assert len(file.values.pattern.share) == 50
+
+
+@pytest.fixture(scope="module")
+def imported():
+    return with_field(FILE, FIELD, PRELOAD, "a test's field")
+
+
+def test_file_survives_and_says_where_it_comes_from(imported, tmp_path):
+    file, found = imported
+    path = tmp_path / "joint.toml"
+    path.write_text(dump(file))
+    again = load(path, "bolted_joint")
+    assert again.values == file.values
+    assert dump(again) == dump(file)
+    assert isinstance(again.values.pattern, NodalField)
+    assert float(FIELD.area.sum()) == again.values.A_0
+    assert "pattern." not in " ".join(flatten(again.values))
+    assert again.origins["field.tilt"] == "derived"
+    assert again.sources["field.share"].endswith(f"{found.points} points for {found.nodes} nodes")
+    assert again.sources["A_0"] == "a test's field, sum of the nodal areas"
+
+
+@pytest.mark.parametrize(("change", "message"), [
+    ({"pattern.decay_length": 0.01}, r"pattern.decay_length is no parameter of a set that has \[field\]"),
+    ({"field.share": (0.5, 0.6)}, r"x has \d+ numbers, expected as many as share has: 2"),
+    ({"field.share": (0.5, "a")}, r"field.share\[1\] = 'a' is not a number"),
+    ({"field.share": 3.0}, r"field.share = 3.0 is no list of numbers"),
+    ({"field.equal": (-1.0, 1.0)}, r"field.equal\[0\] = -1 is outside \[0, inf\)"),
+])  # fmt: skip
+def test_broken_field_is_refused(imported, change, message):
+    with pytest.raises(ValueError, match=message):
+        imported[0].with_values(change, "user", "test")
+
+
+def test_a_file_with_both_sections_is_refused(imported, tmp_path):
+    path = tmp_path / "joint.toml"
+    pattern = dump(FILE).partition("[pattern]\n")[2].partition("\n[")[0]
+    path.write_text(f"{dump(imported[0])}\n[pattern]\n{pattern}\n")
+    with pytest.raises(ValueError, match=r"joint.toml: pattern\.\w+, .* beside field\.share, .*") as error:
+        load(path, "bolted_joint")
+    assert str(error.value).endswith(": allowed is one of [pattern], [plate], [field]")
+    assert "\n" not in str(error.value)
+
+
+def test_unbalanced_field_is_refused():
+    even = {"share": (0.5, 0.5), "x": (-1.0, 1.0), "y": (0.0, 0.0), "equal": (1.0, 1.0), "tilt": (1.0, -1.0)}
+    NodalField(**even)
+    for name, values, message in (
+        ("share", (0.5, 0.6), "the sum of share is 1.1"),
+        ("y", (1.0, 2.0), "y of the centroid is 1.5"),
+        ("equal", (1.0, 2.0), "the mean of equal is 1.5"),
+        ("tilt", (1.0, 1.0), "the mean of tilt is 1, expected 0"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            NodalField(**even | {name: values})
+
+
+def test_what_asks_for_bolts_refuses_a_field(imported):
+    with pytest.raises(ValueError, match=r"the joint has \[field\], a nodal field of \d+ points; expected"):
+        p_between(imported[0].values, PRELOAD)
+
+
+def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
+    """Import, parameter file, native FMU, ramp: the stiffnesses of direct summation over all nodes."""
+    monkeypatch.setattr(bolts, "CELLS_ACROSS", 10)
+    shape = bolt_pattern(JOINT).shape()
+    mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
+    many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.equal)
+    (tmp_path / "field.csv").write_text(csvfile.text(many))
+    out = tmp_path / "joint.toml"
+    line = [
+        "footprint",
+        "import",
+        str(tmp_path / "field.csv"),
+        "--preload",
+        f"{PRELOAD:g}",
+        "--out",
+        str(out),
+    ]
+    assert cli.main(line) == 0
+    file = load(out, "bolted_joint")
+    assert len(file.values.pattern.share) < many.area.size
+    (fmu,) = build(["BoltedJoint"], ["fmi2"], file, tmp_path)
+    found = ramp.run(fmu, "preload", 27e3, 3e3).columns
+    full = pressure_shape(JOINT, many, PRELOAD)
+    for i in range(1, len(found["preload"])):
+        _, (expected, _), peak = direct(file.values, full, Load(found["preload"][i] / PRELOAD, 0.0, 0.0))
+        got = [found["p_mean"][i] * file.values.A_0, *(found[n][i] for n in ("K_zz", "K_xx", "K_rx", "K_ry"))]
+        shear = got.pop(2), expected[2]
+        np.testing.assert_allclose(got, np.delete(expected, 2), rtol=1e-5)  # 120 of the points
+        assert shear[0] == pytest.approx(shear[1], rel=5e-3)  # the patches of the friction
+        assert found["p_max"][i] == pytest.approx(peak, rel=1e-7)  # the curve's table, 1e-8
+    library.write(tmp_path, file, {"bolted_joint": [(PRELOAD, 0.0)]})
+    assert any("field_of_field_csv" in path.name for path in tmp_path.rglob("*.mo"))
+
+
+def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
+    """The reduced evaluation compares itself with the spring; parameters of a pattern are unknown."""
+    path = tmp_path / "joint.toml"
+    path.write_text(dump(imported[0]))
+    line = ["uncertainty", "bolted_joint", "--params", str(path), "--samples", "16", "--set"]
+    assert cli.main([*line, "surface.D=1.40..1.44"]) == 0
+    assert "largest relative difference" in capsys.readouterr().out
+    assert cli.main([*line, "pattern.decay_length=1e-3..2e-3"]) == 2
+    assert "unknown name 'pattern.decay_length', allowed are" in capsys.readouterr().err
+
+
+def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(plots, "RESOLUTION", 40)
+    monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
+    path = tmp_path / "field.csv"
+    path.write_text(csvfile.text(field(0.45)))
+    line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
+    assert cli.main(line) == 2
+    message = capsys.readouterr().err
+    assert message.startswith(f"jointfmu footprint: {path}: line ")
+    assert message.count("\n") == 1
+    assert "is open (no pressure)" in message
+    assert cli.main([*line, "--open", "drop", "--plot", str(tmp_path / "a.png"), "--json"]) == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    for more, text in (
+        (["--moment", "100"], "--moment and --moment-file belong together"),
+        (["--open", "maybe"], "--open = 'maybe' is not one of refuse, keep, drop"),
+        (["--preload", "-1"], "preload = -1 N is outside (0, inf)"),
+        (["--data", "p"], "is read as csv, point data are for the format mesh (--data)"),
+        (["--length-unit", "mm"], "a CSV file states units and plane in its heading (--length-unit)"),
+        (["--with", "b.lis"], "further listings are for the format ansys or abaqus (--with)"),
+    ):
+        assert cli.main([*line, "--open", "keep", *more]) == 2
+        assert text in capsys.readouterr().err

@@ -1,0 +1,182 @@
+"""The gear contact: force in, approach out; the law of Yu 2022 behind it."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from jointfmu.contact.interface import at_pressure
+from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
+from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
+from jointfmu.parameters import default
+from jointfmu.quantity import build, flatten
+
+EPS = np.finfo(float).eps
+STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+"""Central difference over five points: error h^4/30 times the fifth derivative."""
+FIVE = np.arange(-2, 3)
+
+CONTACT = default("gear_contact").values
+
+
+def changed(**values):
+    return build(GearContact, flatten(CONTACT) | values)
+
+
+SETS = {
+    "default": CONTACT,
+    "two-D": changed(**{"surface1.D": 1.56, "surface2.D": 1.4, "surface1.G": 1e-11}),
+    "slender": changed(**{"e": 0.7, "lambda": 0.3, "A_0": 2e-5, "surface1.G": 1e-11, "surface2.G": 1e-11}),
+    "two-bodies": changed(rigid_flat=False, plastic_area="kogut_etsion", sigma_y=6e8),
+}
+SPRINGS = {name: GearContactSpring.of(contact) for name, contact in SETS.items()}
+each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
+
+
+def closing_end(spring):
+    """Force [N] and approach from first touch [m] at the end of the closing."""
+    i = int(np.searchsorted(spring.curve.displacement, 0.0))
+    return spring.joint.A_0 * float(spring.curve.load[i]), -float(spring.curve.displacement[0])
+
+
+@each
+def test_approach_is_the_integral_of_df_over_K(spring):
+    """Against adaptive quadrature of the law's own stiffness from the end of the closing on."""
+    A_0 = spring.joint.A_0
+    first, s = closing_end(spring)
+    assert float(spring.approach(first)["s_rel"]) == pytest.approx(s, rel=1e-12)  # round-off of the inverse
+
+    def per_log(t):
+        f = np.exp(t)
+        return f / float(at_pressure(spring.joint, f / A_0)["K_N"])
+
+    spots = spring.joint.spots()
+    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
+    for low, high in pairwise(np.geomspace(first, 0.99 * spring.max_force, 5)):
+        ends = np.log([low, *(b for b in breaks if low < b < high), high])
+        s += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-10)[0] for a, b in pairwise(ends))
+        out = spring.approach(high)
+        assert float(out["s_rel"]) == pytest.approx(s, rel=MAX_ERROR)
+        assert float(out["K_N"]) == pytest.approx(
+            float(at_pressure(spring.joint, high / A_0)["K_N"]), rel=MAX_ERROR
+        )
+
+
+@each
+def test_stiffness_is_the_slope_of_the_force(spring):
+    """1/K_N = ds/df by differences of the output itself, from first touch to beyond the table."""
+    f = np.geomspace(1e-6, 3.0, 60) * spring.max_force
+    h = 1e-3 * f
+    slope = STENCIL @ spring.approach(f + h * FIVE[:, None])["s_rel"] / h
+    out = spring.approach(f)
+    # truncation (h/f)^4; nodes of the table inside a step, where the third derivative jumps by
+    # interpolation errors; round-off 10 eps s/h
+    noise = 10.0 * EPS * out["s_rel"] / h * out["K_N"]
+    end = np.abs(f / spring.max_force - 1.0) < 3e-3  # the tangent begins inside the difference
+    assert np.all(np.abs(slope * out["K_N"] - 1.0)[~end] <= 1e-7 + noise[~end])
+
+
+@each
+def test_everything_grows_with_the_force(spring):
+    out = spring.approach(np.geomspace(1e-9, 0.999, 200) * spring.max_force)
+    for name in ("s_rel", "K_N", "A_r", "elastic_fraction"):
+        assert np.all(np.diff(out[name]) >= 0.0), name
+        assert np.all(out[name] >= 0.0)
+    assert np.all(np.diff(out["s_rel"]) > 0.0)
+    assert np.all(np.diff(out["A_r"]) > 0.0)
+    assert np.all(out["elastic_fraction"] < 1.0)
+
+
+@each
+def test_no_load_and_pull(spring):
+    """First touch at zero: nothing; a pulling force finds the flanks apart."""
+    out = spring.approach([0.0, -0.0, -1.0, -1e9])
+    for name, value in out.items():
+        np.testing.assert_array_equal(value, 0.0, err_msg=name)
+
+
+@pytest.mark.parametrize("f", [1e-100, 1e-200, 1e-300, 5e-324])
+def test_vanishing_forces(f):
+    """Down to the smallest float every output is a number close to that without load."""
+    out = SPRINGS["default"].approach(f)
+    assert all(np.isfinite(float(value)) for value in out.values())
+    # round-off of the approach over the closing of 1 um, and 1e-12 of the stiffness at 1 N
+    assert 0.0 <= float(out["s_rel"]) < 1e-17
+    assert 0.0 <= float(out["K_N"]) < 1e-5
+    assert (float(out["elastic_fraction"]), float(out["A_r"])) == pytest.approx((0.0, 0.0), abs=1e-100)
+
+
+@each
+def test_real_area_and_its_elastic_part(spring):
+    """The law's own sums, and in closed form: A_r = lambda m/(1 - m) a_L, elastic above a_nec."""
+    f = np.geomspace(1e-3, 0.9, 12) * spring.max_force
+    out = spring.approach(f)
+    law = at_pressure(spring.joint, f / spring.joint.A_0)
+    np.testing.assert_allclose(out["A_r"], law["A_r"], rtol=4 * EPS)
+    m, spots = spring.joint.spots().m, spring.joint.spots()
+    largest = law["largest_spot"]
+    # exp and log of areas over tens of decades lose 1e-14
+    np.testing.assert_allclose(out["A_r"], spring.joint.lambda_ * m / (1 - m) * largest, rtol=1e-12)
+    part = np.maximum(1.0 - (spots.reference / largest) ** (1.0 - m), 0.0)
+    np.testing.assert_allclose(out["elastic_fraction"], part, rtol=1e-11, atol=1e-14)
+    assert np.ptp(part) > 0.01  # the range includes a change of it
+
+
+def test_zeta_is_the_exponent():
+    """m = sqrt(1 - e^2) (D1 + D2)/4 for Table 1 of Yu 2022, and the table's end."""
+    assert CONTACT.spots().m == pytest.approx(np.sqrt(1 - 0.2**2) * 2 * 1.46 / 4, rel=1e-15)
+    assert SPRINGS["default"].max_force == pytest.approx(2.8 * 235e6 * 1e-4, rel=1e-12)  # H A_0
+
+
+@each
+def test_the_closing_is_short(spring):
+    """It ends where the largest spot is CLOSING_RATIO times the largest plastic one."""
+    force, _ = closing_end(spring)
+    spots = spring.joint.spots()
+    largest = float(at_pressure(spring.joint, force / spring.joint.A_0)["largest_spot"])
+    plastic = spots.reference * np.exp(spots.stiff_onset)
+    assert largest == pytest.approx(CLOSING_RATIO * plastic, rel=1e-10)  # 1e-12 of the load, steep
+    assert force < spring.max_force
+
+
+@each
+def test_beyond_the_table_the_tangent_continues(spring):
+    end = spring.max_force
+    out = spring.approach(end * np.array([1.0, 1.5, 2.0, 10.0]))
+    K = out["K_N"][0]
+    np.testing.assert_allclose(out["K_N"], K, rtol=1e-10)  # round-off over the last segment
+    expected = out["s_rel"][0] + end * np.array([0.0, 0.5, 1.0, 9.0]) / K
+    np.testing.assert_allclose(out["s_rel"], expected, rtol=1e-10)
+    assert np.all(np.isfinite(out["A_r"]))
+
+
+@each
+def test_shapes(spring):
+    f = np.linspace(-1.0, 1.0, 12).reshape(3, 4) * spring.max_force
+    together = spring.approach(f)
+    for name, value in together.items():
+        assert value.shape == (3, 4)
+        # a point does not see its neighbours except through the number of Newton steps
+        assert float(value[2, 1]) == pytest.approx(float(spring.approach(f[2, 1])[name]), rel=1e-12)
+    assert all(np.shape(value) == () for value in spring.approach(1.0).values())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"e": 1.0}, ("e = 1", "[0, 1)")),
+        ({"lambda": 1.5}, ("lambda = 1.5", "(0, 1]")),
+        ({"surface1.D": 2.0}, ("surface1.D = 2", "(1, 2)")),
+        ({"surface2.G": 0.0}, ("surface2.G = 0 m", "(0, inf)")),
+        ({"sigma_y": float("nan")}, ("sigma_y = nan Pa", "(0, inf)")),
+        ({"rigid_flat": 1.0}, ("rigid_flat = 1.0", "true, false")),
+        ({"A_0": "large"}, ("A_0 = 'large'", "m2")),
+    ],
+)
+def test_impossible_contacts_are_refused(changes, words):
+    with pytest.raises(ValueError, match=next(iter(changes))) as error:
+        changed(**changes)
+    assert "\n" not in str(error.value)
+    for word in words:
+        assert word in str(error.value)

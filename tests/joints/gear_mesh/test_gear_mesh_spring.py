@@ -1,0 +1,462 @@
+"""The gear mesh: one pair's series of flanks and teeth, and the torques of all pairs as a gradient."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from laws import RANDOM, decades
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from jointfmu.contact.interface import at_pressure
+from jointfmu.joints import MODELS
+from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch
+from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
+from jointfmu.parameters import default, dump, load
+from jointfmu.quantity import build, changed, flatten
+
+EPS = np.finfo(float).eps
+STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
+"""Central difference over five points: error h^4/30 times the fifth derivative."""
+FIVE = np.arange(-2, 3)
+GAUSS = np.polynomial.legendre.leggauss(5)
+
+MESH = default("gear_mesh").values
+SETS = {
+    "default": MESH,
+    "soft teeth": changed(MESH, {"K_tooth": 1e6, "backlash": 0.0, "contact_ratio": 2.3}),
+    "stiff teeth": changed(MESH, {"K_tooth": 1e10, "engagement": 1.0, "contact_ratio": 1.1}),
+    "two-bodies": changed(
+        MESH,
+        {"surface1.D": 1.6, "rigid_flat": False, "plastic_area": "kogut_etsion", "r_b2": 0.05, "A_0": 2e-5},
+    ),
+}
+SPRINGS = {name: GearMeshSpring.of(mesh) for name, mesh in SETS.items()}
+each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
+
+
+def contact_of(mesh):
+    """The flanks of one pair alone."""
+    names = flatten(default("gear_contact").values)
+    return GearContactSpring.of(build(GearContact, {name: flatten(mesh)[name] for name in names}))
+
+
+def at(spring, s, roll):
+    """Angles [rad] of both wheels for a deflection s (...) [m] and a rolling way (...) [m]."""
+    along = s + 0.5 * spring.joint.backlash * np.sign(s)
+    return (roll + 0.5 * along) / spring.joint.r_b1, (0.5 * along - roll) / spring.joint.r_b2
+
+
+def motion(spring, s, roll, rate=0.0):
+    """The spring at a deflection and a rolling way [m], both flanks closing with `rate` [m/s]."""
+    phi1, phi2 = at(spring, s, roll)
+    return spring.motion(phi1, rate / spring.joint.r_b1, phi2, 0.0)
+
+
+@each
+def test_the_pair_is_flanks_and_teeth_in_series(spring):
+    """s = delta(F) + F/K_tooth solved for F by brentq, delta by adaptive quadrature of the law itself."""
+    mesh = spring.joint
+    flanks = approach_curve(mesh)
+    first, force, delta = mesh.A_0 * flanks.closed, 0.0, -float(flanks.displacement[0])
+
+    def per_log(t):
+        return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
+
+    spots = mesh.spots()
+    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
+    last = first
+    for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
+        ends = np.log([last, *(b for b in breaks if last < b < force), force])
+        delta += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in pairwise(ends))
+        last = force
+        s = delta + force / mesh.K_tooth
+        stiffness = 1.0 / (1.0 / float(at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth)
+
+        def miss(f, s=s, mesh=mesh, flanks=flanks):
+            approach = float(flanks.inverse(f / mesh.A_0) - flanks.displacement[0])
+            return approach + f / mesh.K_tooth - s
+
+        solved = brentq(miss, 0.5 * force, 2.0 * force, xtol=1e-12 * force, rtol=1e-14)
+        found, K = spring.curve.derivatives(s, 1)
+        assert found == pytest.approx(force, rel=2.0 * MAX_ERROR)  # of the flanks' table and the pair's
+        assert found == pytest.approx(solved, rel=2.0 * MAX_ERROR)
+        assert pytest.approx(stiffness, rel=2.0 * MAX_ERROR) == K
+
+
+@each
+def test_the_closing_is_in_series_too(spring):
+    """Where the contact closes the flanks' curve is one polynomial: brentq on it, to the table's error."""
+    mesh, flanks = spring.joint, approach_curve(spring.joint)
+    start = float(flanks.displacement[0])
+    for part in (1e-3, 0.02, 0.2, 0.7, 0.999):
+        x = (1.0 - part) * start
+
+        def load(x, mesh=mesh, flanks=flanks):
+            return mesh.A_0 * float(flanks.derivatives(x, 0)[0])
+
+        s = x - start + load(x) / mesh.K_tooth
+
+        def miss(y, s=s, start=start, load=load, mesh=mesh):
+            return y - start + load(y) / mesh.K_tooth - s
+
+        solved = brentq(miss, start, 0.0, xtol=1e-22, rtol=1e-15)
+        # the approach is known to 1e-16 of the closing, the load grows with its cube
+        allowed = MAX_ERROR + 10.0 * EPS / part
+        assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
+    assert spring.closing == pytest.approx(-start + mesh.A_0 * flanks.closed / mesh.K_tooth, rel=4.0 * EPS)
+
+
+@each
+def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
+    assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
+    assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
+    assert spring.curve.error <= MAX_ERROR
+    assert np.all(np.diff(spring.curve.load) > 0.0)
+
+
+@settings(max_examples=25)
+@given(law=RANDOM["yu"], teeth=decades(1e-3, 1e6))
+def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
+    """Teeth by their stiffness over that of the flanks where their closing ends."""
+    try:
+        flanks = approach_curve(law)
+    except ValueError as error:
+        assert "plastic" in str(error)  # noqa: PT017
+        return
+    closed = int(np.searchsorted(flanks.displacement, 0.0))
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
+    assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
+    own = {"K_tooth": float(teeth * law.A_0 * k)}
+    try:
+        spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+    except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
+        assert "nodes" in str(error)  # noqa: PT017
+        assert teeth < 0.1
+        return
+    assert spring.curve.error <= MAX_ERROR
+    x = spring.curve.displacement
+    places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
+    load, stiffness = spring.curve.derivatives(places, 1)
+    assert np.all(np.diff(load) > 0.0)
+    assert np.all(stiffness[1:] > 0.0)
+    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_ERROR))
+
+
+def test_hard_teeth_leave_the_contact_alone():
+    hard = GearMeshSpring.of(changed(MESH, {"K_tooth": 1e20, "contact_ratio": 1.0}))
+    contact = contact_of(MESH)
+    f = np.geomspace(1e-3, 0.99, 20) * contact.max_force
+    alone = contact.approach(f)
+    found = motion(hard, alone["s_rel"], 0.0)
+    np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_ERROR)
+    np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_ERROR)
+
+
+@each
+def test_stiffness_is_the_slope_of_the_force(spring):
+    """Along the line of action at a fixed phase, from first touch to beyond the table."""
+    s = np.concatenate([np.geomspace(1e-4, 0.99, 60), [1.01, 3.0]]) * spring.curve.end[0]
+    h = 1e-3 * s
+    kinks = spring.curve.displacement[1:-1][spring.curve.bend_end[:-1] != spring.curve.bend_start[1:]]
+    smooth = np.all(np.abs(kinks[:, None] - s) > 2.0 * h, axis=0)  # no regime of the law ends inside
+    for roll in (0.0, 0.3 * base_pitch(spring.joint), 0.345 * base_pitch(spring.joint)):
+        force = motion(spring, s + h * FIVE[:, None], roll)["f"]
+        K = motion(spring, s, roll)["K"]
+        # truncation (h/s)^4 with the bend of a power law; angles hold the way along to EPS of their own
+        noise = 20.0 * EPS * (roll + spring.joint.backlash + s) / h
+        assert np.all((np.abs(STENCIL @ force / h / K - 1.0) <= 1e-7 + noise)[smooth])
+    assert np.mean(smooth) > 0.9
+
+
+@each
+def test_torques_are_the_gradient_of_the_energy(spring):
+    """dE/dphi of both wheels by differences, all over the mesh cycle and on both flanks."""
+    pitch = base_pitch(spring.joint)
+    generator = np.random.default_rng(3)
+    s = generator.choice([-1.0, 1.0], 400) * spring.curve.end[0] * 10.0 ** generator.uniform(-2.0, 0.0, 400)
+    roll = pitch * generator.uniform(-2.0, 2.0, 400)
+    phi = np.array(at(spring, s, roll))
+    out = spring.motion(phi[0], 0.0, phi[1], 0.0)
+    for i, radius in enumerate((spring.joint.r_b1, spring.joint.r_b2)):
+        h = np.minimum(2e-3 * np.abs(s), 1e-4 * pitch) / radius
+        moved = np.repeat(phi[:, None], 5, axis=1)
+        moved[i] += h * FIVE[:, None]
+        slope = STENCIL @ spring.motion(moved[0], 0.0, moved[1], 0.0)["E"] / h
+        torque = out[f"tau{i + 1}"]
+        scale = radius * np.abs(out["f"]) + np.abs(out["E"])
+        noise = 50.0 * EPS * out["E"] * (1.0 + pitch / np.abs(s)) / h  # the way along again
+        # truncation: (h/s)^4 of a power law; of the pairs' transition, whose fourth derivative jumps
+        assert np.all(np.abs(torque + slope) <= 1e-7 * scale + noise)
+
+
+def closed_path(spring, seed, t):
+    """Motion phi1, w1, phi2, w2 at times t of a period: both flanks and three mesh cycles, back and forth."""
+    generator = np.random.default_rng(seed)
+    n = np.array([1, 3, 5, 7])  # the second half of the period is the first one, reversed
+    size, shift = generator.normal(size=(2, 4)) / n**2, generator.uniform(0.0, 2.0 * np.pi, (2, 4))
+    angle = 2.0 * np.pi * n * t[:, None]
+    largest = (0.5 * spring.joint.backlash + 0.5 * spring.curve.end[0], 1.5 * base_pitch(spring.joint))
+    values, rates = [], []
+    for part, move, most in zip(size, shift, largest, strict=True):
+        value = np.sin(angle + move) @ part
+        scale = most / np.max(np.abs(value))
+        values.append(scale * value)
+        rates.append(scale * 2.0 * np.pi * np.cos(angle + move) @ (n * part))
+    (way, roll), (v, drift) = values, rates
+    r_b1, r_b2 = spring.joint.r_b1, spring.joint.r_b2
+    return (
+        (roll + 0.5 * way) / r_b1,
+        (drift + 0.5 * v) / r_b1,
+        (0.5 * way - roll) / r_b2,
+        (0.5 * v - drift) / r_b2,
+    )
+
+
+def period(panels=40_000):
+    """Times and weights of five Gauss points in every panel of a period."""
+    x, weights = GAUSS
+    t = (np.arange(panels)[:, None] + 0.5 * (1.0 + x)) / panels
+    return t.ravel(), np.tile(0.5 * weights / panels, panels)
+
+
+def undamped(spring):
+    """The same tables without damping."""
+    return GearMeshSpring(changed(spring.joint, {"d": 0.0}), spring.curve, spring.closing)
+
+
+@each
+@pytest.mark.parametrize("seed", range(4))
+def test_a_closed_path_returns_its_energy(spring, seed):
+    """Over three mesh cycles, both flanks and separation."""
+    t, weights = period()
+    path = closed_path(spring, seed, t)
+    out = undamped(spring).motion(*path)
+    assert np.any(out["f"] > 0.0)
+    assert np.any(out["f"] < 0.0)
+    assert np.ptp(out["pairs"]) > 0.99
+    power = out["tau1"] * path[1] + out["tau2"] * path[3]
+    moved = weights @ np.abs(power)
+    # what is left is the quadrature's, across the ends of the pairs' changes: 16 times less per halving
+    assert abs(weights @ power) <= 1e-9 * moved
+
+
+def test_without_the_change_of_the_pairs_a_mesh_would_create_energy():
+    """Torques f times the base radius alone do not close, by far more than the quadrature."""
+    t, weights = period()
+    path = closed_path(SPRINGS["default"], 0, t)
+    force = undamped(SPRINGS["default"]).motion(*path)["f"]
+    power = -force * (MESH.r_b1 * path[1] + MESH.r_b2 * path[3])
+    assert abs(weights @ power) > 1e-4 * (weights @ np.abs(power))
+
+
+@each
+@pytest.mark.parametrize("seed", range(2))
+def test_what_a_path_loses_is_the_work_of_the_damping(spring, seed):
+    t, weights = period()
+    path = closed_path(spring, seed, t)
+    out, elastic = spring.motion(*path), undamped(spring).motion(*path)
+    power = out["tau1"] * path[1] + out["tau2"] * path[3]
+    rate = spring.joint.r_b1 * path[1] + spring.joint.r_b2 * path[3]
+    lost = (out["f"] - elastic["f"]) * rate
+    assert np.all(lost >= 0.0)
+    assert np.all(lost[out["s_rel"] == 0.0] == 0.0)
+    assert weights @ lost > 0.0
+    assert weights @ (power + lost) == pytest.approx(0.0, abs=1e-9 * (weights @ np.abs(power)))
+
+
+@each
+def test_damping_comes_in_over_the_closing(spring):
+    """Nothing at first touch, d beyond the closing of the contact, and smooth between."""
+    still, v = undamped(spring), 0.01
+    s = np.concatenate([[0.0], np.linspace(1e-3, 3.0, 2000)]) * spring.closing
+    damped = motion(spring, s, 0.0, v)["f"] - motion(still, s, 0.0, v)["f"]
+    full = spring.joint.d * v
+    assert damped[0] == 0.0
+    np.testing.assert_allclose(damped[s > 1.001 * spring.closing], full, rtol=1e-6)  # of a larger force
+    # 1.875/3 of the whole over the 2000 steps at the steepest, and the force's round-off
+    assert np.max(np.abs(np.diff(damped))) < 1.9 * 3.0 / 2000.0 * full
+    np.testing.assert_allclose(
+        motion(spring, -s, 0.0, -v)["f"], -motion(spring, s, 0.0, v)["f"], rtol=0.0, atol=0.0
+    )
+
+
+angles = st.floats(-20.0, 20.0)
+speeds = st.floats(-100.0, 100.0)
+
+
+@each
+@settings(max_examples=60)
+@given(phi1=angles, w1=speeds, w2=speeds, way=st.floats(-3e-4, 3e-4))
+def test_odd_in_the_direction_of_rotation(spring, phi1, w1, w2, way):
+    phi2 = (way - spring.joint.r_b1 * phi1) / spring.joint.r_b2
+    there, back = spring.motion(phi1, w1, phi2, w2), spring.motion(-phi1, -w1, -phi2, -w2)
+    for name in ("tau1", "tau2", "f", "s_rel"):
+        assert float(back[name]) == -float(there[name]), name
+    for name in ("K", "pairs", "E"):
+        assert float(back[name]) == float(there[name]), name
+
+
+@each
+def test_nothing_inside_the_backlash(spring):
+    way = np.linspace(-0.499, 0.499, 11) * spring.joint.backlash
+    out = spring.motion(way / spring.joint.r_b1, 3.0, 0.0, -2.0)
+    for name in ("tau1", "tau2", "s_rel", "f", "K", "E"):
+        assert np.all(out[name] == 0.0), name
+
+
+def test_rolling_wheels_carry_the_torque_ratio():
+    """Between the transitions of the pairs tau2/tau1 = r_b2/r_b1, both against the pressing motion."""
+    out = motion(SPRINGS["default"], 1e-5, 0.0)
+    assert out["tau1"] == pytest.approx(-MESH.r_b1 * out["f"], rel=1e-14)
+    assert out["tau2"] == pytest.approx(-MESH.r_b2 * out["f"], rel=1e-14)
+    assert out["f"] > 0.0
+
+
+def test_mean_stiffness_is_the_contact_ratio_times_a_pairs():
+    spring, s = SPRINGS["default"], 2e-5
+    n = 3000
+    roll = (np.arange(n) + 0.5) / n * base_pitch(MESH)
+    K = motion(spring, s, roll)["K"]
+    _, one = spring.curve.derivatives(s, 1)
+    # the midpoint rule of a function with three derivatives between 3000 points
+    assert np.mean(K) == pytest.approx(MESH.contact_ratio * float(one), rel=1e-8)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0])
+def test_a_whole_contact_ratio_has_no_mesh_cycle(ratio):
+    spring = SPRINGS["default"]
+    even = GearMeshSpring(changed(MESH, {"contact_ratio": ratio}), spring.curve, spring.closing)
+    out = motion(even, 2e-5, np.linspace(0.0, 3.0, 50) * base_pitch(MESH))
+    assert np.all(out["pairs"] == ratio)
+    np.testing.assert_allclose(out["tau1"], -MESH.r_b1 * out["f"], rtol=1e-14)
+
+
+def test_beyond_the_table_the_tangent_continues_with_a_warning():
+    model, spring = MODELS["GearMesh"], SPRINGS["default"]
+    end = spring.curve.end[0]
+    out = motion(spring, end * np.array([1.0, 1.5, -4.0]), 0.0)
+    np.testing.assert_allclose(out["K"], out["K"][0], rtol=1e-10)  # round-off over the last segment
+    expected = out["f"][0] * np.array([1.0, 1.0, -1.0]) + out["K"][0] * end * np.array([0.0, 0.5, -3.0])
+    np.testing.assert_allclose(out["f"], expected, rtol=1e-9)
+    for s, count in ((0.5 * end, 0), (1.5 * end, 1), (-1.5 * end, 1)):
+        phi1, phi2 = at(spring, s, 0.0)
+        values = {"phi1": float(phi1), "w1": 0.0, "phi2": float(phi2), "w2": 0.0}
+        warnings = model.warnings(spring, values | dict(model.evaluate(spring, values)))
+        assert len(warnings) == count
+        assert all("s_rel" in text and "tangent" in text for text in warnings.values())
+
+
+def test_the_model_gives_its_outputs_and_depends_as_it_says():
+    model, spring = MODELS["GearMesh"], SPRINGS["default"]
+    rest = {"phi1": 1.4e-3, "w1": 0.1, "phi2": 0.0, "w2": 0.2}
+    base = model.evaluate(spring, rest)
+    assert list(base) == [v.name for v in model.outputs]
+    changing = {name: set() for name in base}
+    for name in rest:
+        moved = model.evaluate(spring, rest | {name: rest[name] + 1e-4})
+        for output in base:
+            if moved[output] != base[output]:
+                changing[output].add(name)
+    # at this phase the number of pairs rests
+    assert {name: set(model.depends(name)) for name in base} == changing | {"pairs": {"phi1", "phi2"}}
+    assert {"mu", "traction_ratio"}.isdisjoint(model.parameter_fields())
+
+
+@pytest.mark.parametrize("name", ["default", "soft teeth"])
+def test_symbols(name):
+    """The same equations with symbols, as the C is made from them."""
+    casadi = pytest.importorskip("casadi")
+    from jointfmu.joints.gear_mesh.spring import deflection, torques
+
+    spring = SPRINGS[name]
+    symbols = casadi.SX.sym("x", 8)
+    x = casadi.vertsplit(symbols)
+    mesh = changed(spring.joint, {"contact_ratio": 1.5})
+    object.__setattr__(mesh, "contact_ratio", x[4])
+    before = casadi.GlobalOptions.getNumpyMode()
+    casadi.GlobalOptions.setNumpyMode(1)
+    try:
+        out = torques(mesh, x[:4], x[5], x[6], x[7], spring.closing)
+        function = casadi.Function("f", [symbols], [casadi.vertcat(*out.values())])
+    finally:
+        casadi.GlobalOptions.setNumpyMode(before)
+    for roll in np.linspace(-1.0, 1.0, 21) * base_pitch(mesh):
+        for s in (-2e-5, 0.3 * spring.closing, 2e-5):
+            phi1, phi2 = at(spring, s, roll)
+            moving = (phi1, 0.3, phi2, -0.1)
+            for ratio in (1.0, 1.69, 2.3):
+                sure = GearMeshSpring(changed(mesh, {"contact_ratio": ratio}), spring.curve, spring.closing)
+                way = float(np.abs(deflection(sure.joint, moving)))
+                load, stiffness = (float(y) for y in spring.curve.derivatives(way, 1))
+                energy = float(spring.curve.energy(way))
+                found = np.array(function([*moving, ratio, load, stiffness, energy])).ravel()
+                expected = np.array([float(y) for y in sure.motion(*moving).values()])
+                # powers are multiplied in another order
+                np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12 * abs(expected[3]) * 1e-6)
+
+
+@each
+def test_shapes(spring):
+    phi = np.linspace(-2e-3, 2e-3, 12).reshape(3, 4)
+    together = spring.motion(phi, 0.1, 0.0, phi)
+    for name, value in together.items():
+        assert np.shape(value) == (3, 4), name
+        assert float(value[2, 1]) == float(spring.motion(phi[2, 1], 0.1, 0.0, phi[2, 1])[name])
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"r_b1": 0.0}, ("r_b1 = 0 m", "(0, inf)")),
+        ({"r_b2": -0.1}, ("r_b2 = -0.1 m", "(0, inf)")),
+        ({"teeth1": 12.5}, ("teeth1 = 12.5", "whole number")),
+        ({"teeth1": 0.0}, ("teeth1 = 0", "[1, inf)")),
+        ({"backlash": -1e-6}, ("backlash = -1e-06 m", "[0, inf)")),
+        ({"K_tooth": 0.0}, ("K_tooth = 0 N/m", "(0, inf)")),
+        ({"K_tooth": float("inf")}, ("K_tooth = inf N/m", "(0, inf)")),
+        ({"contact_ratio": 0.99}, ("contact_ratio = 0.99", "[1, 3)")),
+        ({"contact_ratio": 3.0}, ("contact_ratio = 3", "[1, 3)")),
+        ({"engagement": 0.0}, ("engagement = 0", "(0, 1]")),
+        ({"engagement": 1.1}, ("engagement = 1.1", "(0, 1]")),
+        ({"d": -1.0}, ("d = -1 N.s/m", "[0, inf)")),
+        ({"d": float("nan")}, ("d = nan N.s/m", "[0, inf)")),
+        ({"e": 1.0}, ("e = 1", "[0, 1)")),
+        ({"K_tooth": "stiff"}, ("K_tooth = 'stiff'", "N/m")),
+    ],
+)
+def test_impossible_meshes_are_refused(changes, words):
+    with pytest.raises(ValueError, match=next(iter(changes))) as error:
+        changed(MESH, changes)
+    assert "\n" not in str(error.value)
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_teeth_too_soft_for_a_table_are_refused():
+    with pytest.raises(RuntimeError, match="not smooth enough"):
+        GearMeshSpring.of(changed(MESH, {"K_tooth": 1.0}))
+
+
+def test_parameter_file_round_trip(tmp_path):
+    file = default("gear_mesh")
+    path = tmp_path / "mesh.toml"
+    path.write_text(dump(file))
+    again = load(path, "gear_mesh")
+    assert isinstance(again.values, GearMesh)
+    assert again.values == file.values
+    assert (again.name, dict(again.sources)["K_tooth"]) == (file.name, file.sources["K_tooth"])
+
+
+def test_default_geometry():
+    """Base circles of a module of 4 mm at 20 degrees; the contact ratio of full-depth spur teeth."""
+    m, alpha, z = 4e-3, np.radians(20.0), np.array([29, 45])
+    base = 0.5 * m * z * np.cos(alpha)
+    assert (MESH.r_b1, MESH.r_b2) == pytest.approx(base, rel=1e-7)  # the file's digits
+    tip = 0.5 * m * z + m
+    length = np.sum(np.sqrt(tip**2 - base**2)) - 0.5 * m * np.sum(z) * np.sin(alpha)
+    assert base_pitch(MESH) == pytest.approx(np.pi * m * np.cos(alpha), rel=1e-7)
+    assert pytest.approx(length / base_pitch(MESH), abs=5e-3) == MESH.contact_ratio

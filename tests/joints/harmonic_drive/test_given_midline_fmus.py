@@ -1,0 +1,169 @@
+"""FMUs of the laws `catalogue` and `table`: the lines, and the package's numbers in both languages."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import Fmu, made_once
+from joint_cases import CASES, law, random_inputs
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import kept
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from natives import Host, close
+
+from jointfmu.joints.harmonic_drive.given import MOST_POINTS
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import changed
+
+SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
+STATED = 0.005
+"""What the documentation states of the whole curve, corners and all."""
+SAME = 1e-12
+TUNED = {
+    "catalogue": {
+        "K1": 8e3,
+        "K2": 9e3,
+        "K3": 2e4,
+        "T1": 5.0,
+        "T2": 40.0,
+        "corner": 0.1,
+        "hysteresis_loss": 2e-4,
+    },
+    "table": {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "ratio": 50.0},
+}
+LAWS = tuple(TUNED)
+
+
+def file_of(name: str) -> ParameterFile:
+    """CSG-17-100, and the shipped table."""
+    if name == "table":
+        return default("harmonic_drive", name)
+    given = dict.fromkeys(option.name for option in NEW.options)
+    file: ParameterFile = NEW.run(given | {"catalogue": "CSG-17-100"}).file
+    return file
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folders LAW/fmi3 and LAW/python."""
+
+    def make_all(out: Path) -> None:
+        for one in LAWS:
+            build([SPRING], ["fmi3", "python"], file_of(one), out / one)
+            build([COMPLIANCE], ["fmi3"], file_of(one), out / one)
+
+    return made_once(tmp_path_factory, "given", make_all)
+
+
+def test_the_fmu_keeps_the_lines_of_the_catalogue(host: Host, built: Path) -> None:
+    """CSG-17-100 at T1, T2, rated and repeated peak torque, both signs; exact off the corners, tuned too."""
+    instance = host(COMPLIANCE, "fmi3", built / "catalogue").start()
+
+    def lines(T: float, K1: float = 1e4, K2: float = 1.4e4, K3: float = 1.6e4) -> float:
+        return min(T, 3.9) / K1 + max(min(T, 12.0) - 3.9, 0.0) / K2 + max(T - 12.0, 0.0) / K3
+
+    for T, within in ((2.0, SAME), (3.9, STATED), (8.0, SAME), (12.0, STATED), (31.0, SAME), (70.0, SAME)):
+        for sign in (1.0, -1.0):
+            found = instance.at({"tau": sign * T})
+            assert found["phi_rel"] == pytest.approx(sign * lines(T), rel=within)
+    assert instance.at({"tau": 1.0})["K_WTS"] == pytest.approx(1e4, rel=SAME)
+    assert instance.at({"tau": 50.0})["K_WTS"] == pytest.approx(1.6e4, rel=SAME)
+    instance.set({"K3": 2e4})
+    assert instance.at({"tau": 70.0})["phi_rel"] == pytest.approx(lines(70.0, K3=2e4), rel=SAME)
+
+
+@pytest.mark.parametrize("one", LAWS)
+@pytest.mark.parametrize("name", NAMES)
+def test_native_code_gives_the_numbers_of_the_package(host: Host, built: Path, one: str, name: str) -> None:
+    instance, values = host(name, "fmi3", built / one), file_of(one).values
+    for tuned in ({}, TUNED[one]):
+        instance.reset()
+        instance.start(tuned)
+        expected = law(name, changed(values, tuned)).after()
+        for inputs in random_inputs(name, 20, seed=3):
+            assert instance.at(inputs) == close(expected(inputs))
+
+
+@pytest.mark.parametrize("one", LAWS)
+def test_the_python_flavour_has_the_same_variables_and_numbers(
+    host: Host, fmu: Callable[..., Fmu], built: Path, one: str
+) -> None:
+    python = fmu(SPRING, folder=built / one / "python").start()
+    native = host(SPRING, "fmi3", built / one).start()
+    assert python.variables.keys() == native.variables.keys() - {"time"}
+    for inputs in random_inputs(SPRING, 5, seed=9):
+        assert python.at(inputs) == close(native.at(inputs))
+
+
+@pytest.mark.parametrize("one", LAWS)
+def test_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, one: str) -> None:
+    """On the lines and within a corner (where the wind-up is that of T1)."""
+    values = file_of(one).values
+    for phi in (1e-4, 3.92e-4, 6e-4, 2e-3):
+        state = CASES[SPRING].numbers.state | {"phi1": 0.0, "phi2": phi}
+        instance, expected = host(SPRING, "fmi3", built / one).start(state), law(SPRING, values)
+        names = {n: v.valueReference for n, v in instance.variables.items()}
+        outputs = ("tau", "K_WTS", "K_TS", "tau1")
+        column = instance.fmu.getDirectionalDerivative([names[n] for n in outputs], [names["phi2"]], [1.0], 4)
+        h = 1e-9
+        low, high = (expected({**state, "phi2": phi + d * h}) for d in (-1.0, 1.0))
+        for output, found in zip(outputs, column, strict=True):
+            rough = 1e-6 * abs(expected(state)[output]) / h
+            assert found == pytest.approx(
+                (high[output] - low[output]) / (2.0 * h), rel=1e-5, abs=1e-3 * rough
+            )
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"T2": 3.0}, "T2 = 3 N.m is outside (3.9, inf): it must exceed T1"),
+        ({"corner": 0.6}, "corner = 0.6 is outside [0.001, "),
+        ({"K2": -1.0}, "K2 = -1 N.m/rad is outside (0, inf)"),
+    ],
+)
+def test_lines_that_cannot_be_are_refused(
+    host: Host, fmu: Callable[..., Fmu], built: Path, values: dict[str, Any], message: str
+) -> None:
+    native, python = (
+        host(SPRING, "fmi3", built / "catalogue"),
+        fmu(SPRING, folder=built / "catalogue" / "python"),
+    )
+    for instance in (native, python):
+        assert message in instance.refused(instance.start, values)
+
+
+def table_of(points: int) -> ParameterFile:
+    """A stiffening table of other numbers, with as many points."""
+    torque = tuple(40.0 * (i + 1) / points for i in range(points))
+    angle = tuple(T / (6e3 + 100.0 * T) for T in torque)
+    file = file_of("table")
+    return file.with_values({"table.torque": torque, "table.angle": angle}, "user", "test")
+
+
+@pytest.mark.parametrize("points", [2, 37, MOST_POINTS])
+@pytest.mark.parametrize("name", NAMES)
+def test_another_table_needs_no_compiler(
+    host: Host, built: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, points: int
+) -> None:
+    """However many points it has; with the numbers of the package, the largest stiffness among them."""
+
+    def refused(*_: object) -> None:
+        raise AssertionError("compiled")
+
+    monkeypatch.setattr(kept, "compiled", refused)
+    file = table_of(points)
+    build([name], ["fmi3"], file, tmp_path)
+    instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
+    for inputs in random_inputs(name, 10, seed=11):
+        # a place within a short segment has the round-off of the whole wind-up
+        assert instance.at(inputs) == close(expected(inputs), max(SAME, 1e-14 * points))
+
+
+def test_beyond_the_table_the_last_line_goes_on_with_one_warning(host: Host, built: Path) -> None:
+    instance = host(COMPLIANCE, "fmi3", built / "catalogue").start()
+    far = instance.at({"tau": 500.0})
+    assert far["K_WTS"] == pytest.approx(1.6e4, rel=SAME)
+    assert far["phi_rel"] == pytest.approx(3.9e-4 + 8.1 / 1.4e4 + 488.0 / 1.6e4, rel=SAME)
+    assert len(instance.warnings) == 1

@@ -1,0 +1,125 @@
+"""Adding a joint is adding a folder: a joint of another package, under 100 lines, through the whole chain."""
+
+import json
+from pathlib import Path
+from zipfile import ZipFile
+
+import numpy as np
+import pytest
+import toy_joint
+from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.building import FLAVOURS, build
+from jointfmu_tools import cli
+from jointfmu_tools.job.checks import check, default_ramp, same
+from jointfmu_tools.modelica import library
+
+from jointfmu import joints
+from jointfmu.parameters import default, dump
+
+pytestmark = pytest.mark.slow
+
+C = 1e4
+
+
+@pytest.fixture(scope="module", autouse=True)
+def toy():
+    joints.register(toy_joint.KIND)
+    yield
+    joints.unregister(toy_joint.KIND)
+
+
+@pytest.fixture(scope="module")
+def built(toy, tmp_path_factory):
+    out = tmp_path_factory.mktemp("toy")
+    build(["ToySpring"], list(FLAVOURS), None, out)
+    return out
+
+
+def test_it_is_short():
+    """All that its author writes: code, page, parameters, icon."""
+    folder = Path(toy_joint.__file__).parent
+    written = [path for path in folder.rglob("*") if path.suffix in (".py", ".html", ".toml", ".svg")]
+    assert sum(len(path.read_text().splitlines()) for path in written) < 100
+
+
+def test_a_name_is_taken_once():
+    with pytest.raises(ValueError, match="joint 'toy': the name 'toy' is taken"):
+        joints.register(toy_joint.KIND)
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
+    path = built / flavour / "ToySpring.fmu"
+    assert validate_fmu(str(path)) == []
+    ramp = default_ramp("ToySpring", built / flavour)
+    assert ramp.columns["f"] == pytest.approx(-C * ramp.columns["s_rel"], rel=1e-15, abs=0.0)
+    assert ramp.columns["K"] == pytest.approx(np.full(101, C), rel=1e-15)
+    assert ramp.messages == ()
+    assert all(one.passed for one in check("ToySpring", built / flavour, ramp))
+    assert same("ToySpring", built / "python", ramp).passed
+
+
+def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):
+    from jointfmu.run import ramp
+
+    with pytest.raises(ValueError, match=r"c = -1 N/m is outside \(0, inf\): stiffness"):
+        ramp.run(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})
+
+
+def test_it_has_page_icon_and_flange(built):
+    with ZipFile(built / "fmi2" / "ToySpring.fmu") as fmu:
+        names = fmu.namelist()
+        assert b"<p>A spring.</p>" in fmu.read("documentation/index.html")
+        assert b'terminalKind="Modelica.Mechanics.Translational' in fmu.read(
+            "terminalsAndIcons/terminalsAndIcons.xml"
+        )
+    assert {"terminalsAndIcons/icon.svg", "terminalsAndIcons/icon.png", "model.png"} <= set(names)
+
+
+def test_modelica_has_its_interface_and_wrapper():
+    files = library.library()
+    assert (
+        "input Real s_rel" in files["Interfaces/ToySpring.mo"] or "s_rel" in files["Interfaces/ToySpring.mo"]
+    )
+    assert "flange" in files["Wrappers/ToySpring.mo"]
+    assert "ToySpring" in files["Wrappers/package.order"].split()
+
+
+def test_uncertainty_of_a_line(capsys):
+    """f is linear in c: the quantiles are those of c times the elongation."""
+    assert cli.main(["uncertainty", "toy", "--set", "c=9000..11000", "--samples", "1024", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    median = np.array(found["outputs"]["f"]["quantiles"]["0.5"])
+    loads = np.array(found["load"]["values"])
+    assert median == pytest.approx(-C * loads, rel=2e-3)  # 1024 samples of a uniform number
+    assert found["reduction_error"] < 1e-6  # bands are kept in single precision
+
+
+def test_export_writes_the_line(tmp_path, capsys):
+    out = tmp_path / "spring.csv"
+    assert cli.main(["export", "csv", "curve", "--joint", "toy", "--out", str(out)]) == 0
+    rows = [line for line in out.read_text().splitlines() if not line.startswith("#")]
+    assert rows[0] == "s_rel [m],pull [N],K [N/m]"
+    assert [float(x) for x in rows[-1].split(",")] == [1e-3, 10.0, C]
+
+
+def test_what_it_lacks_is_refused_by_name(tmp_path, capsys):
+    assert cli.main(["export", "csv", "contact", "--joint", "toy", "--out", str(tmp_path / "x.csv")]) == 2
+    assert "contact of a toy cannot be written" in capsys.readouterr().err
+
+
+def test_its_parameter_file_is_read_and_written():
+    file = default("toy")
+    assert (file.joint, file.values.c) == ("toy", C)
+    with pytest.raises(ValueError, match=r"c = 0 N/m is outside \(0, inf\)"):
+        file.with_values({"c": 0.0}, "user", "test")
+
+
+def test_it_has_a_page_of_its_own_file(tmp_path, monkeypatch):
+    """Of a joint that says nothing of pages and loops: the line over its load, and its parameters."""
+    monkeypatch.chdir(tmp_path)
+    Path("mine.toml").write_text(dump(default("toy")))
+    assert cli.main(["report", "mine.toml"]) == 0
+    page = Path("mine.html").read_text(encoding="utf-8")
+    assert "<td><code>c</code></td>" in page
+    assert "<h2>Loops</h2>" not in page

@@ -1,0 +1,1 @@
+"""The toy joint, for the tools."""

@@ -1,0 +1,19 @@
+"""The spring as a table."""
+
+import numpy as np
+from jointfmu_tools.export.exports import Exports, LoadCurve
+from jointfmu_tools.export.tables import Table
+
+from jointfmu.joints.model import Variable
+
+from .. import KIND
+
+
+def _line(spring, state, error):
+    s = np.array([-1e-3, 0.0, 1e-3])
+    return Table(np.stack([s, spring.c * s, np.full(3, spring.c)], axis=1), (0.0, 0.0), (0.0, 0.0))
+
+
+PULL = Variable("pull", "N", "force that holds it")
+COLUMNS = (KIND.variables["s_rel"], PULL, KIND.variables["K"])
+EXPORTS = Exports(curve=LoadCurve(meaning="pull over elongation", columns=COLUMNS, name="force", table=_line))

@@ -1,0 +1,179 @@
+"""Few patches stand for the nodes of a bolted contact."""
+
+from functools import cache
+
+import numpy as np
+import patch_reduction
+import pytest
+
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.elimination import solved
+from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.parameters import default
+
+CONTACTS = ("frame", "plate", "row")
+
+
+@cache
+def contact(name: str) -> PressureShape:
+    """The default frame, a plate without symmetry, a plate with one row of bolts."""
+    if name == "frame":
+        return pressure_shape(default("bolted_joint").values.pattern)
+    if name == "plate":
+        x, y, hole, cone = (-0.1, 0.0, 0.1, 0.1), (0.02, -0.03, 0.02, -0.02), 0.011, 0.03
+        return BoltedPlate(length=0.3, width=0.1, x=x, y=y, hole_diameter=hole, cone_diameter=cone).shape()
+    x, y, hole, cone = (-0.03, 0.0, 0.03), (0.0, 0.0, 0.0), 0.0085, 0.02
+    return BoltedPlate(length=0.12, width=0.025, x=x, y=y, hole_diameter=hole, cone_diameter=cone).shape()
+
+
+@cache
+def reduced(name: str, count: int) -> PressureShape:
+    """Few points of it."""
+    return few_points(contact(name), count)
+
+
+@cache
+def moved(name: str) -> PressureShape:
+    """The patches of its friction."""
+    return friction_patches(contact(name), 22)
+
+
+def balance(shape: PressureShape) -> np.ndarray:
+    """Sums that are exact, each over the sum of its sizes."""
+    (x, y), share, equal, tilt = shape.position.T, shape.share, shape.equal, shape.tilt
+    one = np.ones_like(x)
+    rows = np.stack([one, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
+    return rows @ share, np.abs(rows) @ share
+
+
+@pytest.mark.parametrize("count", [40, 160])
+@pytest.mark.parametrize("name", CONTACTS)
+def test_few_points_keep_share_and_moments_to_rounding(name, count):
+    """Area, centroid, second moments, force and moment of the preload and of the moment; shares positive."""
+    shape = contact(name)
+    points = reduced(name, count)
+    assert points.share.size <= count
+    assert np.min(points.share) > 0.0
+    there, size = balance(shape)
+    np.testing.assert_allclose(balance(points)[0] / size, there / size, rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_patches_that_left_the_nodes_keep_the_same_sums(name):
+    """As few as the friction has; pressed inside the contact."""
+    shape, patches = contact(name), moved(name)
+    assert patches.share.size <= 22
+    assert np.min(patches.share) > 0.0
+    assert np.min(patches.equal) >= 0.0
+    there, size = balance(shape)
+    np.testing.assert_allclose(balance(patches)[0] / size, there / size, rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_largest_pressure_is_that_of_all_nodes(name):
+    """Under moments of both signs; which of the nodes that symmetry makes equal is rounding."""
+    shape = contact(name)
+    points = reduced(name, 160)
+    for moment in np.linspace(-1.0, 1.0, 41):
+        highest = np.max(shape.equal + moment * shape.tilt)
+        assert np.max(points.equal + moment * points.tilt) == pytest.approx(highest, rel=1e-14)
+
+
+def test_few_nodes_stay_as_they_are():
+    shape = contact("frame")
+    assert few_points(shape, shape.share.size) is shape
+    assert friction_patches(shape, shape.share.size) is shape
+
+
+@pytest.mark.parametrize(("points", "count"), [(few_points, 40), (friction_patches, 22)])
+def test_points_are_the_same_on_every_run(points, count):
+    one, other = (points(contact("plate"), count) for _ in range(2))
+    assert np.array_equal(one.share, other.share)
+    assert np.array_equal(one.position, other.position)
+
+
+def test_equations_are_solved_as_lapack_does():
+    """Within eps times the condition, some 1e5."""
+    slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)
+    matrix, right = slopes.T @ slopes, np.ones(110)
+    there = np.linalg.solve(matrix, right)
+    np.testing.assert_allclose(solved(matrix, right), there, rtol=0.0, atol=1e-11 * np.max(np.abs(there)))
+
+
+def test_too_few_points_are_refused():
+    with pytest.raises(ValueError, match=r"^6 points are too few, expected at least \d+ for this contact$"):
+        few_points(contact("frame"), 6)
+
+
+@pytest.fixture(scope="module")
+def spring() -> BoltedJointSpring:
+    """The default joint, whose curve the points do not know."""
+    return BoltedJointSpring.of(default("bolted_joint").values)
+
+
+@pytest.mark.parametrize(
+    ("states", "force", "stiffness"),
+    [("no tilt", 2e-5, 1e-4), ("tilt 0.1", 4e-4, 1e-3), ("opening", 6e-3, 2e-2)],
+)
+@pytest.mark.parametrize("name", CONTACTS)
+def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force, stiffness):
+    """160 points, over preload, moment, displacement and tilt: about four times what the benchmark prints."""
+    shape = contact(name)
+    states = patch_reduction.ranges(patch_reduction.opening_moment(shape))[states]
+    mean = patch_reduction.mean_pressure(spring)
+    found = patch_reduction.deviation(spring.curve, mean, shape, reduced(name, 160), states, 16)
+    assert found[0] < force
+    assert found[1] < stiffness
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
+    """Coulomb alone, by a law that the patches do not know: the sum of p |r - pole|, with a kink at the pole,
+    of tilted contacts. Over 400 poles 95 % are within 0.75 % of the friction, all within 2 %: a patch near
+    the pole has an arm that is wrong by part of its size. Seen: 0.42 % and 1.15 %.
+    """
+    shape, patches, rng = contact(name), moved(name), np.random.default_rng(6)
+    gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
+    moment = 0.9 * patch_reduction.opening_moment(shape)
+    reach = np.max(np.abs(shape.position), axis=0)
+    mean = patch_reduction.mean_pressure(spring)
+    largest = np.max(patch_reduction.tightened(spring.curve, shape, (mean, 0.0)))
+    largest -= spring.curve.displacement[0]
+
+    def friction(points, load, turn, pole):
+        start = patch_reduction.tightened(spring.curve, points, load)
+        p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
+        arm = np.hypot(*(points.position - pole).T)
+        return points.share @ (p * arm), points.share @ p
+
+    off = []
+    for _ in range(400):
+        load = mean, moment * rng.uniform(-1.0, 1.0)
+        turn, pole = 0.2 / reach * rng.uniform(-1.0, 1.0, 2), 1.5 * reach * rng.uniform(-1.0, 1.0, 2)
+        (there, force), (few, _) = (friction(points, load, turn, pole) for points in (shape, patches))
+        off.append(abs(few - there) / (force * np.hypot(gyration, np.hypot(*pole))))
+    assert np.quantile(off, 0.95) < 0.0075
+    assert np.max(off) < 0.02
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("plate", ["a row", "random"])
+@pytest.mark.parametrize("motion", patch_reduction.MOTIONS)
+def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
+    """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 2 %.
+
+    A turn about a pole under a bolt has less friction, and 3 % of it.
+    """
+    shape = contact("row") if plate == "a row" else patch_reduction.random_plate(5)
+    motion = patch_reduction.MOTIONS[motion]
+    part = 0.01 if motion.turn in (0.0, 1.0) else 0.03
+    start = patch_reduction.tightened(spring.curve, shape, (patch_reduction.mean_pressure(spring), 0.0))
+    largest = float(np.max(start) - spring.curve.displacement[0])
+    force, loss = patch_reduction.friction(spring, shape, True, largest, motion)
+    few, lost = patch_reduction.friction(spring, friction_patches(shape, 22), False, largest, motion)
+    np.testing.assert_allclose(few, force, rtol=0.0, atol=part * np.max(np.abs(force)))
+    np.testing.assert_allclose(lost, loss, rtol=0.02)

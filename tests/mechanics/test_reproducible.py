@@ -1,0 +1,111 @@
+"""Points and patches of a contact do not hang on the last bits of what they are made of."""
+
+import numpy as np
+import patch_reduction
+import pytest
+from test_patches import CONTACTS, balance, contact
+
+from jointfmu.mechanics.footprint import friction, patches
+from jointfmu.mechanics.footprint.reproducible import cleared, product, root, rounded, to_power
+from jointfmu.mechanics.footprint.shape import PressureShape
+
+TIMES = 200
+AGREE = 1e-9
+NUMBERS = ("share", "position", "equal", "tilt")
+
+
+def shapes() -> dict[str, PressureShape]:
+    """The default frame, plates without symmetry and with a row, a nodal field, the README's plate."""
+    bolts = ((x, y) for x in (-0.08, 0.08) for y in (-0.03, 0.03))
+    readme = patch_reduction.plate(*bolts, size=(0.2, 0.1), hole=0.0135, cone=0.0411)
+    return {name: contact(name) for name in CONTACTS} | {"field": patch_reduction.field(), "readme": readme}
+
+
+def perturbed(shape: PressureShape, rng: np.random.Generator) -> PressureShape:
+    """Every number by 1e-15 of itself, up or down."""
+    values = (getattr(shape, name) for name in NUMBERS)
+    return PressureShape(*(v * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], v.shape)) for v in values))
+
+
+def content(value: object) -> bytes:
+    """What a search depends on, as bytes."""
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
+    if isinstance(value, PressureShape):
+        return b"".join(getattr(value, name).tobytes() for name in NUMBERS)
+    return value.sums.tobytes() if hasattr(value, "sums") else str(value).encode()
+
+
+@pytest.fixture
+def searched(monkeypatch):
+    """Inputs of searches; one that begins with the same bits ends with the same and is not done again."""
+    done: dict[bytes, object] = {}
+
+    def once(search):
+        def known(*given):
+            key = search.__name__.encode() + b"".join(content(value) for value in given)
+            if key not in done:
+                done[key] = search(*given)
+            return done[key]
+
+        return known
+
+    monkeypatch.setattr(patches, "_kept", once(patches._kept))
+    monkeypatch.setattr(friction, "_moved", once(friction._moved))
+    return done
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", shapes())
+def test_points_and_patches_are_those_of_inputs_a_bit_off(name, searched):
+    """All numbers within 1e-9, and the exact sums those of the perturbed contact."""
+    shape, rng = shapes()[name], np.random.default_rng(4)
+    before = [patches.few_points(shape, 120), friction.friction_patches(shape, 22)]
+    searches = len(searched)
+    for _ in range(TIMES):
+        other = perturbed(shape, rng)
+        there, size = balance(other)
+        for one, few in zip(
+            before, (patches.few_points(other, 120), friction.friction_patches(other, 22)), strict=True
+        ):
+            np.testing.assert_allclose(few.share, one.share, rtol=AGREE)
+            for number in NUMBERS[1:]:
+                was, now = getattr(one, number), getattr(few, number)
+                np.testing.assert_allclose(now, was, rtol=AGREE, atol=AGREE * np.max(np.abs(was)))
+                assert np.array_equal(now == 0.0, was == 0.0)
+            np.testing.assert_allclose(balance(few)[0] / size, there / size, rtol=0.0, atol=1e-13)
+    assert len(searched) == searches
+
+
+def test_rounded_numbers_keep_their_place():
+    """A number is moved by half a step at most but for the shift of the border, and not twice."""
+    rng = np.random.default_rng(2)
+    shape = PressureShape(
+        rng.random(99), rng.standard_normal((99, 2)), rng.random(99), rng.standard_normal(99)
+    )
+    once = rounded(shape)
+    assert content(rounded(once)) == content(once)
+    assert np.max(np.abs(once.share / shape.share - 1.0)) < 2.0**-19
+    assert np.max(np.abs(once.tilt - shape.tilt)) < 2.0**-19 * np.max(np.abs(shape.tilt))
+    mirrored = rounded(PressureShape(shape.share, -shape.position, shape.equal, -shape.tilt))
+    assert np.array_equal(mirrored.position, -once.position)
+    assert np.array_equal(mirrored.tilt, -once.tilt)
+
+
+def test_what_rounding_leaves_is_zero():
+    shape = PressureShape(
+        np.ones(2), np.array([[1.0, 1e-17], [-1.0, 2.0]]), np.ones(2), np.array([1e-18, 0.5])
+    )
+    found = cleared(shape)
+    assert found.position[0, 1] == found.tilt[0] == 0.0
+    assert np.array_equal(found.position[1], shape.position[1])
+
+
+def test_functions_are_those_of_numpy():
+    """Roots and powers of two, products of matrices."""
+    rng = np.random.default_rng(3)
+    values, power = rng.random((4, 9)), np.array([[2.0], [4.0], [16.0], [64.0]])
+    np.testing.assert_allclose(root(values, power), values ** (1.0 / power), rtol=1e-15)
+    np.testing.assert_allclose(to_power(values, power), values**power, rtol=1e-14)
+    one, other = rng.standard_normal((3, 50)), rng.standard_normal((4, 50))
+    np.testing.assert_allclose(product(one, other), one @ other.T, rtol=0.0, atol=1e-13)

@@ -1,0 +1,231 @@
+"""Variants of an FMU without a compiler: what parts are kept by, and that data and code fit together."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import lief
+import pytest
+from conftest import Fmu, run_host
+from joint_cases import CASES, STATE, law, random_inputs
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import kept
+from jointfmu_fmu_src.native.ahead import structures
+from jointfmu_fmu_src.native.binary import finished
+from jointfmu_fmu_src.native.data import PLACEHOLDER, block, data_of, placeholder, split
+from jointfmu_fmu_src.native.generate import sources
+from natives import close
+from test_bare import EXTRAS
+from test_native_binaries import check_signature, images, members
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, default, dump
+
+NAMES = tuple(MODELS)
+
+
+def of(name: str, changes: dict[str, Any] | None = None) -> tuple[Model, ParameterFile]:
+    file = default(MODELS[name].joint)
+    file = file.with_values(changes or {}, "user", "test")
+    return MODELS[name].of(file.joint, file.values), file
+
+
+def part_name(model: Model, file: ParameterFile) -> str:
+    return kept.shipped_name(model, split(model, file))
+
+
+# What a part is kept by
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_numbers_are_data_and_choices_are_code(name: str) -> None:
+    """One part for all numbers, those that no tool may set too; another for each choice."""
+    model, file = of(name)
+    given = split(model, file)
+    assert {*given.exposed} == {*model.parameter_fields()}
+    numbers = {n: v for n, v in file.flat.items() if type(v) is float and v and not v.is_integer()}
+    changed = file.with_values({n: v * (1.0 + 1e-6) for n, v in numbers.items()}, "user", "test")
+    assert part_name(model, changed) == part_name(model, file)
+    every = {part_name(*one): one for one in structures(MODELS[name])}
+    assert part_name(model, file) in every
+    assert len(every) == len([*structures(MODELS[name])])
+
+
+def test_a_part_is_of_the_sources_it_was_made_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, file = of(NAMES[0])
+    before = part_name(model, file)
+    (tmp_path / "law.py").write_text("K = 1\n")
+    own = kept.own_folder
+    monkeypatch.setattr(kept, "own_folder", lambda model: tmp_path)
+    first = part_name(model, file)
+    kept._digest.cache_clear()
+    assert part_name(model, file) == first != before
+    (tmp_path / "law.py").write_text("K = 2\n")
+    kept._digest.cache_clear()
+    assert part_name(model, file) not in (first, before)
+    monkeypatch.setattr(kept, "own_folder", own)
+    assert part_name(model, file) == before
+
+
+def a_part() -> kept.Part:
+    libraries = {v: {"x86_64-linux": f"library {v}".encode() * 100} for v in kept.VERSIONS}
+    return kept.Part({"law.c": "int x;\n", "law.h": ""}, libraries)
+
+
+def test_a_part_is_read_as_it_was_written() -> None:
+    content = kept.written(a_part())
+    assert kept.read(content) == a_part()
+    assert kept.written(kept.read(content)) == content
+    for broken in (b"", content[:-40], content[:100], b"x" + content):
+        with pytest.raises((OSError, ValueError, EOFError, kept.lzma.LZMAError, kept.tarfile.TarError)):
+            kept.read(broken)
+
+
+def test_it_is_compiled_once_and_again_where_the_file_is_broken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiled = []
+    monkeypatch.setenv(kept.CACHE, str(tmp_path))
+    monkeypatch.setattr(kept, "compiled", lambda *_: compiled.append(1) or a_part())
+    model, file = of(NAMES[0])
+    for _ in range(3):
+        assert kept.part_of(model, file, split(model, file)) == a_part()
+    assert len(compiled) == 1
+    (found,) = tmp_path.rglob("*.tar.xz")
+    found.write_bytes(found.read_bytes()[:-40])
+    assert kept.part_of(model, file, split(model, file)) == a_part()
+    assert len(compiled) == 2
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == [found]
+
+
+def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("mine")
+    monkeypatch.setenv(kept.CACHE, str(tmp_path / "file" / "below"))
+    monkeypatch.setattr(kept, "compiled", lambda *_: a_part())
+    model, file = of(NAMES[0])
+    assert kept.part_of(model, file, split(model, file)) == a_part()
+
+
+def test_many_may_keep_the_same_part_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Old ones go, and nobody reads half a file."""
+    monkeypatch.setattr(kept, "MOST_KEPT", 3)
+    place, content = tmp_path / "new.tar.xz", kept.written(a_part())
+    for i in range(6):
+        old = tmp_path / f"{i}.tar.xz"
+        old.write_bytes(b"")
+        os.utime(old, (i, i))
+
+    def keep_and_read(_: int) -> kept.Part:
+        kept._keep(place, content)
+        return kept.read(place.read_bytes())
+
+    with ThreadPoolExecutor(8) as pool:
+        assert set(map(str, pool.map(keep_and_read, range(64)))) == {str(a_part())}
+    assert {p.name for p in tmp_path.iterdir()} == {"new.tar.xz", "4.tar.xz", "5.tar.xz"}
+
+
+# What is put in place of the placeholders
+
+
+def test_a_library_of_other_data_is_refused() -> None:
+    before, after = block(PLACEHOLDER, "", [0.0] * 3), block("Mine", "{1}", [1.0] * 3)
+    library = b"head" + before.content + b"tail"
+    assert finished(library, before, after, "Mine") == b"head" + after.content + b"tail"
+    for other in (b"head", library + before.content):
+        with pytest.raises(ValueError, match="Mine: the compiled part is not that of these data"):
+            finished(other, before, after, "Mine")
+
+
+PRINTED = """
+#include <stdio.h>
+#include "data.h"
+
+int main(void)
+{
+    return fwrite(&data, sizeof data, 1, stdout) == 1 ? 0 : 1;
+}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, tmp_path: Path) -> None:
+    """As the compiler lays the struct out; and the placeholders are gone."""
+    model, file = of(name)
+    files = sources(name, file)
+    given = split(model, file)
+    data = data_of(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
+    for part, text in {**files, "print.c": PRINTED}.items():
+        (tmp_path / part).write_text(text)
+    command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", "data.c", "print.c", "-o", "print")
+    subprocess.run(command, cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "print"], capture_output=True).stdout == data.content
+    for version in ("fmi2", "fmi3"):
+        for path, content in members(native / version / f"{name}.fmu").items():
+            if path.startswith("binaries/"):
+                copies = len([*images(content)])
+                assert (content.count(data.content), copies) == (copies, copies), path
+                assert PLACEHOLDER.encode() not in content
+                assert placeholder(model, given).content not in content
+
+
+@pytest.mark.slow
+def test_each_variant_is_signed_and_has_a_number_of_its_own(tmp_path: Path) -> None:
+    """macOS loads no other library on arm64, and tells libraries apart by their number."""
+    numbers = set()
+    for alias, factor in (("First", 1.0), ("Second", 1.1), ("a" * 63, 1.1)):
+        model, file = of(NAMES[0])
+        name = next(iter(model.parameter_fields()))
+        changed = file.with_values({name: factor * file.flat[name]}, "user", "test")
+        (path,) = build([NAMES[0]], ["fmi3"], changed, tmp_path, alias=alias)
+        for member, content in members(path).items():
+            if not member.endswith(".dylib"):
+                continue
+            for image in images(content):
+                numbers.add(bytes(image.uuid.uuid))
+                (own,) = [c.name for c in image.libraries if "ID" in str(c.command)]
+                assert own == f"@rpath/{alias}.dylib"
+                if image.has_code_signature:
+                    check_signature(content, image.code_signature.data_offset)
+            assert lief.MachO.check_layout(lief.MachO.parse(list(content)))[0]
+    assert len(numbers) == 3
+
+
+# Variants
+
+
+VARIANT = f"""
+import sys
+sys.modules.update(dict.fromkeys({EXTRAS!r}))
+from jointfmu_tools.cli import main
+sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3", "--out", sys.argv[3]]
+              + sys.argv[4:]))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) -> None:
+    """In the bare installation, once the default FMU was built; with the numbers of the package."""
+    kind = KINDS[MODELS[name].joint]
+    tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
+    alone = [one for one in tuned if not list(kind.contradictions(of(name, one)[1].values))]
+    model, file = of(name, alone[0])
+    fixed = {n: 0.99 * file.flat[n] for n in split(model, file).fixed if n in file.flat}
+    changed = file.with_values(fixed, "user", "test")
+    (tmp_path / "variant.toml").write_text(dump(changed))
+    begin = os.times()
+    done = run_host(VARIANT, name, tmp_path / "variant.toml", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    end = os.times()
+    worked = end.children_user + end.children_system - begin.children_user - begin.children_system
+    assert worked < 4.0  # 1 s on a quiet machine; the compiler works for more than 10 s
+    instance = Fmu(tmp_path / "out" / "fmi3" / f"{name}.fmu").start(STATE[name])
+    expected = law(name, changed.values).after(STATE[name])
+    for inputs in random_inputs(name, 5, seed=61):
+        assert instance.at(inputs) == close(expected(inputs))
+    instance.free()

@@ -1,0 +1,285 @@
+"""The five binaries of each native FMU: what they export and need, that they repeat, and what fails how.
+
+macOS binaries cannot run here; their load commands and signatures are checked instead.
+"""
+
+import re
+import struct
+import zipfile
+from collections.abc import Iterator
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import lief
+import pytest
+from conftest import run_host
+from jointfmu_fmu_src.building import build
+from jointfmu_fmu_src.native import compiler
+
+from jointfmu.joints import MODELS
+
+pytestmark = pytest.mark.slow
+
+lief.logging.disable()
+VERSIONS = ("fmi2", "fmi3")
+BINARIES = {
+    "fmi2": {
+        "win64": "dll",
+        "linux64": "so",
+        "aarch64-linux": "so",
+        "darwin64": "dylib",
+    },
+    "fmi3": {
+        "x86_64-windows": "dll",
+        "x86_64-linux": "so",
+        "aarch64-linux": "so",
+        "x86_64-darwin": "dylib",
+        "aarch64-darwin": "dylib",
+    },
+}
+LARGEST_FMU = 510_000
+"""Bytes [1]. The proof inside is less than a tenth of them, the own elementary functions are another."""
+MACHO = lief.MachO.Header.CPU_TYPE
+SYSTEM_DLL = re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|kernel32\.dll", re.IGNORECASE)
+LINKER_MADE = {"__mh_dylib_header", "___dso_handle"}
+"""What zig's linker adds to every macOS library."""
+
+
+def members(fmu: Path) -> dict[str, bytes]:
+    with zipfile.ZipFile(fmu) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def binaries(native: Path, version: str) -> Iterator[tuple[str, bytes]]:
+    """(path, content) of every binary of all FMUs of a version."""
+    for name in MODELS:
+        for path, content in members(native / version / f"{name}.fmu").items():
+            if path.startswith("binaries/"):
+                yield f"{name}: {path}", content
+
+
+def images(content: bytes) -> Iterator[Any]:
+    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator."""
+    if lief.is_macho(list(content)):
+        file = lief.MachO.parse(list(content))
+        yield from file
+    else:
+        yield lief.parse(list(content))
+
+
+def exported(image: Any) -> set[str]:
+    if isinstance(image, lief.PE.Binary):
+        return {entry.name for entry in image.get_export().entries}
+    if isinstance(image, lief.MachO.Binary):
+        return {e.symbol.name for e in image.dyld_info.exports} - LINKER_MADE
+    return {s.name for s in image.exported_symbols}
+
+
+def declared(version: str) -> set[str]:
+    """All functions of fmi2Functions.h or fmi3Functions.h."""
+    header = Path(fmpy.__file__).parent / "c-code" / f"{version}Functions.h"
+    return set(re.findall(rf"^\s*FMI\d_Export\s+\w+\s+({version}\w+);", header.read_text(), re.MULTILINE))
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_platform_is_there(native: Path, version: str) -> None:
+    for name in MODELS:
+        found = {path for path in members(native / version / f"{name}.fmu") if path.startswith("binaries/")}
+        assert found == {f"binaries/{folder}/{name}.{end}" for folder, end in BINARIES[version].items()}
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Path, version: str) -> None:
+    functions = declared(version)
+    assert len(functions) == {"fmi2": 44, "fmi3": 75}[version]
+    for path, content in binaries(native, version):
+        for image in images(content):
+            prefix = "_" if isinstance(image, lief.MachO.Binary) else ""
+            assert exported(image) == {prefix + f for f in functions}, path
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_linux_needs_the_c_runtime_of_glibc_2_17_alone(native: Path, version: str) -> None:
+    seen = set()
+    for path, content in binaries(native, version):
+        if not path.endswith(".so"):
+            continue
+        image = lief.parse(list(content))
+        seen.add(image.header.machine_type)
+        assert set(image.libraries) <= {"libc.so.6", "libm.so.6"}, path
+        needed = [v.name for r in image.symbols_version_requirement for v in r.get_auxiliary_symbols()]
+        versions = [tuple(map(int, v.removeprefix("GLIBC_").split("."))) for v in needed]
+        assert versions, path
+        assert max(versions) <= (2, 17), path
+        assert not [s.name for s in image.symtab_symbols], f"{path} is not stripped"
+    assert seen == {lief.ELF.ARCH.X86_64, lief.ELF.ARCH.AARCH64}
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_windows_needs_the_c_runtime_of_the_system_alone(native: Path, version: str) -> None:
+    for path, content in binaries(native, version):
+        if not path.endswith(".dll"):
+            continue
+        image = lief.parse(list(content))
+        assert image.header.machine == lief.PE.Header.MACHINE_TYPES.AMD64
+        assert [i.name for i in image.imports if not SYSTEM_DLL.fullmatch(i.name)] == [], path
+        assert image.get_export().name == Path(path).name
+        assert not image.has_tls
+        assert not [s for s in image.sections if s.name.startswith(".debug")]
+        assert b".pdb" not in content
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
+    seen = []
+    for path, content in binaries(native, version):
+        if not path.endswith(".dylib"):
+            continue
+        for image in images(content):
+            seen.append(image.header.cpu_type)
+            assert image.header.file_type == lief.MachO.Header.FILE_TYPE.DYLIB, path
+            assert tuple(image.build_version.minos) == (11, 0, 0), path
+            found = {(c.command, c.name) for c in image.libraries}
+            kinds = lief.MachO.LoadCommand.TYPE
+            assert found == {
+                (kinds.ID_DYLIB, f"@rpath/{Path(path).name}"),
+                (kinds.LOAD_DYLIB, "/usr/lib/libSystem.B.dylib"),
+            }, path
+            if image.header.cpu_type == MACHO.ARM64:
+                signed = bytes(content[image.fat_offset :])
+                check_signature(signed, image.code_signature.data_offset)
+    assert sorted(map(str, seen)) == sorted(map(str, [MACHO.X86_64, MACHO.ARM64] * len(MODELS)))
+
+
+def check_signature(library: bytes, at: int) -> None:
+    """The ad-hoc signature without which arm64 refuses a library: a digest of every page before it."""
+    _, _, blobs = struct.unpack_from(">III", library, at)
+    offsets = dict(struct.unpack_from(">II", library, at + 12 + 8 * i) for i in range(blobs))
+    start = at + offsets[0]
+    magic, _, _, flags, digests = struct.unpack_from(">IIIII", library, start)
+    pages, limit, size, kind, _, page = struct.unpack_from(">IIBBBB", library, start + 28)
+    assert (magic, flags & 2, size, kind, limit) == (0xFADE0C02, 2, 32, 2, at)
+    for i in range(pages):
+        content = library[i << page : min((i + 1) << page, limit)]
+        digest = start + digests + 32 * i
+        assert library[digest : digest + 32] == sha256(content).digest()
+
+
+def test_a_universal_file_holds_the_libraries_unchanged(native: Path) -> None:
+    for name in MODELS:
+        content = members(native / "fmi2" / f"{name}.fmu")[f"binaries/darwin64/{name}.dylib"]
+        magic, count = struct.unpack_from(">II", content)
+        assert (magic, count) == (0xCAFEBABE, 2)
+        for i, kind in enumerate((0x01000007, 0x0100000C)):
+            cpu, _, offset, size, align = struct.unpack_from(">IIIII", content, 8 + 20 * i)
+            assert cpu == kind
+            assert offset % (1 << align) == 0
+            assert offset + size <= len(content)
+            assert content[offset : offset + 8] == struct.pack("<II", 0xFEEDFACF, kind)
+
+
+def test_no_fmu_is_large(native: Path) -> None:
+    sizes = {f"{v}/{n}": (native / v / f"{n}.fmu").stat().st_size for v in VERSIONS for n in MODELS}
+    assert {name: size for name, size in sizes.items() if size > LARGEST_FMU} == {}
+
+
+def test_another_process_with_a_cold_cache_builds_the_same_bytes(
+    native: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One FMU has the whole runtime; that sources repeat for every FMU is tested beside descriptions."""
+    name = next(iter(MODELS))
+    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "cold cache"))
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    monkeypatch.setenv("PYTHONHASHSEED", "7")
+    script = "import sys; from jointfmu_tools import cli; sys.exit(cli.main(sys.argv[1:]))"
+    done = run_host(script, "build", name, "--flavour", *VERSIONS, "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    for version in VERSIONS:
+        first, again = (folder / version / f"{name}.fmu" for folder in (native, tmp_path / "out"))
+        one, two = members(first), members(again)
+        assert [member for member in one | two if one.get(member) != two.get(member)] == []
+        assert first.read_bytes() == again.read_bytes()
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_no_path_of_this_machine_is_inside(native: Path, version: str) -> None:
+    here = (Path.home(), Path(compiler.__file__).parent, Path(fmpy.__file__).parent, "/.cache/")
+    for path, content in binaries(native, version):
+        assert [p for p in here if str(p).encode() in content] == [], path
+
+
+# What fails
+
+WITHOUT_PACKAGE = """
+import sys
+from jointfmu_tools import cli
+
+sys.modules[sys.argv[1]] = None
+sys.exit(cli.main(["build", "GearContact", "--flavour", "fmi2", "--out", sys.argv[2]]))
+"""
+
+SOURCES = {"good.c": "int good(void);\nint good(void) { return 1; }\n"}
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("int f(void) { return x; }\n", "bad.c:1:22: error: use of undeclared identifier 'x'"),
+        ('#include "missing.h"\n', "bad.c:1:10: fatal error: 'missing.h' file not found"),
+        ('#include "fmi2Functions.h"\nvoid g(void);\nvoid f(void) { g(); }\n', "undefined symbol: g"),
+    ],
+)
+def test_what_does_not_compile_is_named_in_one_line(text: str, part: str) -> None:
+    text = text.replace("void f(", '__attribute__((visibility("default"))) void f(')
+    with pytest.raises(RuntimeError, match=r"^Bad for [a-z0-9_-]+: [^\n]*$") as raised:
+        compiler.libraries("Bad", SOURCES | {"bad.c": text}, ["good.c", "bad.c"])
+    assert part in str(raised.value)
+
+
+@pytest.mark.parametrize("package", ["ziglang", "casadi"])
+def test_a_missing_package_is_one_line_that_says_what_to_install(
+    tmp_path: Path, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    done = run_host(WITHOUT_PACKAGE, package, tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert package in done.stderr
+    assert "pip install 'jointfmu[build]'" in done.stderr
+    assert [p for p in tmp_path.rglob("*") if p.is_file()] == []
+
+
+def test_an_fmu_survives_a_failed_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (built,) = build(["GearContact"], ["fmi3"], None, tmp_path)
+    before = built.read_bytes()
+
+    def fail(*arguments: object) -> None:
+        raise RuntimeError("law.c:1:1: error: no")
+
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.part_of", fail)
+    with pytest.raises(RuntimeError, match=r"law\.c:1:1"):
+        build(["GearContact"], ["fmi3"], None, tmp_path)
+    assert sorted(tmp_path.rglob("*")) == [built.parent, built]
+    assert built.read_bytes() == before
+
+
+def test_an_unwritable_place_is_refused_before_anything_is_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("mine")
+    monkeypatch.setattr("jointfmu_fmu_src.native.build.part_of", lambda *arguments: pytest.fail("compiled"))
+    with pytest.raises(ValueError, match="cannot be written") as raised:
+        build(["GearContact"], ["fmi2"], None, tmp_path / "file" / "below")
+    assert "\n" not in str(raised.value)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_an_unwritable_cache_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "file").write_text("mine")
+    monkeypatch.setenv("ZIG_GLOBAL_CACHE_DIR", str(tmp_path / "file" / "below"))
+    with pytest.raises(ValueError, match="ZIG_GLOBAL_CACHE_DIR to a writable folder") as raised:
+        compiler.libraries("Good", SOURCES, ["good.c"])
+    assert str(tmp_path) in str(raised.value)
+    assert "\n" not in str(raised.value)

@@ -1,0 +1,274 @@
+"""The C sources of every native FMU: under two compilers, with sanitizers, in and out of order, fuzzed.
+
+The programs in tests/native drive both FMI versions of a joint. Joints of their own there test the runtime
+alone: `dummy` has everything a joint without memory can have, `passthrough` the least, `slider` a memory.
+"""
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from functools import cache
+from graphlib import TopologicalSorter
+from pathlib import Path
+from typing import NamedTuple
+
+import fmpy
+import lief
+import pytest
+from joint_cases import JOINTS
+from jointfmu_fmu_src.native.generate import COMMON, RUNTIME, sources, token
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.partners import parameters as partner_parameters
+
+from jointfmu.joints import MODELS
+from jointfmu.parameters import default
+
+pytestmark = pytest.mark.slow
+
+HOSTS = Path(__file__).parent
+FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
+STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
+COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
+"""{name: command}; the last one comes with the package, and builds the FMUs."""
+SANITIZERS = {"gcc": "address,undefined", "clang": "address,undefined", "zig": "undefined"}
+"""Zig has no runtime of the address sanitizer."""
+PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
+VERSIONS = ("2", "3")
+FUZZ_CALLS = 1_000_000 // (len(MODELS) * len(COMPILERS) * len(VERSIONS))
+
+ALONE = {"dummy": (2, 3, 4), "passthrough": (2, 2, 1), "slider": (2, 3, 2)}
+"""{joint of tests/native: numbers of inputs, outputs, parameters}."""
+RUNTIME_ALONE = (*COMMON, "joint", "variables", "fmi2", "fmi3")
+C_LIBRARY = {
+    "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
+    "sqrt", "fabs", "fmin", "fmax", "floor", "ceil", "copysign",
+    "pow",  # of zeros and infinities
+    "bcmp", "memchr",  # clang's for comparisons with memcmp and strchr
+}  # fmt: skip
+"""All that an FMU may need: no files, no environment, no locale, no time, no way to end the host, and of the
+mathematical library what is exact: the same bits on every machine."""
+
+
+def sanitized(compiler: str) -> tuple[str, ...]:
+    """A compiler's options for its sanitizers."""
+    return ("-O1", "-g", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
+
+
+UNDEFINED = 0
+"""ELF's number of the section that lies in another file."""
+
+
+class Sources(NamedTuple):
+    """C sources of one joint, and what a host must know."""
+
+    files: Mapping[str, str]
+    inputs: int
+    outputs: int
+    parameters: int
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """Token and layout on the command line of a host."""
+        return (token(dict(self.files)), str(self.inputs), str(self.outputs), str(self.parameters))
+
+
+@cache
+def c_of(name: str) -> Sources:
+    """The sources of an FMU, or of the joint in a folder of tests/native."""
+    if model := (MODELS | PARTNERS).get(name):
+        files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
+        return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
+    own = [p for p in RUNTIME.iterdir() if p.stem in RUNTIME_ALONE and p.suffix in (".c", ".h")]
+    files = {p.name: p.read_text() for p in [*own, *(HOSTS / name).iterdir()]}
+    return Sources(files, *ALONE[name])
+
+
+class Builder:
+    """Compiles sources and hosts, each once."""
+
+    def __init__(self, work: Path) -> None:
+        self.work = work
+        self.objects, self.host, self.program = map(cache, (self._objects, self._host, self._program))
+
+    def _objects(self, compiler: str, name: str, *options: str) -> list[Path]:
+        """Object files of a joint, warnings being errors."""
+        folder = self.work / f"{compiler}-{name}-{abs(hash(options))}"
+        folder.mkdir()
+        files = c_of(name).files
+        for file, text in files.items():
+            (folder / file).write_text(text)
+        units = [file for file in files if file.endswith(".c")]
+        command = (*COMPILERS[compiler], *STRICT, *options, "-isystem", str(FMI_HEADERS))
+        if compiler == "zig":  # which compiles several files at a time into one only
+            self.call(folder, *command, "-r", *units, "-o", "merged.o")
+            return [folder / "merged.o"]
+        self.call(folder, *command, "-c", *units)
+        return [folder / f"{Path(unit).stem}.o" for unit in units]
+
+    def _host(self, compiler: str, program: str) -> Path:
+        """Object file of a host that has the FMU in it, with sanitizers."""
+        out = self.work / f"{compiler}-{program}.o"
+        source = str(HOSTS / f"{program}.c")
+        options = (*STRICT, *sanitized(compiler), "-D_GNU_SOURCE", "-DLINKED", "-isystem", str(FMI_HEADERS))
+        self.call(self.work, *COMPILERS[compiler], *options, "-c", source, "-o", str(out))
+        return out
+
+    def _program(self, compiler: str, program: str, name: str) -> Path:
+        """A host and a joint in one, with sanitizers."""
+        objects = [self.host(compiler, program), *self.objects(compiler, name, *sanitized(compiler))]
+        out = self.work / f"{compiler}-{program}-{name}"
+        libraries = ("-lm", "-lpthread", "-o", str(out))
+        self.call(self.work, *COMPILERS[compiler], *sanitized(compiler), *map(str, objects), *libraries)
+        return out
+
+    @staticmethod
+    def call(folder: Path, *command: str) -> str:
+        """What a program prints; fails with what it complains about."""
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}{done.stderr}"
+        return done.stdout
+
+
+@pytest.fixture(scope="module")
+def builder(tmp_path_factory: pytest.TempPathFactory) -> Builder:
+    return Builder(tmp_path_factory.mktemp("c"))
+
+
+@pytest.fixture(params=COMPILERS)
+def compiler(request: pytest.FixtureRequest) -> str:
+    if shutil.which(COMPILERS[request.param][0]) is None:
+        pytest.skip(f"{request.param} is not installed")
+    return str(request.param)
+
+
+@pytest.fixture
+def sanitizing(compiler: str, builder: Builder) -> str:
+    """A compiler that has its sanitizers."""
+    probe = builder.work / f"{compiler}-probe.c"
+    if not probe.exists():
+        probe.write_text("int main(void) { return 0; }\n")
+    command = [*COMPILERS[compiler], *sanitized(compiler), str(probe), "-o", str(probe.with_suffix(""))]
+    if subprocess.run(command, capture_output=True).returncode != 0:
+        pytest.skip(f"{compiler} is installed without its sanitizers")
+    return compiler
+
+
+def ramp_points(name: str, count: int = 40) -> str:
+    """Points along the joint's load ramp, the other inputs near zero."""
+    if name not in MODELS:
+        return "\n".join(f"{0.1 * i} {0.2 * i}" for i in range(1, count))
+    model = MODELS[name]
+    rows = []
+    for i in range(1, count):
+        other = 1e-7 * math.sin(i)
+        row = (model.ramp.end * i / count if v.name == model.ramp.input else other for v in model.inputs)
+        rows.append(" ".join(repr(x) for x in row))
+    return "\n".join(rows)
+
+
+every_joint = pytest.mark.parametrize("name", [*MODELS, *ALONE])
+every_version = pytest.mark.parametrize("version", VERSIONS)
+
+
+@pytest.mark.parametrize("name", [*MODELS, *PARTNERS, *ALONE])
+def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
+    assert builder.objects(compiler, name, *PLAIN)
+
+
+def test_files_use_each_other_in_one_direction() -> None:
+    """A .c file with its header is one; kind.h only names the joint's header, for the size of a joint."""
+    uses: dict[str, set[str]] = {}
+    for path in RUNTIME.glob("*.[ch]"):
+        found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
+        uses.setdefault(path.stem, set()).update(found - {path.stem, "kind"})
+    tuple(TopologicalSorter(uses).static_order())  # raises CycleError
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
+    (merged,) = builder.objects("zig", name, *PLAIN, "-target", "x86_64-linux-gnu")
+    binary = lief.parse(str(merged))
+    assert isinstance(binary, lief.ELF.Binary)
+    sizes = {str(section.name): section.size for section in binary.sections}
+    assert sizes.get(".data", 0) == sizes.get(".bss", 0) == 0
+    outside = {str(symbol.name) for symbol in binary.symbols if symbol.name and symbol.shndx == UNDEFINED}
+    assert "calloc" in outside
+    assert outside - {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"} <= C_LIBRARY
+    files = c_of(name).files.items()
+    assert {file for file, text in files if "calloc(" in text} == {"instance.c", "snapshot.c"}
+
+
+@every_joint
+@every_version
+@pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
+def test_in_order_and_out_of_order(
+    sanitizing: str, builder: Builder, program: str, name: str, version: str
+) -> None:
+    run = builder.program(sanitizing, program, name)
+    builder.call(builder.work, str(run), "", version, *c_of(name).arguments)
+
+
+@every_version
+def test_behaviour(sanitizing: str, builder: Builder, version: str) -> None:
+    run = builder.program(sanitizing, "behaviour", "dummy")
+    builder.call(builder.work, str(run), "", version, c_of("dummy").arguments[0])
+
+
+@every_version
+def test_memory(sanitizing: str, builder: Builder, version: str) -> None:
+    run = builder.program(sanitizing, "memory", "slider")
+    builder.call(builder.work, str(run), "", version, c_of("slider").arguments[0])
+
+
+@every_version
+@pytest.mark.parametrize("name", [*MODELS, "passthrough"])
+def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> None:
+    c, reference = c_of(name), 1 + c_of(name).inputs + c_of(name).outputs
+    if model := MODELS.get(name):
+        reference += list(model.parameter_fields()).index(JOINTS[model.joint].scaled)
+    command = [
+        str(builder.program(sanitizing, "threads", name)),
+        "",
+        version,
+        *c.arguments[:3],
+        str(reference),
+    ]
+    done = subprocess.run(command, input=ramp_points(name), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"8 threads, {39 * c.outputs} numbers each\n"
+
+
+@every_version
+@pytest.mark.parametrize("name", [*MODELS, "RotationalInertia", "TorqueProfile"])
+def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> None:
+    run = builder.program(sanitizing, "fuzz", name)
+    seed = 1 + list(COMPILERS).index(sanitizing)
+    counts = builder.call(
+        builder.work, str(run), "", version, *c_of(name).arguments, str(seed), str(FUZZ_CALLS)
+    )
+    ok, *_, errors = (int(word) for word in counts.replace(",", "").split() if word.isdigit())
+    assert min(ok, errors) > FUZZ_CALLS / 4  # neither all refused nor nothing
+
+
+@every_joint
+@every_version
+def test_a_library_exports_all_and_leaves_nothing_behind(builder: Builder, name: str, version: str) -> None:
+    """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth."""
+    library, host = builder.work / f"{name}.so", builder.work / "lifecycle"
+    zig, objects = COMPILERS["zig"], map(str, builder.objects("zig", name, *PLAIN))
+    builder.call(builder.work, *zig, "-shared", *objects, "-lm", "-o", str(library))
+    options = (
+        *STRICT,
+        "-O1",
+        "-fno-sanitize=all",
+        "-D_GNU_SOURCE",
+        "-isystem",
+        str(FMI_HEADERS),
+        "-ldl",
+        "-lm",
+    )
+    builder.call(builder.work, *zig, str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
+    builder.call(builder.work, str(host), str(library), version, *c_of(name).arguments)

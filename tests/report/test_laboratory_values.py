@@ -1,0 +1,169 @@
+"""The laboratory's modules give the native FMUs' numbers and refusals, in wasmtime and in Chromium.
+
+The same C with the same order of operations and no mathematical library: the same bits.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import PROGRAM, browser
+from conftest import Fmu
+from joint_cases import random_inputs
+from jointfmu_tools.laboratory import write_laboratory
+from jointfmu_tools.laboratory.modules import Module, modules
+from webassembly import Instance, native_fmu, random_values, refused_values
+
+pytestmark = pytest.mark.slow
+
+needed = pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+SETS, REFUSED, STEPS = 22, 2, 4
+"""Parameter sets that are accepted but for the few whose law has no table, those that are not, and steps."""
+ACCEPTED = 20
+EVERY = {f"{m.model.name}, {m.files[0].law}": m for m in modules()}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A parameter set and a path from rest; what the native FMU gives along it, or its refusal."""
+
+    values: dict[str, Any]
+    path: list[dict[str, float]]
+    outputs: list[dict[str, float]]
+    refusal: str
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("laboratory")
+
+
+@pytest.fixture(scope="module", params=EVERY)
+def module(request: pytest.FixtureRequest) -> Module:
+    """Every module of the page."""
+    return EVERY[request.param]
+
+
+@pytest.fixture(scope="module")
+def fmu(module: Module, folder: Path) -> Iterator[Fmu]:
+    made = Fmu(native_fmu(module, folder / module.files[0].law))
+    yield made
+    made.free()
+
+
+@pytest.fixture(scope="module")
+def cases(module: Module, fmu: Fmu) -> list[Case]:
+    """What the native FMU gives: numbers at random, then Booleans as well."""
+    rng = np.random.default_rng(15)
+    values = [random_values(module, rng, switched=i % 3 == 2) for i in range(SETS)]
+    values += [refused_values(module, rng) for _ in range(REFUSED)]
+    found = []
+    for i, each in enumerate(values):
+        path = [module_inputs(module, given) for given in random_inputs(module.model.name, STEPS, seed=i)]
+        found.append(native(fmu, each, path))
+    assert sum(not case.refusal for case in found[:SETS]) >= ACCEPTED
+    assert all(case.refusal for case in found[SETS:])
+    return found
+
+
+def module_inputs(module: Module, given: dict[str, float]) -> dict[str, float]:
+    return dict.fromkeys((v.name for v in module.model.inputs), 0.0) | given
+
+
+def native(fmu: Fmu, values: dict[str, Any], path: list[dict[str, float]]) -> Case:
+    fmu.reset()
+    seen = len(fmu.messages)
+    try:
+        fmu.start(values)
+    except Exception:  # fmpy raises its own
+        errors = [m.text for m in fmu.messages[seen:] if m.status == 3]
+        return Case(values, path, [], errors[0])
+    outputs = []
+    for inputs in path:
+        fmu.set(inputs)
+        fmu.step()
+        outputs.append(fmu.get())
+    return Case(values, path, outputs, "")
+
+
+def compare(case: Case, found: list[dict[str, float]]) -> None:
+    for expected, row in zip(case.outputs, found, strict=True):
+        assert row == expected, case.values
+
+
+@pytest.fixture(scope="module")
+def instance(module: Module) -> Instance:
+    pytest.importorskip("wasmtime")
+    return Instance(module, module.compiled())
+
+
+def test_wasmtime_gives_the_numbers_and_refusals(
+    module: Module, cases: list[Case], instance: Instance
+) -> None:
+    for case in cases:
+        _ = instance.said
+        accepted = instance.start(case.values)
+        assert accepted == (not case.refusal)
+        if case.refusal:
+            assert instance.said == [f"3{case.refusal}"]
+            continue
+        found = []
+        for inputs in case.path:
+            instance.set(inputs)
+            assert instance.step()
+            found.append(instance.get())
+        compare(case, found)
+
+
+def test_wasmtime_gives_the_derivatives(module: Module, fmu: Fmu, instance: Instance) -> None:
+    (given,) = random_inputs(module.model.name, 1, seed=5)
+    inputs = module_inputs(module, given)
+    fmu.reset()
+    fmu.start(inputs)
+    assert instance.start(inputs)
+    v = fmu.variables
+    for output in instance.outputs:
+        for known in inputs:
+            references = [v[output].valueReference], [v[known].valueReference]
+            expected = fmu.fmu.getDirectionalDerivative(*references, [1.0])[0]
+            assert instance.derivative(output, known) == expected, (output, known)
+
+
+@pytest.fixture(scope="module")
+def shown(folder: Path) -> Iterator[Any]:
+    page = folder / "laboratory.html"
+    write_laboratory(page)
+    with browser() as one:
+        one.open(page)
+        one.run("laboratory.then(() => true)")
+        yield one
+
+
+_RUN = """(async () => {{
+  const lab = await laboratory, cases = {cases};
+  const about = lab.known.modules.find((m) => m.name === {name} && m.law === {law});
+  const joint = await Joint.of(about), outputs = about.variables.filter((v) => v.causality === "output");
+  return cases.map(({{ values, path }}) => {{
+    joint.messages.clear();
+    if (!joint.begin(new Map(Object.entries(values)))) return [...joint.messages];
+    return path.map((inputs) => {{
+      joint.step(inputs);
+      return Object.fromEntries(outputs.map((v) => [v.name, joint.get(v.name)]));
+    }});
+  }});
+}})()"""
+
+
+@needed
+def test_chromium_gives_the_numbers_and_refusals(module: Module, cases: list[Case], shown: Any) -> None:
+    asked = json.dumps([{"values": case.values, "path": case.path} for case in cases])
+    name, law = json.dumps(module.model.name), json.dumps(module.files[0].law)
+    for case, found in zip(cases, shown.run(_RUN.format(cases=asked, name=name, law=law)), strict=True):
+        if case.refusal:
+            assert found == [case.refusal]
+        else:
+            compare(case, found)

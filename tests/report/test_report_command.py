@@ -1,0 +1,142 @@
+"""`jointfmu report`: the page of a user's joint says what the joint does and where its numbers come from."""
+
+import json
+import re
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_fmu_src.native.page import panels
+from jointfmu_tools import cli
+from jointfmu_tools.judgement import judge_file
+from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.joint import TOPICS, write_joint_report
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import ParameterFile, default, dump
+from jointfmu.quantity import units
+
+ROOT = Path(__file__).resolve().parents[2]
+LAWS = [(kind.name, law) for kind in KINDS.values() for law in kind.laws]
+
+
+def written(folder: Path, file: ParameterFile, fmu: str | None = None) -> str:
+    write_joint_report(folder / "page.html", file, fmu)
+    return (folder / "page.html").read_text(encoding="utf-8")
+
+
+def figures(page: str) -> list[list[dict]]:
+    """Panels of each figure."""
+    return [json.loads(text) for text in re.findall(r'<script type="application/json">(.*?)</script>', page)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("joint", "law"), LAWS)
+def test_the_page_of_every_law_says_each_number_and_its_source(joint: str, law: str, tmp_path: Path) -> None:
+    file = default(joint, law)
+    page = unescape(written(tmp_path, file))
+    for name in file.flat:
+        (row,) = re.findall(rf"<tr><td><code>{re.escape(name)}</code></td>(.*?)</tr>", page)
+        assert f"<td>{file.origins.get(name, 'user')}</td>" in row, name
+        assert f">{file.sources.get(name, 'default choice')}</td>" in row, name
+    for line in judge_file(file).lines():
+        assert line in page
+    # one file: nothing is fetched
+    assert not re.search(r"<link|<script[^>]*\bsrc=|<img[^>]*\bsrc=(?!\"data:)|@import|url\(", page)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MODELS)
+def test_curves_are_those_of_the_spring(name: str, tmp_path: Path) -> None:
+    model, file = MODELS[name], default(MODELS[name].joint)
+    drawn = figures(written(tmp_path, file, name))[0]
+    spring = model.spring(file.values)
+    rest = {v.name: file.start(v.name) for v in model.inputs}
+    variables = {v.name: v for v in (*model.inputs, *model.outputs)}
+    ramp = model.ramp.end * np.linspace(0.0, 1.0, 101) ** 2
+    for panel, (over, names) in zip(drawn, panels(model), strict=True):
+        shown = panel["y"].rpartition("[")[2].rstrip("]").replace("µ", "u").replace(" ", ".")
+        factor = units.factor(variables[names[0]].unit, shown)
+        for series in panel["series"]:
+            for i in (0, 50, 100):
+                inputs = {**rest, model.ramp.input: float(ramp[i])}
+                value = float(model.evaluate(spring, inputs)[series["name"]])
+                # the page has seven digits
+                assert series["y"][i] == pytest.approx(factor * value, rel=1e-6), (over, i)
+
+
+def test_what_the_user_changed_is_there_with_his_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = default("gear_contact")
+    name = next(n for n, value in file.flat.items() if isinstance(value, float) and value > 0.0)
+    words = 'drawing 4711, <b>rev.</b> C & "all"'
+    Path("mine.toml").write_text(dump(file.with_values({name: file.flat[name]}, "user", words)))
+    assert cli.main(["report", "mine.toml", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"report": "mine.html"}
+    page = Path("mine.html").read_text(encoding="utf-8")
+    assert "drawing 4711, &lt;b&gt;rev.&lt;/b&gt; C &amp; &#34;all&#34;" in page
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.html", "mine.toml"]
+
+
+@pytest.mark.parametrize("name", [name for name, model in MODELS.items() if model.loop])
+def test_loops_lose_what_the_joint_says_it_lost(name: str) -> None:
+    model = MODELS[name]
+    own = {n: v for n, v in model.loop.settings.items() if n in model.parameter_fields()}
+    file = default(model.joint).with_values(own, "user", "with memory")
+    loops = Course(model, file).loops()
+    for row in loops.rows():
+        # trapezoids over 80 points of a cycle, a branch of which is about a parabola: 1/40^2 of it
+        assert row["loss"] == pytest.approx(row["E_loss"], rel=2e-2)
+        assert row["loss"] > 0.0
+
+
+def test_the_ramp_goes_as_far_as_the_law_does() -> None:
+    """With the default parameters it is the model's own, and what is said of the law's end is so there."""
+    for name, model in MODELS.items():
+        course = Course(model, default(model.joint))
+        assert course.end == max(model.ramp.end, course.rest[model.ramp.input]), name
+        if course.limit:
+            value, text = course.limit
+            inputs = {**course.rest, model.ramp.input: value}
+            outputs = model.evaluate(course.spring, inputs)
+            assert text in model.warnings(course.spring, {**inputs, **outputs}).values()
+            below = {**course.rest, model.ramp.input: 0.99 * value}
+            assert text.split("=")[0] not in "".join(
+                model.warnings(course.spring, {**below, **model.evaluate(course.spring, below)}).values()
+            )
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("absent.toml",), "absent.toml: cannot be read"),
+        (("broken.toml",), "broken.toml: joint = 'nothing', allowed are"),
+        (("good.toml", "--fmu", "Nothing"), "fmu = 'Nothing' is none of a"),
+        (("good.toml", "--out", "good.toml"), "allowed is .html"),
+        (("good.toml", "--out", "folder.html"), "is a folder"),
+    ],
+)
+def test_what_makes_no_page_is_one_line(
+    words: tuple[str, ...],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("good.toml").write_text(dump(default(next(iter(KINDS)))))
+    Path("broken.toml").write_text('schema = 1\njoint = "nothing"\n')
+    Path("folder.html").mkdir()
+    before = {path.name: path.is_file() and path.read_bytes() for path in tmp_path.iterdir()}
+    assert said in refused_line(capsys, "report", *words)
+    assert {path.name: path.is_file() and path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_topics_are_headings_of_the_page_on_validity() -> None:
+    text = (ROOT / "docs/validity.md").read_text(encoding="utf-8")
+    for topic in TOPICS:
+        assert f"\n## {topic}\n" in text

@@ -1,0 +1,374 @@
+"""The guide: the site builds, links and anchors lead somewhere, commands parse, code and the tutorial run."""
+
+import functools
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
+from html.parser import HTMLParser
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import unquote, urlsplit
+
+import pytest
+from jointfmu_tools.commands.parser import parser
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCS = ROOT / "docs"
+PAGES = sorted(DOCS.rglob("*.md"))
+GUIDE = [ROOT / "README.md", *PAGES]
+TEXTS = [ROOT / "CONTRIBUTING.md", *GUIDE]
+OTHERS = ("cd", "git", "mkdocs", "pip", "pytest", "python")
+"""Programs other than jointfmu that a block of commands may start."""
+
+
+def shown(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def without_code(text: str) -> str:
+    return re.sub(r"`[^`\n]*`", "", re.sub(r"^( *)```.*?^\1```", "", text, flags=re.DOTALL | re.MULTILINE))
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    """Fenced blocks of a language, also inside lists."""
+    found = re.findall(
+        rf"^( *)```{language}\n(.*?)^\1```", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE
+    )
+    return [re.sub(rf"^{indent}", "", block, flags=re.MULTILINE) for indent, block in found]
+
+
+def commands(path: Path) -> list[str]:
+    """Command lines of all blocks; a line that ends in a backslash goes on."""
+    lines = "".join(blocks(path, "sh")).replace("\\\n", " ").splitlines()
+    return [part.strip() for line in lines if line.strip() for part in line.split("&&")]
+
+
+# On GitHub: links between the files themselves
+
+
+@functools.cache
+def anchors(path: Path) -> set[str]:
+    """Anchors that GitHub gives to the headings of a file."""
+    seen: dict[str, int] = {}
+    found = set()
+    text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    for title in re.findall(r"^#+ +(.*?)\s*$", text, flags=re.MULTILINE):
+        plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title).replace("`", "").replace("*", "")
+        slug = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
+        number = seen.get(slug, 0)
+        seen[slug] = number + 1
+        found.add(f"{slug}-{number}" if number else slug)
+    return found
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=shown)
+def test_links_between_files_lead_somewhere(path: Path) -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", without_code(path.read_text(encoding="utf-8"))):
+        parts = urlsplit(link)
+        if parts.scheme:
+            assert parts.scheme == "https", link
+            continue
+        target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+        assert target.exists(), link
+        assert ROOT in (target, *target.parents), link
+        if parts.fragment:
+            assert target.suffix == ".md", link
+            assert unquote(parts.fragment) in anchors(target), link
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=shown)
+def test_no_code_shows_the_backslash_of_a_table(path: Path) -> None:
+    """GitHub takes it away from a bar in code, the site shows it."""
+    assert not re.search(r"`[^`\n]*\\\|[^`\n]*`", path.read_text(encoding="utf-8"))
+
+
+def test_the_start_leads_to_fields_and_finite_elements() -> None:
+    table = (DOCS / "index.md").read_text(encoding="utf-8").partition("## Where to go")[2]
+    for page in ("validity.md", "fields.md", "finite_elements.md"):
+        assert f"]({page})" in table
+
+
+def test_pictures_are_small_and_used() -> None:
+    used = {p for path in TEXTS for p in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", path.read_text("utf-8"))}
+    for picture in (DOCS / "images").iterdir():
+        assert any(link.endswith(f"images/{picture.name}") for link in used), picture.name
+        assert picture.stat().st_size < 200_000, picture.name
+        if picture.suffix == ".png":
+            assert Image.open(picture).width <= 1600
+
+
+def test_the_house_is_drawn_as_it_is_built() -> None:
+    """Words and colours of the committed picture (matplotlib leaves each word in a comment)."""
+    pytest.importorskip("matplotlib")
+    spec = spec_from_file_location("figures", DOCS / "figures.py")
+    assert spec is not None
+    assert spec.loader is not None
+    figures = module_from_spec(spec)
+    spec.loader.exec_module(figures)
+    drawn, committed = (
+        re.findall(r'<!-- (.*?) -->\s*<g(?: style="fill: (#\w+)")?', picture)
+        for picture in (figures.house(), (DOCS / "images" / "house.svg").read_text(encoding="utf-8"))
+    )
+    assert {("contact", "#1f5fa8"), ("building", ""), ("tools", "")} <= set(drawn)
+    assert committed == drawn, "write it again: python docs/figures.py house"
+
+
+# Names of files in the text
+
+FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests", "tools")
+ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
+"""Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
+
+
+@functools.cache
+def tracked() -> str:
+    """All files of the repository, a line each, with a slash in front."""
+    paths = [*ROOT.glob("*.*"), *(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*"))]
+    return "".join(f"/{shown(path)}\n" for path in paths)
+
+
+def named_files(path: Path) -> list[str]:
+    """Files that a text names in `code`: all of code, and data by a path (a bare name is the user's)."""
+    text = re.sub(r"^( *)```.*?^\1```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    words = [word for code in re.findall(r"`([^`\n]*)`", text) for word in re.split(r"[\s,;()]+", code)]
+    code = [word for word in words if re.fullmatch(r"[\w./*-]+\.(py|c|h|mo)", word)]
+    data = [word for word in words if re.fullmatch(r"[\w./*-]+/[\w*-]+\.(toml|ssd|html|csv|inp)", word)]
+    return [name for name in (*code, *data) if not name.startswith(ELSEWHERE)]
+
+
+@pytest.mark.parametrize("path", [ROOT / "benchmarks" / "README.md", *TEXTS], ids=shown)
+def test_files_that_are_named_exist(path: Path) -> None:
+    """A name is a path in the repository or its end; KIND, NAME and * stand for a part of it."""
+    for name in named_files(path):
+        pattern = re.sub(r"KIND|NAME|\\\*", "[^/\n]+", re.escape(name))
+        assert re.search(rf"/{pattern}$", tracked(), flags=re.MULTILINE), name
+
+
+def test_a_file_that_is_gone_is_noticed(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("`joints/bolted_joint.py`, `fmu_src/native/runtime/drive.c`, `my_joint.toml` `dist/a.py`")
+    assert named_files(page) == ["joints/bolted_joint.py", "fmu_src/native/runtime/drive.c"]
+    for name in named_files(page):
+        assert f"/{name}\n" not in tracked()
+
+
+# What architecture.md lists, it lists completely
+
+ARCHITECTURE = (DOCS / "architecture.md").read_text(encoding="utf-8")
+SOURCES = [path for folder in ("core", "fmu_src", "tools") for path in (ROOT / folder).rglob("*.*")]
+
+
+def test_every_part_of_a_joint_is_explained() -> None:
+    python = "".join(path.read_text(encoding="utf-8") for path in SOURCES if path.suffix == ".py")
+    tools = set(re.findall(r'\bpart\((?:[^()"]|\([^()]*\)|\[[^]]*\])*"(\w+)"', python))
+    assert {"reduced", "export", "native", "ringing", "checks", "modelica"} <= tools
+    for tool in tools:
+        row = re.search(
+            rf"^\| `{tool}(\.py`|/__init__\.py` and templates) \| `[A-Z_a-z]+`", ARCHITECTURE, re.M
+        )
+        assert row, tool
+
+
+def test_every_repetition_in_c_is_listed() -> None:
+    repeating = [p for p in SOURCES if p.suffix == ".c" and "Repeats" in p.read_text("utf-8").split("\n")[0]]
+    assert repeating
+    for path in repeating:
+        assert f"| `{shown(path)}` |" in ARCHITECTURE, path.name
+
+
+def test_every_contract_of_the_imports_is_explained() -> None:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"][
+        "contracts"
+    ]
+    explained = ARCHITECTURE.partition("## Which way imports run")[2].partition("\n## ")[0]
+    assert len(re.findall(r"^\d\. \*\*", explained, flags=re.MULTILINE)) == len(contracts)
+
+
+TOOLS = [page for page in PAGES if page.parent.name == "tools" and page.name != "index.md"]
+
+
+@pytest.mark.parametrize("path", TOOLS, ids=shown)
+def test_a_tools_page_says_what_a_user_needs(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert len(TOOLS) == 8
+    assert re.search(r"^\*(Not run|Run) here", text, flags=re.MULTILINE)  # what was tried
+    for word in ("step size", "model exchange", "loop", "dist/"):
+        assert word in text.lower(), word
+    table = text.partition("## When it fails")[2]
+    assert table.count("\n|") >= 5
+
+
+# The site
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The built site; mkdocs stops at every page without a place and every broken link or anchor."""
+    pytest.importorskip("material")
+    out = tmp_path_factory.mktemp("site")
+    made = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(out)],
+        cwd=ROOT,
+        env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert made.returncode == 0, made.stderr
+    return out
+
+
+class Links(HTMLParser):
+    """What a page links to, loads and offers as anchors."""
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.loaded: list[str] = []
+        self.ids: set[str] = set()
+        self.feed(page.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        values = {k: v for k, v in attrs if v is not None}
+        if "id" in values:
+            self.ids.add(values["id"])
+        if tag == "a" and "href" in values:
+            self.links.append(values["href"])
+        if tag == "link" and values.get("rel") not in ("next", "prev", "canonical"):
+            self.loaded.append(values.get("href", ""))
+        if tag in ("script", "img", "iframe", "source") and "src" in values:
+            self.loaded.append(values["src"])
+
+
+def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
+    pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.name != "404.html"}
+    assert len(pages) == len(PAGES) + 3  # README, CONTRIBUTING and the laboratory are pages too
+    for page, content in pages.items():
+        for link in content.links:
+            parts = urlsplit(link)
+            if parts.scheme:
+                continue
+            target = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            assert target.exists(), (page.name, link)
+            if parts.fragment and target in pages:
+                assert unquote(parts.fragment) in pages[target].ids | {"__skip"}, (page.name, link)
+
+
+def test_the_site_needs_no_network(site: Path) -> None:
+    for page in site.rglob("*.html"):
+        for source in Links(page).loaded:
+            assert not urlsplit(source).scheme, (page.name, source)
+            assert not source.startswith("//"), (page.name, source)
+            if page.name != "404.html":
+                assert (page.parent / unquote(urlsplit(source).path)).exists(), (page.name, source)
+    for style in site.rglob("*.css"):
+        assert not re.search(r"url\(\s*['\"]?(https?:)?//", style.read_text(encoding="utf-8")), style.name
+
+
+def test_search_works_from_a_file(site: Path, tmp_path: Path) -> None:
+    """Opened as a file, where browsers start no worker: docs/javascripts/iframe-worker.js stands in."""
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if browser is None:
+        pytest.skip("needs Chromium")
+    quiet = "no-first-run disable-gpu disable-quic disable-sync disable-background-networking"
+    options = [f"--{name}" for name in f"headless no-sandbox {quiet} virtual-time-budget=8000".split()]
+    page = f"{(site / 'index.html').as_uri()}?q=lag_b"
+    done = subprocess.run(
+        [browser, *options, f"--user-data-dir={tmp_path}", "--dump-dom", page],
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    found = re.search(r'md-search-result__meta">(\d+) matching documents', done.stdout)
+    assert found is not None, done.stderr[-2000:]
+    assert int(found[1]) >= 2
+    assert "systems.html" in done.stdout
+
+
+# Code
+
+
+@pytest.mark.parametrize("path", GUIDE, ids=shown)
+def test_commands_parse(path: Path) -> None:
+    for line in commands(path):
+        words = shlex.split(line, comments=True)
+        if not words:
+            continue
+        if words[0] == "jointfmu":
+            parser().parse_args(words[1:])  # leaves with 2 if it does not parse
+            continue
+        assert words[0] in OTHERS, line
+        if words[0] == "python" and words[1] != "-m" and path.name != "tutorial.md":
+            assert (ROOT / words[1]).exists(), line
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=shown)
+def test_python_compiles(path: Path) -> None:
+    for block in blocks(path, "python"):
+        compile(block, path.name, "exec")
+
+
+class Tutorial(NamedTuple):
+    """Where the tutorial ran, and what each command said."""
+
+    folder: Path
+    said: dict[str, str]
+
+
+@pytest.fixture(scope="module")
+def tutorial(tmp_path_factory: pytest.TempPathFactory) -> Tutorial:
+    """Every command of the tutorial in an empty folder, as a user would; installing aside."""
+    page, folder = DOCS / "tutorial.md", tmp_path_factory.mktemp("tutorial")
+    (program,) = blocks(page, "python")
+    (folder / "simulate.py").write_text(program, encoding="utf-8")
+    said = {}
+    for line in commands(page):
+        words = shlex.split(line)
+        if words[:3] == ["python", "-m", "pip"]:
+            continue
+        start = [sys.executable, "-m", "jointfmu_tools.cli"] if words[0] == "jointfmu" else [sys.executable]
+        done = subprocess.run([*start, *words[1:]], cwd=folder, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, (line, done.stderr)
+        said[line] = done.stdout
+    return Tutorial(folder, said)
+
+
+def test_the_tutorial_ends_in_a_resonance_plot(tutorial: Tutorial) -> None:
+    folder, said = tutorial
+    for name in ("drive.toml", "fit.png", "ramp.csv", "ring.csv", "ring.png", "dist/ssp/robot_joint.ssp"):
+        assert (folder / name).stat().st_size > 0
+    partners = ("RotationalInertia", "TorqueProfile")
+    told = {f"{fmu}.fmu" for fmu in ("HarmonicDriveSpring", "HarmonicDriveCompliance", *partners)}
+    for version in ("fmi2", "fmi3"):
+        assert {path.name for path in (folder / "dist" / version).iterdir()} == told
+    header, *rows = (folder / "ramp.csv").read_text().splitlines()
+    ramp = dict(zip(header.split(","), map(float, rows[-1].split(",")), strict=True))
+    # the catalogue's angle at T2, kept by the fit within 1 %
+    assert ramp["phi_rel [rad]"] == pytest.approx(2.0 / 4700.0 + 4.9 / 6100.0, rel=0.01)
+    header, *rows = (folder / "ring.csv").read_text().splitlines()
+    frequencies = [float(row.split(",")[1]) for row in rows]
+    assert len(frequencies) == 6
+    assert frequencies == sorted(frequencies)
+    assert Image.open(folder / "ring.png").width > 1000
+    found = re.search(r"link at (-?\d+\.\d) deg, largest wind-up (\S+) rad", said["python simulate.py"])
+    assert found is not None
+    assert 1e-4 < float(found[2]) < 2e-3  # the pulse of 3 N m is seen, rated torque is not passed
+    last = list(said.values())[-1]
+    assert [row["load"] for row in json.loads(last)["rows"]] == [0.0, 1.0, 2.0, 4.0]
+
+
+@pytest.mark.parametrize("page", ["fmpy", "ecos", "mujoco"])
+def test_python_of_the_tools_that_were_run(tutorial: Tutorial, page: str) -> None:
+    for block in blocks(DOCS / "tools" / f"{page}.md", "python"):
+        for client in ("ecospy", "libcosimpy", "mujoco"):
+            if client in block and find_spec(client) is None:
+                pytest.skip(f"needs {client}")
+        done = subprocess.run([sys.executable, "-c", block], cwd=tutorial.folder, timeout=100)
+        assert done.returncode == 0

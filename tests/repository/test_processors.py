@@ -1,0 +1,81 @@
+"""What goes into FMUs and Modelica components is the same on every processor.
+
+OpenBLAS and numpy choose their code by the processor; their variables choose that of others, as far as this
+one runs it. The shipped parameter files, a plate, and a row of bolts.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jointfmu_tools import cli
+from numpy._core._multiarray_umath import __cpu_features__
+
+pytestmark = pytest.mark.slow
+
+AVX512 = "X86_V4,AVX512_ICL,AVX512F,AVX512CD,AVX512_SKX"
+"""What numpy calls them from 2.4 on, and before; a name that it does not know does nothing."""
+AVX = f"X86_V3,AVX2,FMA3,{AVX512}"
+SETTINGS = {
+    "Prescott, no AVX": ("", {"OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": AVX}),
+    "Haswell": ("AVX2", {"OPENBLAS_CORETYPE": "Haswell"}),
+    "Zen, no AVX-512": ("AVX2", {"OPENBLAS_CORETYPE": "Zen", "NPY_DISABLE_CPU_FEATURES": AVX512}),
+    "SkylakeX": ("AVX512F", {"OPENBLAS_CORETYPE": "SkylakeX"}),
+}
+"""{name: (what the processor must have, variables)}."""
+AGREE, PROOF = 1e-9, 1e-7
+"""Numbers of C and Modelica, each over itself; results of a proof over the largest of their column. Beside
+limits of the law its terms cancel: they differ by 1e-8."""
+NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+TOKEN = re.compile(r"\{[0-9a-f-]{36}\}")
+PLATES = {
+    "plate": ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60"],
+    "row": ["--plate", "120x25", "--bolts", "3xM8", "--at", "60x0"],
+}
+
+
+def made(folder: Path, variables: dict[str, str], paths: list[Path]) -> dict[str, str]:
+    """{what: text} with these variables."""
+    script = [sys.executable, str(Path(__file__).parents[1] / "support" / "numbers_of_all.py"), str(folder)]
+    run = subprocess.run([*script, *map(str, paths)], env=os.environ | variables, stdout=subprocess.PIPE)
+    assert run.returncode == 0
+    return json.loads(run.stdout)
+
+
+@pytest.fixture(scope="module")
+def paths(tmp_path_factory) -> list[Path]:
+    """Parameter files of a plate with four bolts and of one with a row of three."""
+    folder = tmp_path_factory.mktemp("files")
+    for name, given in PLATES.items():
+        more = ["--grip", "40", "--material", "steel", "--Ra", "0.8", "--out", str(folder / f"{name}.toml")]
+        assert cli.main(["new", "bolted-joint", *given, *more]) == 0
+    return sorted(folder.iterdir())
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory, paths) -> dict[str, str]:
+    """As this process has it."""
+    return made(tmp_path_factory.mktemp("here"), {}, paths)
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_numbers_are_those_of_another_processor(tmp_path, here, paths, name):
+    needed, variables = SETTINGS[name]
+    if needed and not __cpu_features__.get(needed, False):
+        pytest.skip(f"this processor has no {needed}")
+    there = made(tmp_path, variables, paths)
+    assert there.keys() == here.keys()
+    for what, text in here.items():
+        if what.endswith(".csv"):
+            one, other = (np.genfromtxt(t.splitlines()[1:], delimiter=",") for t in (text, there[what]))
+            assert np.all(np.abs(other - one) <= PROOF * np.max(np.abs(one), axis=0)), what
+            continue
+        one, other = (TOKEN.sub("", t) for t in (text, there[what]))
+        assert NUMBER.sub("#", one) == NUMBER.sub("#", other), what
+        values = (np.array([float(n) for n in NUMBER.findall(t)]) for t in (one, other))
+        np.testing.assert_allclose(*values, rtol=AGREE, atol=0.0, err_msg=what)

@@ -1,0 +1,148 @@
+"""The README's code runs and its figures are those of the product."""
+
+import re
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_tools import cli
+from jointfmu_tools.fields import csvfile
+from jointfmu_tools.fields.contact import ContactField
+
+from jointfmu.mechanics.footprint import bolts
+from jointfmu.parameters import default
+from jointfmu.published import validation
+
+ROOT = Path(__file__).resolve().parents[2]
+ASSEMBLY = "models/assemblies/box_specimen.toml"
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, native):
+    place = tmp_path_factory.mktemp("readme")
+    shutil.copytree(native, place / "dist", ignore=shutil.ignore_patterns(".*"))
+    native_build("RotationalInertia", partner_parameters("RotationalInertia"), place / "dist" / "fmi2", "2")
+    (place / "my_joint.toml").write_text((ROOT / "models/bolted_joint/box_specimen.toml").read_text())
+    (place / "models/assemblies").mkdir(parents=True)
+    (place / ASSEMBLY).write_text((ROOT / ASSEMBLY).read_text())
+    joint = default("bolted_joint").values
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
+        shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
+    field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
+    (place / "my_field.csv").write_text(csvfile.text(field))
+    return place
+
+
+def test_python_blocks_run(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    assert len(blocks("python")) == 2
+    names = {}
+    for block in blocks("python"):
+        exec(compile(block, "README.md", "exec"), names)
+    # the ramp of the first block ends at 5 N m, the second evaluates 1000 pressures
+    assert names["result"]["K_WTS"][-1] > names["result"]["K_WTS"][0] > 1e3
+    assert names["state"]["K_N"].shape == (1000,)
+
+
+commands = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("jointfmu ")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("line", commands)
+def test_commands_run(line, folder, monkeypatch, capsys):
+    monkeypatch.chdir(folder)
+    assert cli.main(shlex.split(line, comments=True)[1:]) == 0
+    assert capsys.readouterr().out
+
+
+def test_every_kind_of_command_is_shown():
+    assert {line.split()[1] for line in commands} == {
+        "new",
+        "catalogue",
+        "law",
+        "parameters",
+        "report",
+        "build",
+        "ramp",
+        "prove",
+        "validate",
+        "surface",
+        "fit",
+        "uncertainty",
+        "sweep",
+        "modelica",
+        "export",
+        "footprint",
+        "modes",
+        "ring",
+        "system",
+    }
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return validation.validate()
+
+
+def predicted(count):
+    """So many predictions, as words."""
+    return "1 is a prediction" if count == 1 else f"{count} are predictions"
+
+
+def test_counts_are_those_of_the_comparison(rows):
+    found = validation.counts(rows)
+    n, lost = found.roles, sum(found.guessed.values()) - sum(found.nearer.values())
+    for said in (
+        f"{found.numbers} numbers are compared, {found.printed} printed in the papers and {found.derived} "
+        f"computed from printed ones, and {n['claim']} claims",
+        f"{n['calibration']} were used to calibrate, {n['circular']} are met by construction, "
+        f"{n['constant']} are constants and {n['self-check']} self-checks",
+        f"{n['interpolation']} lie between calibrated points",
+        f"nearer than the law in {lost} of the {n['interpolation']}",
+        f"{predicted(n['prediction'])}: ",
+    ):
+        assert said in README, said
+
+
+def test_errors_are_those_of_the_comparison(rows):
+    between = [row for row in rows if row.point.role == "interpolation"]
+    worst = {
+        unit: max(abs(row.error) for row in between if (row.point.unit == "%") == (unit == "points"))
+        for unit in ("share", "points")
+    }
+    said = re.search(
+        r"K_TS is met within ([\d.]+) %, its change .*? within ([\d.]+) percentage points", README
+    )
+    assert said is not None
+    assert float(said[1]) == round(100.0 * worst["share"], 1)  # to the printed digit
+    assert float(said[2]) == round(worst["points"], 1)
+
+
+def test_the_first_screen_says_how_far_it_holds(rows):
+    """In the README before its first picture and, in the same words, on the guide's start."""
+    start = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    here, there = (re.search(r"\n(\*\*How far it holds\..*)\n", text) for text in (README, start))
+    assert here is not None
+    assert there is not None
+    assert here.start() < README.index("![")
+    assert re.sub(r"\(.*?\)", "", here[1]) == re.sub(r"\(.*?\)", "", there[1])
+    found = validation.counts(rows)
+    said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
+    assert said in here[1]
+    assert re.search(r"\| \[Validity\]\(validity\.md\)", start.partition("## Where to go")[2])
+
+
+def test_picture_and_links_exist():
+    links = re.findall(r"\]\((?!https?:)([^)#]+)\)", README)
+    assert links
+    for link in links:
+        assert (ROOT / link).exists(), link

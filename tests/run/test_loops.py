@@ -1,0 +1,164 @@
+"""Loops of FMUs: how the input is driven, which output belongs to it, what is lost."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.bolted_joint.fit import loop as shear
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
+
+from jointfmu.parameters import default
+from jointfmu.run import loops, ramp
+
+HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}
+SET = [f"{name}={value}" for name, value in HYSTERESIS.items()]
+AMPLITUDES = (1e-4, 1e-3)
+FINE = loops.Swing(shape="sine", points=400)
+
+
+@pytest.fixture(scope="module")
+def drive(native):
+    """Loops of a drive with hysteresis."""
+    fmu = native / "fmi2" / "HarmonicDriveSpring.fmu"
+    return loops.run(fmu, "phi2", AMPLITUDES, FINE, settings=HYSTERESIS)
+
+
+@pytest.mark.parametrize("shape", loops.SHAPES)
+def test_first_loading_then_whole_cycles(shape):
+    points = loops.Swing(about=1.0, shape=shape, points=8, cycles=2).along(3.0)
+    near = 1.5 if shape == "triangle" else 3.0 * np.sqrt(0.5)
+    cycle = [0.0, near, 3.0, near, 0.0, -near, -3.0, -near]
+    np.testing.assert_allclose(points, 1.0 + np.array([*cycle, *cycle, *cycle[:3]]), atol=1e-12)
+
+
+@pytest.mark.parametrize("amplitude", range(2))
+def test_hysteresis_appears(drive, amplitude):
+    """Area by Masing's rule, from the law and not from the FMU; trapezoids of 400 points, and the sliders."""
+    row = drive.rows()[amplitude]
+    law = hysteresis.law(default("harmonic_drive").with_values(HYSTERESIS, "user", "test").values)
+    u = np.array([AMPLITUDES[amplitude]])
+    assert row["loss"] == pytest.approx(float(law.area(u)[0]), rel=1e-3)
+    assert row["loss"] == pytest.approx(row["E_loss"], rel=1e-3)
+    force = law.friction(u) + law.elastic.force(u)
+    assert row["secant_stiffness"] == pytest.approx(float(force[0] / u[0]), rel=1e-9)
+    assert row["loss_factor"] == pytest.approx(row["loss"] / (np.pi * force[0] * u[0]), rel=1e-12)
+
+
+def test_force_acts_on_the_joint(drive):
+    """tau2 is the torque on the flange, against the motion."""
+    assert (drive.motion, drive.force, drive.sign, drive.units) == ("phi2", "tau2", -1.0, ("rad", "N.m"))
+    loop = drive.loops[1]
+    np.testing.assert_array_equal(loop.force, -loop.result.columns["tau2"])
+    assert loop.force[100] == loop.force.max() == pytest.approx(loop.force[-1], rel=1e-9)
+
+
+@pytest.mark.parametrize("version", ["fmi2", "fmi3"])
+def test_without_memory_nothing_is_lost(native, version):
+    """A force drives, a motion answers; about a working point, as the contact takes no pull."""
+    fmu = native / version / "GearContact.fmu"
+    found = loops.run(fmu, "f", [100.0, 300.0], loops.Swing(about=500.0))
+    assert (found.motion, found.force) == ("s_rel", "f")
+    assert [row["loss"] for row in found.rows()] == [0.0, 0.0]
+    assert found.rows()[1]["force"] == 300.0
+    assert "E_loss" not in found.rows()[0]
+
+
+@pytest.mark.parametrize(
+    ("fmu", "input_name", "expected"),
+    [
+        ("BoltedJoint", "s_rel_x", "f_x"),
+        ("BoltedJoint", "s_rel_z", "f_z"),
+        ("HarmonicDriveSpring", "phi1", "tau1"),
+        ("HarmonicDriveSpring", "phi2", "tau2"),
+        ("HarmonicDriveCompliance", "tau", "phi_rel"),
+        ("GearContact", "f", "s_rel"),
+        ("GearMesh", "phi1", "tau1"),
+    ],
+)
+def test_conjugate_output(native, fmu, input_name, expected):
+    with ramp.unpacked(native / "fmi3" / f"{fmu}.fmu") as (_, description):
+        assert loops.conjugate(*loops.variables(description), input_name, None, fmu) == expected
+
+
+def test_the_command_prints_a_table_and_writes_what_fit_reads(native, tmp_path, capsys):
+    fmu, path, picture = native / "fmi3" / "HarmonicDriveSpring.fmu", tmp_path / "l.csv", tmp_path / "l.png"
+    words = ["ramp", fmu, "--input", "phi2", "--loop", *AMPLITUDES, "--set", *SET, "--csv", path]
+    assert cli.main([*map(str, words), "--plot", str(picture)]) == 0
+    head, *rows = capsys.readouterr().out.splitlines()
+    assert head.startswith("angle [rad],torque [N.m],secant_stiffness [N.m/rad],loss [J],loss_factor [1]")
+    assert len(rows) == len(AMPLITUDES) + 2
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert path.read_text().startswith("# angle = phi2, torque = -tau2\nrun [1],angle [rad],torque [N.m],")
+    found = hysteresis.fit(path).solution.values
+    assert found == pytest.approx(HYSTERESIS, rel=1e-6)
+
+
+def test_loops_of_a_bolted_joint_give_its_friction_and_level_back(native, tmp_path):
+    """The FMU's few sliders and patches against the law of all nodes: loops alike within 2 %."""
+    path, true = tmp_path / "shear.csv", default("bolted_joint").values
+    fmu, amplitudes = native / "fmi3" / "BoltedJoint.fmu", ["5e-7", "2e-6", "6e-6"]
+    words = ["--input", "s_rel_x", "--loop", *amplitudes, "--set", "preload=9e3", "--csv", path, "--json"]
+    assert cli.main([*map(str, ["ramp", fmu, *words])]) == 0
+    found = shear.fit(path, free=["mu", "surface.G"], preload=9e3)
+    assert found.solution.values["mu"] == pytest.approx(true.mu, rel=2e-3)  # as the force in gross slip
+    assert found.facts["shear_stiffness"][0] == pytest.approx(shear.rest_stiffness(true, 9e3), rel=0.01)
+    assert found.facts["loop_area"][0] == pytest.approx(found.facts["loop_area_law"][0], rel=0.01)
+
+
+def test_the_command_prints_json(native, capsys):
+    fmu = str(native / "fmi2" / "BoltedJoint.fmu")
+    words = [
+        "--input",
+        "s_rel_x",
+        "--loop",
+        "1e-6",
+        "--points",
+        "40",
+        "--cycles",
+        "1",
+        "--set",
+        "preload=9e3",
+    ]
+    assert cli.main(["ramp", fmu, *words, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document["motion"], document["force"], document["sign"]) == ("s_rel_x", "f_x", -1.0)
+    (row,) = document["rows"]
+    assert row["motion"] == pytest.approx(1e-6)
+    assert len(row["forces"]) == 51
+    assert row["closed"] == 10
+
+
+GEAR = ["--input", "f"]
+SHEAR = ["--input", "s_rel_x", "--loop", "1e-6"]
+
+
+@pytest.mark.parametrize(
+    ("fmu", "words", "said"),
+    [
+        ("GearContact", GEAR, "expected --to with --step, or --loop"),
+        ("GearContact", [*GEAR, "--to", "1"], "expected --to with --step, or --loop"),
+        ("GearContact", [*GEAR, "--to", "1", "--step", "1", "--loop", "1"], "--loop and --to are both given"),
+        (
+            "GearContact",
+            [*GEAR, "--to", "1", "--step", "1", "--points", "8"],
+            "--points is given without --loop",
+        ),
+        ("GearContact", [*GEAR, "--loop", "-1"], "loop = -1 is outside (0, inf)"),
+        ("GearContact", [*GEAR, "--loop", "1", "--about", "nan"], "about = nan is outside (-inf, inf)"),
+        ("BoltedJoint", [*SHEAR, "--points", "10"], "points = 10, allowed are multiples of 4 from 8"),
+        ("BoltedJoint", [*SHEAR, "--cycles", "0"], "cycles = 0 is outside [1, 1000]"),
+        ("BoltedJoint", [*SHEAR, "--output", "K_xx"], "'K_xx' is no output whose product with s_rel_x"),
+        ("BoltedJoint", [*SHEAR, "--plot", "a.pdf"], "'.pdf' is no picture"),
+        (
+            "BoltedJoint",
+            ["--input", "v_rel_x", "--loop", "1"],
+            "no output makes an energy with v_rel_x [m/s]",
+        ),
+        ("BoltedJoint", ["--input", "K_xx", "--loop", "1"], "unknown input 'K_xx', allowed are preload"),
+        ("BoltedJoint", [*SHEAR, "--set", "mu=-1"], "mu = -1"),
+    ],
+)
+def test_refusals(native, fmu, words, said, capsys):
+    assert said in refused_line(capsys, "ramp", native / "fmi2" / f"{fmu}.fmu", *words)

@@ -1,0 +1,162 @@
+"""What the shared tests ask of a joint: `JOINT` in tests/joints/KIND/cases.py fills in these forms."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+Inputs = dict[str, float]
+
+
+class Beyond(NamedTuple):
+    """Where the table ends: an input far beyond it, what answers, its stiffness, what the warning says.
+
+    inverse : the stiffness is that of the input over the answer, not of the answer over the input
+    lever   : of the input, by which the answer's slope is larger than the stiffness
+    """
+
+    driven: str
+    far: float
+    answer: str
+    stiffness: str
+    text: str
+    inverse: bool = False
+    lever: float = 1.0
+
+
+class Refused(NamedTuple):
+    """A parameter outside its interval, and both as the refusal shows them."""
+
+    parameter: str
+    value: float
+    shown: str
+    allowed: str
+
+
+class Study(NamedTuple):
+    """Distributions of parameters and inputs, and how many samples are compared with the spring."""
+
+    given: Mapping[str, str]
+    samples: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """What its model description says.
+
+    inputs, results, parameters : the contract, {variable: unit}; the FMU may have more
+    calibration : some of the parameters that say they are calibrated
+    shown       : {variable: display unit}
+    flanges     : {terminal: its variables}
+    domain      : or domains of its terminals
+    steps       : of the default experiment; None if they are no whole number to the last bit
+    linear      : an output is linear in an input, with a factor that FMI may call constant or tunable
+    others      : parameters with which such a constant factor stays
+    """
+
+    inputs: Mapping[str, str]
+    results: Mapping[str, str]
+    parameters: Mapping[str, str]
+    calibration: frozenset[str] = frozenset()
+    shown: Mapping[str, str]
+    flanges: Mapping[str, str]
+    domain: str
+    steps: int | None = None
+    linear: bool = False
+    others: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numbers:
+    """States in which its outputs are compared, and how smooth they are.
+
+    outputs : (spring, inputs) -> outputs, by the spring's own function
+    ranges  : inputs of random states, all inside the tables
+    place   : makes inputs of random numbers in `ranges`, where not each range stands for itself
+    span    : inputs over the range of the tables, for the benchmark
+    state   : one state with nothing zero
+    sizes   : of inputs, for differences, where `state` does not give them
+    good    : what is set for an ordinary state, the other inputs zero
+    rest    : inputs that are not zero where nothing moves
+    jumps   : outputs that hold the third derivative of a table, which jumps at its nodes
+    kinks   : outputs that have kinks or jumps themselves, as friction does
+    """
+
+    outputs: Callable[[Any, Inputs], Mapping[str, Any]]
+    ranges: Mapping[str, tuple[float, float]]
+    place: Callable[[Inputs], Inputs] = dict
+    span: Mapping[str, tuple[float, float]]
+    state: Inputs
+    sizes: Inputs = field(default_factory=dict)
+    good: Inputs
+    rest: Inputs = field(default_factory=dict)
+    jumps: frozenset[str] = frozenset()
+    kinks: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tuning:
+    """Which parameters act, and how far they are changed.
+
+    base           : parameters with which every other one has its effect
+    also           : further ones, with which outputs depend on inputs that they do not depend on with `base`
+    moved          : {parameter: value} where 0.1 % more would not do
+    counted        : {parameter: (least, most)} of whole numbers at random
+    without_effect : parameters that no output shows
+    tuned          : other parameters, each of which changes an output
+    baked          : sets of changes, each for a parameter file of its own
+    """
+
+    base: Mapping[str, Any] = field(default_factory=dict)
+    also: Mapping[str, Any] = field(default_factory=dict)
+    moved: Mapping[str, float] = field(default_factory=dict)
+    counted: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+    without_effect: frozenset[str] = frozenset()
+    tuned: dict[str, Any]
+    baked: Sequence[dict[str, Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refusals:
+    """What it refuses, and where it warns.
+
+    beyond    : ends of tables
+    refused   : parameters outside their intervals
+    unfit     : parameters that do not fit together, and words of the refusal
+    forbidden : further settings that are refused
+    absurd    : values inside their intervals that are refused by name or give numbers
+    """
+
+    beyond: Sequence[Beyond]
+    refused: Sequence[Refused]
+    unfit: Sequence[tuple[dict[str, Any], tuple[str, ...]]] = ()
+    forbidden: Sequence[dict[str, Any]] = ()
+    absurd: Sequence[tuple[str, float]] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """An FMU, by what the shared tests of a kind need of it."""
+
+    name: str
+    description: Description
+    numbers: Numbers
+    tuning: Tuning
+    refusals: Refusals
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """A joint.
+
+    cases   : of its FMUs
+    varied  : a parameter of its surface that may change a little
+    scaled  : another one that may be scaled a little
+    studies : of its uncertainty
+    unloaded : outputs that are not zero without load
+    """
+
+    cases: Sequence[Case]
+    varied: str
+    scaled: str
+    studies: Mapping[str, Study]
+    unloaded: frozenset[str] = frozenset()

@@ -1,0 +1,104 @@
+"""What the shared tests know of each joint (tests/joints/KIND/cases.py), and the package behind its FMUs."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from case import Case, Inputs, Joint
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.mechanics.curve import MAX_ERROR
+from jointfmu.parameters import default
+from jointfmu.quantity import build as make
+from jointfmu.quantity import flatten
+
+SAME = 1e-12
+"""The python flavour calls the package with the same numbers: round-off of another order of sums at most."""
+TABLE = 5.0 * MAX_ERROR
+"""FMU against a law that is not tabulated: what a table may err, times 5 where errors add up."""
+
+
+def load(kind: str) -> Joint:
+    """`JOINT` of tests/joints/KIND/cases.py; fails if a joint has none."""
+    path = Path(__file__).parents[1] / "joints" / kind / "cases.py"
+    assert path.is_file(), f"{path} is missing: the shared tests need it"
+    spec = spec_from_file_location(f"{kind}_cases", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    joint = module.JOINT
+    assert [case.name for case in joint.cases] == [model.name for model in KINDS[kind].models]
+    return joint
+
+
+JOINTS: dict[str, Joint] = {kind: load(kind) for kind in KINDS}
+"""{joint: what the tests know of it}."""
+CASES: dict[str, Case] = {case.name: case for joint in JOINTS.values() for case in joint.cases}
+"""{FMU: what the tests know of it}."""
+NAMES = list(MODELS)
+GOOD: dict[str, Inputs] = {name: case.numbers.good for name, case in CASES.items()}
+STATE: dict[str, Inputs] = {name: case.numbers.state for name, case in CASES.items()}
+RANGES = {name: dict(case.numbers.ranges) for name, case in CASES.items()}
+PUBLIC: dict[str, dict[str, dict[str, str]]] = {
+    name: {
+        "input": dict(case.description.inputs),
+        "output": dict(case.description.results),
+        "parameter": dict(case.description.parameters),
+    }
+    for name, case in CASES.items()
+}
+"""The contract: {FMU: {causality: {variable: unit}}}; an FMU may have more."""
+BEYOND = [(name, beyond) for name, case in CASES.items() for beyond in case.refusals.beyond]
+TUNED = {name: case.tuning.tuned for name, case in CASES.items()}
+
+
+def random_inputs(name: str, count: int, seed: int) -> list[Inputs]:
+    """Inputs at random, inside the tables."""
+    rng, ranges = np.random.default_rng(seed), CASES[name].numbers.ranges
+    drawn = [{k: float(rng.uniform(*limits)) for k, limits in ranges.items()} for _ in range(count)]
+    return [CASES[name].numbers.place(inputs) for inputs in drawn]
+
+
+def parameters(name: str, changes: dict[str, Any] | None = None) -> Any:
+    """The default parameter set behind an FMU, changed."""
+    values = default(MODELS[name].joint).values
+    return make(type(values), flatten(values) | (changes or {}))
+
+
+@cache
+def _tabulated(joint: str, p: Any) -> Any:
+    return KINDS[joint].spring(p)
+
+
+@dataclass(frozen=True)
+class Law:
+    """The joint of the package behind an FMU: outputs as a function of inputs, from rest or a memory."""
+
+    name: str
+    spring: Any
+    memory: Any = None
+
+    def __call__(self, inputs: Inputs) -> dict[str, float]:
+        if self.memory is None:
+            found = CASES[self.name].numbers.outputs(self.spring, inputs)
+        else:
+            found = MODELS[self.name].evolve(self.spring, inputs, self.memory)[0]
+        return {k: float(x) for k, x in found.items()}
+
+    def after(self, inputs: Inputs | None = None) -> "Law":
+        """When these inputs (the others zero) were accepted, as at the end of initialization or by a step."""
+        model = MODELS[self.name]
+        if model.evolve is None:
+            return self
+        before = model.rest(self.spring) if self.memory is None else self.memory
+        given = dict.fromkeys((v.name for v in model.inputs), 0.0) | (inputs or {})
+        return replace(self, memory=model.evolve(self.spring, given, before)[1])
+
+
+def law(name: str, p: Any) -> Law:
+    """The package's joint behind an FMU, at rest."""
+    return Law(name, _tabulated(MODELS[name].joint, p))

@@ -1,0 +1,41 @@
+"""Print as JSON all numbers that go into FMUs and Modelica components of the files of parameters, as texts.
+
+python tests/support/numbers_of_all.py FOLDER [FILE ...]
+
+The Modelica library is written into the folder; the files come beside those that are shipped.
+"""
+
+import json
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+from jointfmu_fmu_src.native.generate import sources
+from jointfmu_fmu_src.proof import proof
+from jointfmu_tools.cli import main
+
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import load
+
+GENERATED = ("data.c", "law.c", "law.h", "variables.c")
+
+
+def texts(folder: Path, paths: list[Path]) -> dict[str, str]:
+    """{what: text} of sources, of the proofs' results and of the Modelica library."""
+    shipped = files("jointfmu_models")
+    found: dict[str, str] = {}
+    for path in [*(Path(str(p)) for kind in KINDS for p in sorted((shipped / kind).glob("*.toml"))), *paths]:
+        file = load(path)
+        for name in (name for name, model in MODELS.items() if model.joint == file.joint):
+            model = MODELS[name].of(file.joint, file.values)
+            made = {k: v for k, v in sources(name, file).items() if k in GENERATED}
+            made |= {k: v.decode() for k, v in proof(model, file).items() if k.endswith(".csv")}
+            found |= {f"{path.stem}/{name}/{k}": text for k, text in made.items()}
+    sys.stdout = sys.stderr
+    assert main(["modelica", "--out", str(folder)]) == 0
+    return found | {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*.mo"))}
+
+
+if __name__ == "__main__":
+    found = texts(Path(sys.argv[1]), [Path(path) for path in sys.argv[2:]])
+    json.dump(found, sys.__stdout__)

@@ -1,0 +1,68 @@
+"""What the tests of the proof inside FMUs share: changed copies of FMUs, and the command's JSON."""
+
+import json
+import zipfile
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import run_host
+from jointfmu_tools import cli
+
+from jointfmu.proof.manifest import ATTRIBUTES, FOLDER, MANIFEST, NAME
+
+Change = Callable[[str, bytes], bytes | None]
+BOTH = ["co-simulation", "model exchange"]
+
+
+def needs(importer: str) -> None:
+    package = {"ecos": "ecospy", "libcosim": "libcosimpy"}.get(importer, "fmpy")
+    if find_spec(package) is None or run_host(f"import {package}").returncode:
+        pytest.skip(f"needs {package} (in the extra 'test' on Linux x86_64), ecos Debian's libtbb12")
+
+
+def copy(source: Path, target: Path, change: Change, **more: bytes) -> Path:
+    """A copy of an FMU with members changed, left out (None) or added."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in old.namelist():
+            data = change(name, old.read(name))
+            if data is not None:
+                new.writestr(name, data)
+        for name, data in more.items():
+            new.writestr(f"{FOLDER}/{name}", data)
+    return target
+
+
+def replaced(part: str, old: bytes, new: bytes) -> Change:
+    """A change of one text in the members whose path ends with `part`."""
+
+    def change(name: str, data: bytes) -> bytes:
+        if not name.endswith(part):
+            return data
+        assert old in data, (name, old)
+        return data.replace(old, new, 1)
+
+    return change
+
+
+def other_manifest(source: Path, target: Path, experiments: str, **files: bytes) -> Path:
+    """A copy of an FMU with a manifest of one file of experiments, in place of what it carries."""
+    head = f'xmlns:fmi-ls="{ATTRIBUTES}" fmi-ls:fmi-ls-name="{NAME}" fmi-ls:fmi-ls-version="1.0.0-alpha.1"'
+    related = '<Related type="application/x-ma-ls-experiments" source="own.exp" role="experiment"/>'
+    texts = {
+        Path(MANIFEST).name: f"<fmiReferences {head}>{related}</fmiReferences>".encode(),
+        "own.exp": f'<Experiments name="own">{experiments}</Experiments>'.encode(),
+    }
+    return copy(
+        source, target, lambda name, data: None if name.startswith(FOLDER) else data, **texts, **files
+    )
+
+
+def proved(capsys: pytest.CaptureFixture[str], fmu: Path, *words: str, status: int = 0) -> dict[str, Any]:
+    """What `jointfmu prove --json` prints, with the exit status that it must have."""
+    found = cli.main(["prove", str(fmu), *words, "--json"])
+    out, err = capsys.readouterr()
+    assert (found, err) == (status, ""), out[-2000:]
+    return dict(json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON")))

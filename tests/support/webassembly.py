@@ -1,0 +1,125 @@
+"""The laboratory's modules in a WebAssembly runtime, and the native FMUs of the same parameter files."""
+
+import zipfile
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import Field
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from jointfmu_fmu_src.native.compiler import file_name, libraries
+from jointfmu_fmu_src.native.description import fmi3_xml
+from jointfmu_fmu_src.native.generate import sources, token
+from jointfmu_tools.laboratory.modules import Module
+
+from jointfmu.quantity import build as make
+from jointfmu.quantity import flatten
+
+
+def native_fmu(module: Module, folder: Path) -> Path:
+    """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
+    name, file = module.model.name, module.files[0]
+    files = sources(name, file)
+    units = [unit for unit in files if unit.endswith(".c") and unit != "fmi2.c"]
+    here = fmpy.platform_tuple
+    (library,) = libraries(name, files, units, [here]).values()
+    folder.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
+        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, token(files), "tunable"))
+        archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
+    return folder / f"{name}.fmu"
+
+
+class Instance:
+    """An instance in wasmtime, with the methods of `conftest.Fmu`."""
+
+    def __init__(self, module: Module, binary: bytes) -> None:
+        import wasmtime
+
+        self.store = wasmtime.Store()
+        compiled = wasmtime.Module(self.store.engine, binary)
+        self.exports = wasmtime.Instance(self.store, compiled, []).exports(self.store)
+        self("_initialize")
+        self.it = self("lab_new")
+        model = module.model
+        self.outputs = [v.name for v in model.outputs]
+        names = [*(v.name for v in model.inputs), *self.outputs, *model.parameter_fields()]
+        self.references = {name: i for i, name in enumerate(names, start=1)}
+
+    def __call__(self, function: str, *arguments: Any) -> Any:
+        return self.exports[function](self.store, *arguments)
+
+    def start(self, values: Mapping[str, Any]) -> bool:
+        """From rest with parameters and inputs; whether they are accepted."""
+        self("lab_reset", self.it)
+        self.set(values)
+        return self("lab_begin", self.it) == 0
+
+    def set(self, values: Mapping[str, Any]) -> None:
+        for name, value in values.items():
+            self("lab_set", self.it, self.references[name], float(value))
+
+    def step(self) -> bool:
+        return self("lab_step", self.it, 1.0) == 0
+
+    def get(self) -> dict[str, float]:
+        return {name: self("lab_get", self.it, self.references[name]) for name in self.outputs}
+
+    def derivative(self, output: str, known: str) -> float:
+        return self("lab_derivative", self.it, self.references[output], self.references[known])
+
+    def map(self) -> Any:
+        """Rows (n, 4) of x, y, share and value over the contact."""
+        at, memory = self("lab_map", self.it), self.exports["memory"]
+        n = self("lab_map_size")
+        return np.frombuffer(memory.read(self.store, at, at + 32 * n)).reshape(n, 4)
+
+    @property
+    def said(self) -> list[str]:
+        """Messages since they were last asked for."""
+        at, memory = self("lab_said"), self.exports["memory"]
+        return bytes(memory.read(self.store, at, at + 768)).split(b"\0")[0].decode().splitlines()
+
+
+def random_values(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+    """Parameters around those of the first file, inside their intervals and the limits that they set each
+    other; Booleans too if `switched`."""
+    values = module.files[0].values
+    while True:
+        found = _drawn(module, rng, switched)
+        with suppress(ValueError):
+            make(type(values), flatten(values) | found)
+            return found
+
+
+def refused_values(module: Module, rng: np.random.Generator) -> dict[str, Any]:
+    """The same, but for one number on the wrong side of its interval."""
+    fields = module.model.parameter_fields()
+    bounded = [name for name, item in fields.items() if np.isfinite(_ends(item)[0])]
+    name = str(rng.choice(bounded))
+    return random_values(module, rng, False) | {name: _ends(fields[name])[0] - rng.uniform(0.1, 1.0)}
+
+
+def _ends(item: Field[Any]) -> tuple[float, float]:
+    """Of a parameter's interval; none of a Boolean."""
+    interval = item.metadata.get("interval")
+    return (interval.low, interval.high) if interval else (-np.inf, np.inf)
+
+
+def _drawn(module: Module, rng: np.random.Generator, switched: bool) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    flat = module.files[0].flat
+    for name, item in module.model.parameter_fields().items():
+        value, (low, high) = flat[name], _ends(item)
+        width = 0.02 * (high - low)
+        if isinstance(value, bool):
+            found[name] = bool(rng.integers(2)) if switched else value
+        elif item.metadata["whole"]:
+            found[name] = value
+        elif np.isfinite(width):
+            found[name] = float(rng.uniform(max(low, value - width), min(high, value + width)))
+        else:
+            found[name] = float(value * np.exp(rng.normal(0.0, 0.15)))
+    return found

@@ -1,0 +1,385 @@
+"""Made surfaces are identified again; intervals, ranges, pairs and joints are what they claim to be."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.surfaces import synthesis
+from jointfmu_tools.surfaces.fit import fit
+from jointfmu_tools.surfaces.form import without_form
+from jointfmu_tools.surfaces.heights import Areal, Profile
+from jointfmu_tools.surfaces.identify import identify
+from jointfmu_tools.surfaces.joint_parameters import changes, with_surface
+from jointfmu_tools.surfaces.results import Roughness
+from jointfmu_tools.surfaces.spectrum import psd
+from jointfmu_tools.surfaces.structure import structure
+from scipy.integrate import quad
+
+from jointfmu.contact import fractal
+from jointfmu.joints import KINDS
+from jointfmu.parameters import default, dump, load
+
+pytestmark = pytest.mark.slow
+
+SIZE, GAMMA = 1e-3, 1.5
+
+
+def waves(points):
+    return synthesis.Waves(size=SIZE, points=points, gamma=GAMMA)
+
+
+def gaussian_profile(points, H, G, seed, dx=1e-6):
+    """Gaussian self-affine profile, cut out of a periodic one four times as long."""
+    n = 4 * points
+    f = np.fft.rfftfreq(n, dx)
+    f[0] = np.inf
+    noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(n))
+    z = np.fft.irfft(noise * np.sqrt(0.5 * fractal.wave_power(f, H, G) / (f * n * dx) * n), n=n)
+    return Profile(z=z[:points].copy(), dx=dx, name="Gaussian")
+
+
+@pytest.mark.parametrize("H", [0.2, 0.5, 0.8])
+def test_structure_constant_is_the_integral_of_the_spectrum(H):
+    f, whole = 1.0, 0.0
+    for low, high in zip(np.arange(0, 400), np.arange(1, 401), strict=True):  # one period each
+        whole += quad(lambda u: u ** (-1 - 2 * H) * (1 - np.cos(2 * np.pi * u)), low, high)[0]
+    whole += 400.0 ** (-2 * H) / (2 * H)  # the cosine averages out beyond
+    assert fractal.structure_constant(H) * f == pytest.approx(whole, rel=1e-5)
+
+
+@pytest.mark.parametrize("H", [0.2, 0.5, 0.8])
+def test_profile_share_is_the_mean_over_directions(H):
+    mean = quad(lambda a: np.cos(a) ** (2 * H), 0.0, np.pi / 2)[0] / (np.pi / 2)
+    assert fractal.profile_share(H) == pytest.approx(mean, rel=1e-8)
+    G = 1e-9
+    profile = fractal.wave_power(1e5, H, G) * fractal.profile_share(H)
+    isotropic = fractal.areal_roughness(1.0, H) ** (2 * (1 - H))
+    assert fractal.wave_power(1e5, H, G) == pytest.approx(profile * isotropic, rel=1e-12)
+
+
+def test_zhao_equation_30():
+    G, D, omega = 1.21e-8, 1.42, 1e5
+    g = fractal.zhao_roughness(G, 2.0 - D, GAMMA)
+    printed = g ** (2 * (D - 1)) / (2 * np.log(GAMMA)) * omega ** (2 * D - 5)
+    assert fractal.wave_power(omega, 2.0 - D, G) / omega == pytest.approx(printed, rel=1e-12)
+
+
+def test_isotropic_is_hu_equation_1():
+    D, G, M, seed = 2.4, 1e-9, 7, 3
+    made = synthesis.isotropic(waves(64), D, G, M, seed)
+    count = int(np.log(32.0) / np.log(GAMMA)) + 1
+    phases = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, (M, count))
+    x, y = np.meshgrid(np.arange(64) * SIZE / 64, np.arange(64) * SIZE / 64)
+    z = np.zeros_like(x)
+    for m in range(1, M + 1):
+        for n in range(count):
+            along = np.hypot(x, y) * np.cos(np.arctan2(y, x) - np.pi * m / M)
+            p = phases[m - 1, n]
+            z += GAMMA ** ((D - 3) * n) * (np.cos(p) - np.cos(2 * np.pi * GAMMA**n * along / SIZE + p))
+    z *= SIZE * (G / SIZE) ** (D - 2) * np.sqrt(np.log(GAMMA) / M)
+    np.testing.assert_allclose(made.z, z, atol=1e-12 * np.ptp(z))
+
+
+def test_textured_is_the_sum_of_two_profiles():
+    made = synthesis.textured(waves(64), (1.3, 1.6), (1e-9, 1e-10), 5)
+    np.testing.assert_allclose(made.z - made.z[:1], (made.z - made.z[:1])[:, :1] + 0 * made.z, atol=1e-18)
+    rng = np.random.default_rng(5)
+    first = synthesis.line(waves(64), 1.3, 1e-9, rng)
+    second = synthesis.line(waves(64), 1.6, 1e-10, rng)
+    np.testing.assert_allclose(made.z[3], first + second[3], rtol=1e-12)
+
+
+@pytest.mark.parametrize("D", [1.2, 1.4, 1.6, 1.8])
+@pytest.mark.parametrize("G", [1e-12, 1e-8])
+def test_round_trip_of_isotropic_surfaces(D, G):
+    for seed in (1, 2):
+        one = identify([synthesis.isotropic(waves(512), D + 1, G, 20, seed)]).best()
+        assert one.areal.D_s.value == pytest.approx(D + 1, abs=0.03)  # the tolerance that is promised
+        assert one.areal.G_s.low < G < one.areal.G_s.high
+
+
+@pytest.mark.parametrize("D", [1.2, 1.4, 1.6, 1.8])
+@pytest.mark.parametrize("G", [1e-12, 1e-8])
+def test_round_trip_of_profiles(D, G):
+    for seed in (1, 2):
+        one = identify([synthesis.profile(waves(4096), D, G, seed)]).best()
+        assert one.profile.D.value == pytest.approx(D, abs=0.03)
+        assert one.profile.G.low < G < one.profile.G.high
+        assert one.areal.D_s.value == pytest.approx(one.profile.D.value + 1.0, rel=1e-12)
+
+
+def test_textured_surfaces_are_told_by_direction():
+    made = synthesis.textured(waves(1024), (1.3, 1.6), (1e-9, 1e-10), 1)
+    found = identify([made])
+    assert found.textured
+    assert any("textured" in text for text in found.warnings)
+    x, y = found.best("x"), found.best("y")
+    assert x.profile.D.value == pytest.approx(1.3, abs=0.03)
+    assert y.profile.D.value == pytest.approx(1.6, abs=0.03)
+    assert x.profile.G.low < 1e-9 < x.profile.G.high
+    assert y.profile.G.low < 1e-10 < y.profile.G.high
+    assert not identify([synthesis.isotropic(waves(128), 2.5, 1e-9, 20, 1)]).textured
+
+
+@pytest.mark.parametrize("method", [structure, psd])
+def test_intervals_hold_what_they_promise(method):
+    """95 % intervals over 40 Gaussian profiles: fewer than 34 hits have a probability below 1.5 %."""
+    H, hits = 0.5, 0
+    for seed in range(40):
+        found = fit(method(without_form(gaussian_profile(1024, H, 1e-9, seed)), "profile"), 0.0, 1.0)
+        hits += abs(found.H - H) < 1.96 * np.sqrt(found.covariance[0, 0])
+    assert hits >= 34
+
+
+def test_noise_and_tilt_do_not_pull_the_structure_function():
+    clean = gaussian_profile(4096, 0.7, 1e-9, 4)
+    noise = 1.0 * np.std(np.diff(clean.z)) * np.random.default_rng(0).standard_normal(4096)
+    rough = clean.with_heights(clean.z + noise + 1e3 * np.linspace(0.0, np.ptp(clean.z), 4096))
+    before, after = (fit(structure(one, "profile"), 0.0, 1.0) for one in (clean, rough))
+    assert abs(after.H - before.H) < 2.0 * np.sqrt(before.covariance[0, 0])
+    assert after.offset > 0.2 > 0.0 > before.offset
+
+
+def test_range_ends_where_the_surface_rolls_off():
+    """White below 1/(40 um): the search stays on the straight part, a forced range is flagged."""
+    n, dx, H = 8192, 1e-6, 0.7
+    f = np.maximum(np.fft.rfftfreq(n, dx), 1.0 / 40e-6)
+    noise = np.fft.rfft(np.random.default_rng(1).standard_normal(n))
+    rolled = Profile(z=np.fft.irfft(noise * f ** (-0.5 - H)), dx=dx, name="rolled")
+    z = rolled.with_heights(rolled.z * 1e-7 / rolled.z.std())
+    free = identify([z]).best(method="psd")
+    assert free.fit.high < 80e-6
+    assert free.profile.D.value == pytest.approx(2.0 - H, abs=0.1)
+    forced = identify([z], span=(5e-6, 1e-3))
+    assert any("not self-affine" in text for text in forced.warnings)
+
+
+def test_short_range_warns():
+    found = identify([synthesis.isotropic(waves(64), 2.5, 1e-9, 20, 1)])
+    assert any("less than one" in text for text in found.warnings)
+
+
+def smooth_profile(points):
+    """A profile whose amplitudes fall like f^-2, faster than any with D > 1: D ends at its bound."""
+    f = np.fft.rfftfreq(points, 1e-6)
+    f[0] = np.inf
+    z = np.fft.irfft(np.fft.rfft(np.random.default_rng(1).standard_normal(points)) / f**2)
+    return Profile(z=z * 1e-7 / z.std(), dx=1e-6, name="smooth")
+
+
+@pytest.mark.parametrize("points", [256, 512, 1024])
+def test_at_the_bound_of_the_dimension_G_is_not_determined(points):
+    found = identify([smooth_profile(points)])
+    best = found.best()
+    assert best.profile.D.value == pytest.approx(1.02, abs=1e-3)  # 2 less the bound of H in the fit
+    for G in (best.profile.G, best.areal.G_s):
+        assert not G.determined
+        assert np.isnan([G.value, G.low, G.high]).all()
+        assert 200.0 < G.decades < 1000.0  # ln G = .../(2 (D - 1)), 1/(2 * 0.005) = 100 at most
+    (text,) = [text for text in found.warnings if text.startswith("G is not determined")]
+    assert f"spans {best.profile.G.decades:.1f} decades" in text
+    assert "lies at the end of 1 to 2" in found.doubt()
+    for joint in KINDS:
+        before = default(joint)
+        after = with_surface(before, found)
+        assert after.values == before.values
+        assert after.roughness["Rq1"] == found.h
+        with pytest.raises(ValueError, match=rf"G of smooth is not determined .*: {joint} needs a number"):
+            with_surface(before, found, force=True)
+
+
+def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
+    path, written = tmp_path / "smooth.csv", tmp_path / "joint.toml"
+    profile = smooth_profile(256)
+    x = np.arange(profile.z.size) * profile.dx
+    np.savetxt(path, np.stack([x, profile.z], axis=1), delimiter=",")
+    assert cli.main(["surface", str(path), "--unit", "m"]) == 0
+    out, err = capsys.readouterr()
+    assert "1.02" in out
+    assert "not determined" in out
+    assert "surface.D, surface.G not determined: D = 1.02" in out
+    assert "warning: G is not determined" in err
+    assert cli.main(["surface", str(path), "--unit", "m", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)  # no NaN, no Infinity
+    assert {"value": None, "low": None, "high": None} in [one["profile"]["G"] for one in said["results"]]
+    assert said["joints"]["bolted_joint"]["surface.G"] is None
+    assert said["determined"]["bolted_joint"] is False
+    assert said["not_determined"]["bolted_joint"].startswith("D = 1.02")
+    command = ("surface", path, "--unit", "m", "--joint", "bolted_joint", "--side", "1", "--write", written)
+    refused = refused_line(capsys, *command, "--force")
+    assert f"surface.G of {path} is not determined" in refused
+    assert not written.exists()
+    assert cli.main([str(word) for word in command]) == 0
+    assert "surface.D, surface.G stay as they were" in capsys.readouterr().err
+    file = load(written)
+    assert file.values == default("bolted_joint").values
+    assert file.roughness == {"Rq1": said["roughness"]["h"]}
+
+
+def test_roughness_leaves_the_floating_point_numbers():
+    inside = Roughness.of_logarithms(-300.0, -700.0, 100.0)
+    assert inside.determined
+    assert (inside.value, inside.low, inside.high) == tuple(np.exp([-300.0, -700.0, 100.0]))
+    for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
+        outside = Roughness.of_logarithms(value, low, high)
+        assert not outside.determined
+        assert outside.decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
+
+
+def test_pair_adds_the_powers():
+    """Two surfaces of equal finish: twice the power, so G^(2(D-1)) doubles; and sampling may differ."""
+    one, other = (gaussian_profile(4096, 0.5, 1e-9, seed) for seed in (1, 2))
+    pair = identify([one, other]).best(method="psd")
+    assert pair.profile.G.low < 2e-9 < pair.profile.G.high  # D = 1.5: G doubles
+    coarse = Profile(z=other.z[::2].copy(), dx=2 * other.dx, name="coarse")
+    again = identify([one, coarse]).best(method="structure")
+    assert again.profile.D.value == pytest.approx(1.5, abs=0.1)
+    far = Profile(z=other.z, dx=1e3 * other.dx, name="far")
+    with pytest.raises(ValueError, match="share no scales"):
+        identify([one, far])
+
+
+def test_what_a_pair_is():
+    line = gaussian_profile(512, 0.5, 1e-9, 1)
+    area = synthesis.isotropic(waves(64), 2.5, 1e-9, 20, 1)
+    with pytest.raises(ValueError, match="two of the same kind"):
+        identify([line, area])
+    with pytest.raises(ValueError, match="3 files given"):
+        identify([line] * 3)
+
+
+def test_range_without_values_is_refused():
+    with pytest.raises(ValueError, match="range 1e-09 2e-09 m holds 0 values"):
+        identify([gaussian_profile(512, 0.5, 1e-9, 1)], span=(1e-9, 2e-9))
+
+
+@pytest.mark.parametrize("joint", list(KINDS))
+def test_joint_gets_its_own_dimension(joint, tmp_path):
+    found = identify([synthesis.isotropic(waves(256), 2.45, 1e-9, 20, 1)])
+    values = {name: value for name, (value, _) in changes(found, joint).items()}
+    best = found.best()
+    if joint == "harmonic_drive":
+        assert values == {"surface.D": best.areal.D_s.value, "surface.G": best.areal.G_s.value}
+    else:
+        assert set(values.values()) == {best.profile.D.value, best.profile.G.value}
+    file = with_surface(default(joint), found)
+    path = tmp_path / "joint.toml"
+    path.write_text(dump(file))
+    again = load(path, joint)
+    for name in values:
+        assert again.origins[name] == "user"
+        assert again.sources[name].startswith("identified from synthetic surface by ")
+    assert again.roughness["Rq1"] == found.h
+    untouched = {name for name in again.origins if not name.startswith("roughness.")} - set(values)
+    kinds = default(joint).origins
+    assert all(again.origins[name] == kinds.get(name, "user") for name in untouched)
+
+
+def test_gear_of_a_texture_takes_both_directions():
+    found = identify([synthesis.textured(waves(512), (1.3, 1.6), (1e-9, 1e-10), 1)])
+    values = changes(found, "gear_contact")
+    assert values["surface1.D"][1].direction == "x"
+    assert values["surface2.D"][1].direction == "y"
+
+
+def test_spacing_may_differ_along_x_and_y():
+    square = synthesis.isotropic(waves(512), 2.5, 1e-9, 20, 1)
+    oblong = Areal(z=square.z[::2].copy(), dx=square.dx, dy=2 * square.dy, name="oblong")
+    found = identify([oblong])
+    for method in ("structure", "psd"):
+        assert found.best(method=method).areal.D_s.value == pytest.approx(2.5, abs=0.06)
+
+
+def test_a_value_at_its_bound_is_never_chosen_over_a_free_one():
+    """The bound cuts the error off: a clipped D comes after a free one, be it as sure as it likes."""
+    found = identify([gaussian_profile(512, 0.5, 1e-9, 1)])
+    sure = np.diag([1e-12, 1e-12])
+    for H in (0.02, 0.98):
+        clipped = replace(found.results[0].fit, H=H, covariance=sure)
+        results = (replace(found.results[0], fit=clipped), found.results[1])
+        changed = replace(found, results=results)
+        assert changed.best() is found.results[1]
+        assert "(structure) lies at the end of 1 to 2" in changed.doubt()
+    assert found.doubt() is None
+
+
+def test_intervals_apart_leave_the_dimension_open():
+    found = identify([gaussian_profile(512, 0.5, 1e-9, 1)])
+    first, second = found.results
+    D = replace(second.profile.D, low=first.profile.D.high + 0.01, high=first.profile.D.high + 0.1)
+    other = replace(second, profile=replace(second.profile, D=D))
+    apart = replace(found, results=(first, other))
+    assert apart.doubt().startswith("the methods disagree, D = ")
+    before = default("bolted_joint")
+    assert with_surface(before, apart).values == before.values
+    forced = with_surface(before, apart, force=True).values.surface
+    assert apart.best().profile.D.value == forced.D
+    crooked = replace(second, fit=replace(second.fit, deviation=1.0))
+    assert replace(found, results=(first, crooked)).doubt() == "not self-affine (psd)"
+
+
+def spectral_profile(points, power, seed, dx=1e-6):
+    """A Gaussian profile of a power spectral density, cut out of a periodic one four times as long."""
+    f = np.fft.rfftfreq(4 * points, dx)[1:]
+    noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(4 * points))
+    noise[0] = 0.0
+    noise[1:] *= np.sqrt(power(f))
+    z = np.fft.irfft(noise)[:points]
+    return Profile(z=z * 1e-6 / z.std(), dx=dx, name="made")
+
+
+def running(f):
+    """Local Hurst exponent from 0 at 100 um to 1 at 10 um, evenly in ln(frequency)."""
+    x, decade = np.log(f / 1e4) / np.log(10.0), np.log(10.0)
+    return np.exp(-2.0 * decade * np.where(x < 0.0, 0.0, np.where(x < 1.0, 0.5 * x**2, x - 0.5))) / f
+
+
+@pytest.mark.parametrize("seed", [50, 51])
+@pytest.mark.parametrize(
+    "power", [running, lambda f: (1.0 + (3e-5 * f) ** 2) ** -2.0], ids=["running", "rolling"]
+)
+def test_a_slope_that_runs_through_its_interval_is_not_self_affine(power, seed):
+    found = identify([spectral_profile(4096, power, seed)])
+    assert found.doubt() is not None
+
+
+@pytest.mark.parametrize("H", [0.3, 0.5, 0.8])
+def test_a_self_affine_profile_is_determined(H):
+    for seed in range(3):
+        assert identify([gaussian_profile(4096, H, 1e-9, seed)]).doubt() is None
+
+
+def test_both_sides_alike_are_a_pair_of_one_power():
+    line = gaussian_profile(1024, 0.5, 1e-9, 1)
+    one, both = identify([line]), identify([line], side="both")
+    assert both.h == pytest.approx(np.sqrt(2.0) * one.h, rel=1e-12)
+    assert both.slope == pytest.approx(np.sqrt(2.0) * one.slope, rel=1e-12)
+    for single, pair in zip(one.results, both.results, strict=True):
+        assert pytest.approx(single.fit.H, abs=1e-4) == pair.fit.H
+        # twice the power: the level of ln Phi rises by ln 2
+        assert pair.fit.level - single.fit.level == pytest.approx(np.log(2.0), abs=1e-4)
+        # one surface known once: no surer than alone
+        assert pair.fit.covariance[0, 0] == pytest.approx(single.fit.covariance[0, 0], rel=1e-3)
+    with pytest.raises(ValueError, match="side = both beside two files"):
+        identify([line, line], side="both")
+
+
+@pytest.mark.parametrize("shape", ["along x", "binary", "sine", "steps"])
+def test_maps_without_any_chance_do_not_crash(shape):
+    """What instruments' own example files have: ridges, steps, quantised heights."""
+    x, y = np.meshgrid(np.arange(64), np.arange(80))
+    z = {
+        "along x": np.sin(y / 3.0) + 0.0 * x,
+        "binary": ((x // 2 + y // 2) % 2).astype(float),
+        "sine": np.sin(2.0 * np.pi * x / 16.0) * np.sin(2.0 * np.pi * y / 20.0),
+        "steps": np.round(x / 20.0) + np.round(y / 20.0),
+    }[shape]
+    found = identify([Areal(z=1e-6 * z, dx=1e-6, dy=1e-6, name=shape)])
+    assert (found.doubt() is None) == (shape == "steps")  # their spectrum is a power law
+    assert 0.0 < found.h < 2e-6
+    assert with_surface(default("gear_contact"), found).roughness == {"Rq1": found.h} | {
+        name: value for name, value in default("gear_contact").roughness.items() if name != "Rq1"
+    }

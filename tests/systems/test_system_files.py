@@ -1,0 +1,324 @@
+"""Files of systems: what they refuse, and the arm's mechanics by other ways."""
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_fmu_src.partners.laws import GRAVITY, TorqueCurve
+from jointfmu_tools.systems.arm import Arm, Link
+from jointfmu_tools.systems.ssp import fmu_names
+from jointfmu_tools.systems.system import names, read, system
+from jointfmu_tools.systems.wiring import ends, lags, wires
+from numpy.typing import NDArray
+
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.parameters import default, dump
+from jointfmu.quantity import changed as replaced
+
+Array = NDArray[np.float64]
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "models/systems/robot_joint.toml").read_text(encoding="utf-8")
+DRIVE = 'model = "HarmonicDriveSpring"'
+ARM = (ROOT / "models/systems/six_axis_robot.toml").read_text(encoding="utf-8")
+CHAIN = '["drive.flange2", "link.flange_b"],'
+
+
+def changed(folder: Path, *changes: tuple[str, str], text: str = TEXT) -> Path:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    (folder / "mine.toml").write_text(text, encoding="utf-8")
+    return folder / "mine.toml"
+
+
+def second(model: str) -> str:
+    return f'[second]\nmodel = "{model}"\n\n[experiment]'
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            [('model = "HarmonicDriveSpring"', 'model = "HarmonicDrive"')],
+            "drive.model = 'HarmonicDrive', allowed",
+        ),
+        ([("hysteresis_loss", "hysteresis")], "drive: unknown name 'hysteresis', allowed are"),
+        (
+            [("[link]\n", "[link]\nlength = 3\n")],
+            "link.length = 3, expected a table { value, unit, kind, source }",
+        ),
+        (
+            [('"drive.flange1"', '"drive.flange3"')],
+            "unknown flange 'drive.flange3' of a HarmonicDriveSpring, allow",
+        ),
+        (
+            [('"drive.flange1"', '"gear.flange1"')],
+            "connect: unknown component 'gear', allowed are load, motor,",
+        ),
+        ([('"load",', '"load.flange",')], "'load.flange': a TorqueProfile has no flange, allowed is load"),
+        ([(CHAIN, "")], 'drive.flange2 is connected to nothing; allowed are a flange of a body, or "ground"'),
+        (
+            [(CHAIN, '["drive.flange2", "ground"],')],
+            "link is connected to nothing; allowed is a flange of a body",
+        ),
+        (
+            [(CHAIN, '["drive.flange2", "motor.flange_a"],')],
+            "motor.flange_a is connected to load and to drive.fl",
+        ),
+        (
+            [
+                ('["load", "motor.flange_a"]', '["load", "link.flange_a"]'),
+                (CHAIN, CHAIN + '["motor.flange_a", "link.flange_a"],'),
+            ],
+            "link.flange_a is connected to load and to motor.flange_a",
+        ),
+        (
+            [
+                ('["load", "motor.flange_a"],', ""),
+                (CHAIN, '["drive.flange2", "motor.flange_a"], ["load", "link.flange_a"],'),
+            ],
+            "drive.flange2 on motor.flange_a closes a loop; allowed are chains of joints and bodies",
+        ),
+        (
+            [(CHAIN, CHAIN + '["motor.flange_b", "link.flange_a"],')],
+            "motor.flange_b is connected to drive.flange1",
+        ),
+        (
+            [
+                ('"load", "motor.flange_a"', '"load", "motor.flange_a"'),
+                (CHAIN, '["drive.flange2", "second.flange1"],'),
+                ("[experiment]", second("HarmonicDriveSpring")),
+            ],
+            "drive.flange2 and second.flange1 do not fit; allowed is a joint's flange on a body's",
+        ),
+        (
+            [("[experiment]", second("TranslationalMass")), (CHAIN, '["drive.flange2", "second.flange_a"],')],
+            "drive.flange2 and second.flange_a do not fit; allowed are two that turn or two that shift",
+        ),
+        (
+            [("[experiment]", second("ForceProfile")), ('["load",', '["second",')],
+            "second and motor.flange_a do not fit; allowed are a force or torque on a body's flange, an",
+        ),
+        (
+            [
+                ("[experiment]", second("HarmonicDriveCompliance")),
+                (CHAIN, '["second.flange", "link.flange_b"],'),
+            ],
+            "second: a HarmonicDriveCompliance takes a load and gives a motion; allowed are joints that take",
+        ),
+        (
+            [("[link]", "[motor2]"), ('"link.flange_b"', '"motor2.flange_b"')],
+            "component 'motor2' begins like 'motor', which fmpy mixes up",
+        ),
+        ([("value = 2.0, unit", "value = -2.0, unit")], "experiment.stop_time = -2 s is outside (0, inf)"),
+        ([("value = 0.05", "value = -0.05")], "link.J = -0.05 kg.m2 is outside (0, inf)"),
+        ([("connect = [", "connect = [ 3,")], "connect = 3, expected pairs of ends"),
+        ([("schema = 1", "schema = 7")], "schema = 7, allowed is 1"),
+        (
+            [
+                (
+                    '[motor]\nmodel = "RotationalInertia"',
+                    '[motor]\nmodel = "RotationalInertia"\nparameters = "a.toml"',
+                )
+            ],
+            "motor.parameters = 'a.toml', expected none of a RotationalInertia",
+        ),
+        (
+            [('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "none.toml"')],
+            "none.toml: cannot be read",
+        ),
+        (
+            [(DRIVE, f'{DRIVE}\ncatalogue = "CSG-18-100"')],
+            "drive: catalogue 'CSG-18-100' is unknown; nearest are CSG-",
+        ),
+        (
+            [(DRIVE, f'{DRIVE}\ncatalogue = "CSG-17-100"\nparameters = "my_drive.toml"')],
+            "drive has catalogue and parameters, allowed is one of them",
+        ),
+        ([(DRIVE, f"{DRIVE}\ncatalogue = 17")], "drive.catalogue = 17, expected a text"),
+        (
+            [(DRIVE, 'model = "GearMesh"\ncatalogue = "m3"')],
+            "drive.catalogue = 'm3', expected none of a gear_mesh: it has no catalogue",
+        ),
+        (
+            [
+                (
+                    '[motor]\nmodel = "RotationalInertia"',
+                    '[motor]\nmodel = "RotationalInertia"\ncatalogue = "CSG-17-100"',
+                )
+            ],
+            "motor.catalogue = 'CSG-17-100', expected none of a RotationalInertia",
+        ),
+    ],
+)
+def test_a_file_that_is_wrong_is_refused_in_one_line(
+    tmp_path: Path, changes: list[tuple[str, str]], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = changed(tmp_path, *changes)
+    assert said in refused_line(capsys, "system", path, "--out", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ([('axis = "z"', 'axis = "x"')], "arm.base.axis = 'x', allowed are y, z"),
+        (
+            [("mass = { value = 14.0", "mass = { value = -14.0")],
+            "arm.base: mass = -14 kg is outside (0, inf)",
+        ),
+        (
+            [('model = "HarmonicDriveSpring"', 'model = "BoltedJoint"')],
+            "arm.base.model = 'BoltedJoint', allowed are HarmonicDriveSpring",
+        ),
+        (
+            [("duration = { value = 1.0", "duration = { value = 0.0")],
+            "arm.duration = 0 s is outside (0, inf)",
+        ),
+    ],
+)
+def test_an_arm_that_is_wrong_is_refused_in_one_line(
+    tmp_path: Path, changes: list[tuple[str, str]], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = changed(tmp_path, *changes, text=ARM)
+    assert said in refused_line(capsys, "system", path, "--out", tmp_path / "out")
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_input_is_fed_once_and_lags_stand_where_joints_push(name: str) -> None:
+    found = system(name)
+    fed = [(w.target, w.input) for w in wires(found)]
+    assert len(fed) == len(set(fed))
+    pushed = {w.target for w in wires(found) if w.source in found.joints}
+    assert set(lags(found)) == pushed
+    assert len(ends(found)) == len(found.connections)
+
+
+def test_a_parameter_file_of_its_own_makes_an_fmu_of_its_own(tmp_path: Path) -> None:
+    file = default("harmonic_drive").with_values({"ratio": 50.0, "mu": 0.1}, "user", "test")
+    (tmp_path / "my_drive.toml").write_text(dump(file), encoding="utf-8")
+    mine = changed(
+        tmp_path,
+        ('model = "HarmonicDriveSpring"', 'model = "HarmonicDriveSpring"\nparameters = "my_drive.toml"'),
+    )
+    drive = read(mine).joints["drive"]
+    assert drive.file is not None
+    assert (drive.file.flat["ratio"], drive.file.flat["hysteresis_loss"]) == (50.0, 2.9e-4)
+    assert fmu_names(read(mine))["drive"] == "mine_drive"
+    assert fmu_names(system("robot_joint"))["drive"] == "HarmonicDriveSpring"
+    robot = system("six_axis_robot")
+    own = {f"six_axis_robot_{one}" for one in robot.joints}
+    assert set(fmu_names(robot).values()) == own | {"AngleProfile", "RotationalInertia", "TorqueCurve"}
+
+
+def test_joints_with_the_same_baked_values_share_an_fmu(tmp_path: Path) -> None:
+    """The same drive at two axes, with another damping: that is set in the archive."""
+    path = changed(tmp_path, ('"CSG-40-100"', '"csg 32 100"'), text=ARM)
+    found = fmu_names(read(path))
+    assert found["base_drive"] == found["shoulder_drive"] == "mine_base_drive"
+    assert found["elbow_drive"] == "mine_elbow_drive"
+
+
+# The arm
+
+ROBOT: Arm = system("six_axis_robot").arm
+
+
+def energies(arm: Arm, q: Array, speed: Array) -> tuple[Array, Array]:
+    """Kinetic and potential energy by Jacobians from differences of the places of the centres of mass."""
+    step = 1e-6
+
+    def centres(angles: Array) -> Array:
+        turns, places, _ = arm.frames(angles)
+        pairs = zip(arm.links, turns, places, strict=True)
+        return np.stack([place + link.centre * turn[:, :, 2] for link, turn, place in pairs], axis=1)
+
+    rate = (centres(q + step * speed) - centres(q - step * speed)) / (2.0 * step)
+    masses = np.array([link.mass for link in arm.links])
+    kinetic = 0.5 * np.sum(masses * np.sum(rate**2, axis=2), axis=1)
+    forth, back = arm.frames(q + step * speed)[0], arm.frames(q - step * speed)[0]
+    for k, (link, turn) in enumerate(zip(arm.links, arm.frames(q)[0], strict=True)):
+        spin = (forth[k] - back[k]) / (2.0 * step) @ turn.transpose(0, 2, 1)  # skew matrix of the turning
+        w = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
+        own = np.einsum("nji,nj->ni", turn, w)
+        kinetic = kinetic + 0.5 * own**2 @ [link.J_across, link.J_across, link.J_along]
+    return kinetic, np.sum(masses * centres(q)[:, :, 2], axis=1) * GRAVITY
+
+
+def test_power_of_the_torques_is_the_rate_of_the_energy() -> None:
+    time = np.linspace(0.1, 1.1, 4001)
+    q, speed, acceleration = ROBOT.motion(time)
+    power = np.sum(ROBOT.torques(q, speed, acceleration) * speed, axis=1)
+    kinetic, potential = energies(ROBOT, q, speed)
+    rate = np.gradient(kinetic + potential, time)
+    assert np.max(np.abs(power - rate)[2:-2]) < 1e-5 * np.max(np.abs(power))  # of central differences
+
+
+def test_a_double_pendulum_has_the_textbooks_torques() -> None:
+    """Upright, of point-like masses at the ends: Lagrange's equations."""
+    l1, l2, m1, m2 = 0.7, 0.4, 3.0, 2.0
+    tiny: dict[str, Any] = {"J_along": 1e-12, "J_across": 1e-12, "travel": 0.0}
+    links = [Link(length=l1, mass=m1, centre=l1, **tiny), Link(length=l2, mass=m2, centre=l2, **tiny)]
+    arm = Arm(["a", "b"], ["y", "y"], links, 0.0, 1.0)
+    rng = np.random.default_rng(3)
+    q, v, a = rng.normal(size=(3, 20, 2))
+    c, s = np.cos(q[:, 1]), np.sin(q[:, 1])
+    inertia = m1 * l1**2 + m2 * (l1**2 + l2**2 + 2 * l1 * l2 * c)
+    mixed = m2 * (l2**2 + l1 * l2 * c)
+    swirl = m2 * l1 * l2 * s
+    both = m2 * GRAVITY * l2 * np.sin(q.sum(axis=1))
+    first = inertia * a[:, 0] + mixed * a[:, 1] - swirl * (2 * v[:, 0] * v[:, 1] + v[:, 1] ** 2)
+    first -= (m1 + m2) * GRAVITY * l1 * np.sin(q[:, 0]) + both
+    other = mixed * a[:, 0] + m2 * l2**2 * a[:, 1] + swirl * v[:, 0] ** 2 - both
+    np.testing.assert_allclose(arm.torques(q, v, a), np.stack([first, other], axis=1), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(arm.inertias(q[0]), [inertia[0], m2 * l2**2], rtol=1e-9)
+
+
+def test_the_tip_is_where_the_links_lead() -> None:
+    reach = sum(link.length for link in ROBOT.links)
+    zero = np.zeros((1, 6))
+    np.testing.assert_allclose(ROBOT.tip(zero), [[0.0, 0.0, reach]], atol=1e-15)
+    level = np.array([[0.5, math.pi / 2, 0.0, 0.3, 0.0, 0.7]])
+    above = reach - ROBOT.links[0].length
+    expected = [[above * math.cos(0.5), above * math.sin(0.5), ROBOT.links[0].length]]
+    np.testing.assert_allclose(ROBOT.tip(level), expected, atol=1e-12)
+
+
+def test_six_drives_differ_and_wind_up_as_their_catalogue_says() -> None:
+    """At T2 of the rows of sizes 32, 40, 25, 20, 17, 14; round corners leave 0.5 %."""
+    rows = {
+        "base": (29, 108, 67e3, 110e3),
+        "shoulder": (54, 196, 130e3, 200e3),
+        "elbow": (14, 48, 31e3, 50e3),
+        "forearm": (7, 25, 16e3, 25e3),
+        "wrist": (3.9, 12, 10e3, 14e3),
+        "hand": (2, 6.9, 4700, 6100),
+    }
+    found = system("six_axis_robot")
+    for name, (first, second_, k1, k2) in rows.items():
+        file = found.joints[f"{name}_drive"].file
+        assert file is not None
+        midline = HarmonicDriveSpring.of(replaced(file.values, {"hysteresis_loss": 0.0}))
+        angle = float(midline.windup(float(second_))["phi_rel"])
+        assert angle == pytest.approx(first / k1 + (second_ - first) / k2, rel=5e-3)
+
+
+def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
+    """Seventeen points leave 4e-4 of the largest torque of an axis."""
+    found = system("six_axis_robot")
+    x = np.linspace(0.0, 1.0, 301)
+    q, speed, acceleration = ROBOT.motion(ROBOT.start + ROBOT.duration * x)
+    torque = ROBOT.torques(q, speed, acceleration)
+    for k, name in enumerate(ROBOT.names):
+        given = found.components[f"{name}_load"].values
+        curve = TorqueCurve(**given)
+        time = ROBOT.start + ROBOT.duration * x
+        values = np.array([curve.outputs({"time": t, "tau_in": 0.0})["tau"] for t in time])
+        inertia = found.values[f"{name}_link.J"]
+        left = inertia * acceleration[:, k] - torque[:, k]
+        assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
+    assert re.search(r"J = .*", ARM) is None  # computed, not stated

@@ -1,0 +1,204 @@
+"""Distributions, quadrature, bands and indices against closed forms and scipy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from jointfmu_tools.batch import chebyshev
+from jointfmu_tools.joints.gear_contact import reduced as gear
+from jointfmu_tools.uncertainty import propagate, sensitivity, study
+from jointfmu_tools.uncertainty.distributions import parse
+from jointfmu_tools.uncertainty.problem import pose
+from scipy import stats
+
+from jointfmu.parameters import default
+
+P = np.array([0.001, 0.05, 0.3, 0.5, 0.9, 0.999])
+
+
+@pytest.mark.parametrize(
+    ("text", "law"),
+    [
+        ("2..4", stats.uniform(2.0, 2.0)),
+        ("-1e-3..1e3", stats.uniform(-1e-3, 1000.001)),
+        ("uniform(2, 4)", stats.uniform(2.0, 2.0)),
+        ("4+-25%", stats.uniform(3.0, 2.0)),
+        ("4+-1", stats.uniform(3.0, 2.0)),
+        ("+-10%", stats.uniform(9.0, 2.0)),
+        ("loguniform(1e-12, 1e-10)", stats.loguniform(1e-12, 1e-10)),
+        ("normal(4, 0.5)", stats.norm(4.0, 0.5)),
+        ("normal(4, 10%)", stats.norm(4.0, 0.4)),
+        ("normal(10%)", stats.norm(10.0, 1.0)),
+        ("lognormal(4, 1.5)", stats.lognorm(np.log(1.5), scale=4.0)),
+        ("lognormal(50%)", stats.lognorm(np.log(1.5), scale=10.0)),
+        ("triangular(1, 2, 4)", stats.triang(1.0 / 3.0, 1.0, 3.0)),
+    ],
+)
+def test_distribution(text, law):
+    found = parse("x", text, 10.0)
+    # the ends of a uniform law written as a percentage are rounded once more
+    assert found.law.ppf(P) == pytest.approx(law.ppf(P), rel=1e-14)
+
+
+@pytest.mark.parametrize("text", ["1.42", "true", "yield"])
+def test_no_distribution(text):
+    assert parse("x", text, None) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("4..2", "low = 4 is not below high = 2"),
+        ("2..", "'' is no number"),
+        ("2..x", "'x' is no number"),
+        ("2..inf", "inf is not finite"),
+        ("1..2..3", "has 3 numbers, expected 2"),
+        ("cauchy(1, 2)", "there is no distribution 'cauchy'"),
+        ("normal(1, 0)", "standard deviation = 0 is outside (0, inf)"),
+        ("normal(1)", "has 1 numbers, expected 2"),
+        ("normal(2%)", "a percentage needs a value before it here"),
+        ("4+-0%", "0 % is outside (0, inf)"),
+        ("lognormal(1, 0.5)", "factor = 0.5 is outside (1, inf)"),
+        ("lognormal(-1, 2)", "median = -1 is outside (0, inf)"),
+        ("loguniform(0, 1)", "low = 0 is outside (0, inf)"),
+        ("triangular(1, 5, 4)", "mode = 5 is outside [1, 4]"),
+    ],
+)
+def test_refused_distribution(text, words):
+    with pytest.raises(ValueError, match=r"^x = ") as raised:
+        parse("x", text, None)
+    assert words in str(raised.value)
+    assert "loguniform(LOW, HIGH)" in str(raised.value)
+
+
+def test_chebyshev_matrices_are_exact_for_polynomials():
+    x, at = chebyshev.nodes(9), np.linspace(0.0, 1.0, 33)
+    value = x**8 - 3.0 * x**3
+    assert value @ chebyshev.interpolation(9, at) == pytest.approx(at**8 - 3.0 * at**3, abs=1e-13)
+    integral = at**9 / 9.0 - 0.75 * at**4
+    assert value @ chebyshev.integration(9, at) == pytest.approx(integral, abs=1e-13)
+
+
+def test_gauss_points_of_a_discrete_measure():
+    rng = np.random.default_rng(3)
+    values, weights = rng.normal(size=500), rng.uniform(size=500)
+    at, shares = chebyshev.discrete_gauss(values, weights, 5)
+    for degree in range(10):
+        assert shares @ at**degree == pytest.approx(weights @ values**degree, rel=1e-12, abs=1e-12 * 500)
+    assert np.sum(
+        chebyshev.discrete_gauss(np.array([1.0, 2.0]), np.array([0.5, 0.5]), 5)[1]
+    ) == pytest.approx(1)
+
+
+def test_powers_of_two():
+    assert [study.power_of_two(n) for n in (2, 3, 64, 100_000)] == [2, 4, 64, 131_072]
+    for n in (1, 2**24 + 1):
+        with pytest.raises(ValueError, match=f"samples = {n} is outside"):
+            study.power_of_two(n)
+
+
+def test_design_is_seeded_and_balanced():
+    one, two = (study.unit_design(256, 3, seed) for seed in (1, 2))
+    assert np.array_equal(one, study.unit_design(256, 3, 1))
+    assert not np.array_equal(one, two)
+    for column in one.T:  # a Sobol' sequence of 2^k points has one in each of 2^k equal intervals
+        assert np.array_equal(np.sort(np.floor(256 * column)), np.arange(256))
+
+
+def linear(parameters, values, loads, factor):
+    """An output that is linear in its parameters, so that its distribution is known."""
+    a, b = (np.reshape(values[name], (-1, 1)) for name in ("mu", "traction_ratio"))
+    return {"K_N": loads * factor * (2.0 * a + b), "s_rel": 0.0 * loads * factor * a}
+
+
+@pytest.fixture
+def linear_gear(monkeypatch):
+    exact = lambda joint, loads: {"K_N": loads * (2.0 * joint.mu + joint.traction_ratio)}  # noqa: E731
+    stiffness = tuple(v for v in gear.REDUCED.outputs if v.name == "K_N")
+    evaluate = lambda *given: {"K_N": linear(*given)["K_N"]}  # noqa: E731
+    line = replace(gear.REDUCED, outputs=stiffness, evaluate=evaluate, exact=exact)
+    monkeypatch.setattr(gear, "REDUCED", line)
+
+
+@pytest.mark.usefixtures("linear_gear")
+def test_bands_of_a_linear_output():
+    """2 a + b of two normal parameters is normal."""
+    given = {"mu": "normal(5, 0.3)", "traction_ratio": "normal(0.5, 0.05)"}
+    task = pose(default("gear_contact"), given, 100.0, 5)
+    A, B = propagate.design(task, 2**14, 0)
+    found = propagate.bands(task, A)
+    law = stats.norm(10.5, np.hypot(0.6, 0.05))
+    for q, row in zip(propagate.QUANTILES, found.quantiles["K_N"], strict=True):
+        # 16384 points of a Sobol' sequence: error of a quantile below 1e-4/density at 1 %
+        assert row == pytest.approx(found.loads * law.ppf(q), rel=2e-3)
+    assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
+    assert found.sd["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
+    assert found.refused.count == 0
+    indices = sensitivity.sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
+    exact = np.array([0.36, 0.0025]) / 0.3625
+    assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096
+    assert np.all(np.abs(indices.total - exact) < 0.01)
+
+
+@pytest.mark.usefixtures("linear_gear")
+def test_an_uncertain_load_scales_the_ramp():
+    task = pose(default("gear_contact"), {"f": "+-20%"}, 100.0, 3)
+    found = propagate.bands(task, propagate.design(task, 4096, 0)[0])
+    nominal = found.nominal["K_N"]
+    assert found.quantiles["K_N"][1] == pytest.approx(nominal * 0.82, rel=1e-3)
+    assert found.quantiles["K_N"][-2] == pytest.approx(nominal * 1.18, rel=1e-3)
+    at = pose(default("gear_contact"), {"f": "50..150"}, None, 3)
+    assert at.loads.tolist() == [100.0]
+    found = propagate.bands(at, propagate.design(at, 4096, 0)[0])
+    assert found.quantiles["K_N"][:, 0] == pytest.approx(
+        found.nominal["K_N"] * (0.5 + np.array(propagate.QUANTILES)), rel=1e-3
+    )
+
+
+def ishigami(x):
+    return np.sin(x[0]) + 7.0 * np.sin(x[1]) ** 2 + 0.1 * x[2] ** 4 * np.sin(x[0])
+
+
+ISHIGAMI_FIRST, ISHIGAMI_TOTAL = (0.31390519, 0.44241114, 0.0), (0.55758886, 0.44241114, 0.24368366)
+"""Analytic indices for a = 7, b = 0.1 (Saltelli et al. 2008)."""
+
+
+def designs(n, d, seed):
+    points = 2.0 * np.pi * study.unit_design(n, 2 * d, seed).T - np.pi
+    A, B = points[:d], points[d:]
+    mixed = np.stack([np.where(np.arange(d)[:, None] == i, B, A) for i in range(d)])
+    return A, B, mixed
+
+
+def test_ishigami():
+    A, B, mixed = designs(4096, 3, 0)
+    found = sensitivity.indices(
+        ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
+    )
+    assert found.first[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
+    assert found.total[0] == pytest.approx(ISHIGAMI_TOTAL, abs=0.01)
+
+
+def test_confidence_intervals_of_independent_samples():
+    """95 % intervals cover the truth in about 95 of 100 repetitions (at least 88: 3 sigma of 100)."""
+    rng, hits = np.random.default_rng(0), np.zeros((2, 3))
+    for _ in range(100):
+        A, B = rng.uniform(-np.pi, np.pi, (2, 3, 1024))
+        mixed = np.stack([np.where(np.arange(3)[:, None] == i, B, A) for i in range(3)])
+        found = sensitivity.indices(
+            ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
+        )
+        hits[0] += np.abs(found.first[0] - ISHIGAMI_FIRST) <= found.first_half[0]
+        hits[1] += np.abs(found.total[0] - ISHIGAMI_TOTAL) <= found.total_half[0]
+    assert np.all(hits >= 88), hits
+
+
+def test_refused_rows_count_for_nothing():
+    A, B, mixed = designs(1024, 3, 1)
+    f_A, f_B, f_AB = ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
+    keep = np.arange(1024) < 512  # the first half is a design of its own
+    some = sensitivity.indices(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
+    f_A[:, ~keep] = np.nan
+    holes = sensitivity.indices(f_A, f_B, f_AB)
+    for name in ("first", "total", "first_half", "total_half"):
+        assert getattr(holes, name) == pytest.approx(getattr(some, name), rel=1e-10)

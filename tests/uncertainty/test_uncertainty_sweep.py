@@ -1,0 +1,281 @@
+"""`jointfmu sweep`: many runs of an FMU that may be killed at any time and resumed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.uncertainty import journal
+from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.sweep import plan, sweep
+from jointfmu_tools.uncertainty.worker import Drive
+
+from jointfmu.parameters import default
+from jointfmu.run import ramp
+
+pytestmark = pytest.mark.slow
+
+RAMP = ("--input", "tau", "--to", "5", "--step", "1")
+DRIVE = Drive("tau", 5.0, 1.0)
+GIVEN = {"surface.D": "2.45..2.6", "eccentricity": "normal(5e-6, 5e-6)"}
+SETTINGS = ("--set", *(f"{name}={text}" for name, text in GIVEN.items()))
+
+
+@pytest.fixture(scope="module")
+def fmu(native):
+    return native / "fmi3" / "HarmonicDriveCompliance.fmu"
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    from distributed import LocalCluster
+
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as one:
+        yield one.scheduler_address
+
+
+def indices(out):
+    return [entry["run"] for entry in journal.entries(out)]
+
+
+def test_killed_and_resumed(fmu, tmp_path, capsys):
+    """kill -9 in the middle: no run is lost or done twice, and the unfinished last line is cut off."""
+    out = tmp_path / "out"
+    arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "128", "--workers", "1", "--out", str(out)]
+    process = subprocess.Popen([sys.executable, "-m", "jointfmu", *arguments], stderr=subprocess.DEVNULL)
+    runs = out / journal.RUNS
+    deadline = time.monotonic() + 60.0
+    while not (runs.exists() and runs.read_bytes().count(b"\n") >= 10):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    before = indices(out)
+    assert 10 <= len(before) < 128
+    kept = runs.read_bytes()
+    kept = kept[: kept.rindex(b"\n") + 1]
+    runs.write_bytes(kept + b'{"run": 127, "parameters": {"surf')
+    assert indices(out) == before
+    assert cli.main([*arguments, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert (found["runs"], found["now"]) == (128, 128 - len(before))
+    assert runs.read_bytes().startswith(kept)
+    assert sorted(indices(out)) == list(range(128))
+    # a normal distribution of mean and deviation 5e-6 has 15.87 % below zero, which the FMU refuses
+    assert found["failed"] == pytest.approx(0.158655 * 128, abs=1.5)
+    assert found["first_failure"]["parameters"]["eccentricity"] < 0.0
+    assert "is outside [0, 0.001)" in found["first_failure"]["error"]
+    assert cli.main([*arguments, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert (again["now"], again["failed"]) == (0, found["failed"])
+    assert "holds another study (samples = 128, now 512)" in refused_line(
+        capsys, *arguments[:-1], out, "--samples", "512"
+    )
+
+
+def state(pid):
+    """Whether a process runs, is gone, or is dead and not yet waited for."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return "gone"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.parametrize("moment", ["workers start", "runs"])
+def test_ctrl_c_ends_it_at_once_and_it_resumes(moment, fmu, tmp_path, capsys):
+    """Sent to all processes, as a terminal does: 130, one line, no worker left."""
+    out = tmp_path / "out"
+    arguments = ["sweep", str(fmu), *SETTINGS, *RAMP, "--samples", "64", "--workers", "2", "--out", str(out)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "jointfmu", *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    tasks, runs = Path(f"/proc/{process.pid}/task"), out / journal.RUNS
+
+    def children():
+        return [int(pid) for task in tasks.iterdir() for pid in (task / "children").read_text().split()]
+
+    def reached():
+        if moment == "runs":
+            return runs.exists() and runs.read_bytes().count(b"\n") >= 5
+        return len(children()) > 1  # beside multiprocessing's own helper
+
+    deadline = time.monotonic() + 60.0
+    while not reached():
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.005)
+    workers = children()
+    os.killpg(process.pid, signal.SIGINT)
+    printed = process.communicate(timeout=5.0)
+    assert process.returncode == 130
+    assert printed == (
+        "",
+        f"jointfmu sweep: interrupted; finished runs are kept in {out}, the same command resumes\n",
+    )
+    while any(state(pid) not in ("gone", "Z") for pid in workers):
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+    before = indices(out)
+    assert cli.main([*arguments, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["now"] == 64 - len(before)
+    assert sorted(indices(out)) == list(range(64))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes there share no stream")
+def test_a_worker_that_dies_as_it_starts_prints_nothing():
+    code = (
+        "import subprocess, sys\n"
+        "from jointfmu_tools.uncertainty.cluster import _mute\n"
+        "child = [sys.executable, '-c', '1/0']\n"
+        "with _mute():\n"
+        "    subprocess.run(child)\n"
+        "    print('own', file=sys.stderr)\n"
+        "print('after', file=sys.stderr)\n"
+        "subprocess.run([*child[:2], 'import sys; sys.stderr.write(str(1))'])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr == "own\nafter\n1"
+
+
+def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
+    """On a scheduler's workers, through its address alone; the same numbers as `jointfmu ramp`."""
+    given = {"surface.D": "2.45..2.6", "eccentricity": 5e-6}
+    record, runs = plan(fmu, DRIVE, given, 8, 0)
+    journal.claim(tmp_path, record)
+    done = sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
+    assert (done.runs, done.now, done.failed) == (8, 8, 0)
+    found = {entry["run"]: entry for entry in journal.entries(tmp_path)}
+    for i, settings in enumerate(runs):
+        assert (
+            found[i]["parameters"] == settings == {"eccentricity": 5e-6, "surface.D": settings["surface.D"]}
+        )
+        alone = ramp.run(fmu, "tau", 5.0, 1.0, settings)
+        assert found[i]["columns"] == {name: column.tolist() for name, column in alone.columns.items()}
+
+
+@pytest.mark.parametrize(
+    ("flavour", "name", "load", "to", "given"),
+    [
+        ("fmi2", "BoltedJoint", "preload", 30e3, {"surface.D": "1.38..1.46", "H": "+-5%"}),
+        ("fmi3", "GearContact", "f", 3e3, {"surface1.D": "1.4..1.5", "A_0": "+-5%"}),
+        ("fmi2", "HarmonicDriveCompliance", "tau", 5.0, {"surface.D": "2.45..2.6", "K_FTS0": "+-5%"}),
+    ],
+)
+def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, native, cluster, tmp_path):
+    """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
+    path, drive = native / flavour / f"{name}.fmu", Drive(load, to, to / 6.0)
+    record, runs = plan(path, drive, given, 16, 3)
+    journal.claim(tmp_path, record)
+    assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed == 0
+    joint = {"preload": "bolted_joint", "f": "gear_contact", "tau": "harmonic_drive"}[load]
+    task = pose(default(joint), given, to, 7)
+    for entry in journal.entries(tmp_path):
+        values = {**task.values, **entry["parameters"]}
+        found = task.reduced.evaluate(task.parameters, values, task.loads, np.ones((1, 1)))
+        for output in set(found) & set(entry["columns"]):
+            fmu_values = np.array(entry["columns"][output])
+            patches = name == "BoltedJoint" and output.endswith(
+                "_xx"
+            )  # C_xx and K_xx: shear on 24 of the nodes
+            assert found[output][0, 1:] == pytest.approx(
+                fmu_values[1:], rel=5e-3 if patches else 1e-4
+            )  # as stated
+
+
+def test_every_run_fails(fmu, cluster, tmp_path, capsys):
+    arguments = ["--set", "eccentricity=0.9e-3..0.99e-3", "--samples", "4", "--scheduler", cluster]
+    assert cli.main(["sweep", str(fmu), *RAMP, *arguments, "--out", str(tmp_path / "out")]) == 1
+    text = capsys.readouterr().out
+    assert "4 runs in" in text
+    assert "4 failed" in text
+    assert "the first failed, run " in text
+    assert not (tmp_path / "out" / journal.BANDS).exists()
+
+
+def dies_once_in_a_while(key, drive, index, settings):
+    if index == 5:
+        os._exit(11)
+    return {"run": index, "parameters": dict(settings), "columns": {"tau": [0.0], "K_WTS": [1.0]}}
+
+
+def test_a_run_that_kills_its_process(fmu, cluster, tmp_path, monkeypatch):
+    """It is recorded with its parameters; those whose results went down with it are done again."""
+    import jointfmu_tools.uncertainty.sweep as module
+
+    monkeypatch.setattr(module, "one_run", dies_once_in_a_while)
+    done = sweep(fmu, DRIVE, [{"surface.D": 2.5}] * 24, tmp_path, scheduler=cluster)
+    assert (done.runs, done.now, done.failed) == (24, 24, 1)
+    assert sorted(indices(tmp_path)) == list(range(24))
+    assert done.first_failure == {
+        "run": 5,
+        "parameters": {"surface.D": 2.5},
+        "error": "the process of the run died",
+    }
+
+
+def test_bands_of_the_runs(fmu, cluster, tmp_path):
+    record, runs = plan(fmu, DRIVE, GIVEN, 32, 0)
+    journal.claim(tmp_path, record)
+    sweep(fmu, DRIVE, runs, tmp_path, scheduler=cluster)
+    head, *rows = (tmp_path / journal.BANDS).read_text().splitlines()
+    column = head.split(",").index("K_WTS 50 % [N.m/rad]")
+    good = [entry["columns"]["K_WTS"] for entry in journal.entries(tmp_path) if "columns" in entry]
+    median = [float(row.split(",")[column]) for row in rows]
+    assert median == pytest.approx(np.median(good, axis=0), rel=1e-15)
+    assert [float(row.split(",")[0]) for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+def test_one_sweep_per_folder(tmp_path):
+    with journal.Journal(tmp_path), pytest.raises(ValueError, match="another sweep is writing here"):
+        journal.Journal(tmp_path).__enter__()
+
+
+def test_a_run_is_written_once(tmp_path):
+    with journal.Journal(tmp_path) as held:
+        held.add({"run": 3, "error": "x"})
+        held.add({"run": 3, "error": "y"})
+    with journal.Journal(tmp_path) as held:
+        assert held.finished == {3}
+        assert held.first_failure == {"run": 3, "error": "x"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--input", "tau", "--set", "surface.X=1..2"], "unknown name 'surface.X', allowed are tau"),
+        (["--input", "torque", "--set", "surface.D=2.4..2.6"], "unknown input 'torque', allowed are tau"),
+        (["--input", "tau", "--set", "tau=1..2"], "tau is driven by the ramp"),
+        (["--input", "tau", "--set", "surface.D=2.4"], "or a study file (--set)"),
+        (["--input", "tau", "--set", "surface.D=2.6..2.4"], "low = 2.6 is not below high = 2.4"),
+        (["--input", "tau", "--set", "surface.D=+-1%", "--workers", "0"], "workers = 0 is outside [1, inf)"),
+    ],
+)
+def test_refused_arguments(arguments, words, fmu, tmp_path, capsys):
+    line = refused_line(
+        capsys, "sweep", fmu, *arguments, "--to", "5", "--step", "1", "--out", tmp_path / "out"
+    )
+    assert words in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_refused_folders_and_schedulers(fmu, tmp_path, capsys):
+    arguments = ["sweep", fmu, *SETTINGS, *RAMP, "--samples", "4", "--out"]
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "thesis.tex").write_text("x")
+    assert "holds something else than a sweep" in refused_line(capsys, *arguments, tmp_path / "full")
+    line = refused_line(capsys, *arguments, tmp_path / "new" / "one", "--scheduler", "nowhere")
+    assert "scheduler = nowhere: cannot be reached" in line
+    assert not (tmp_path / "new").exists()

@@ -1,0 +1,1 @@
+"""What surrounds a joint: drawings, surfaces, fits, fields, finite elements, exports, systems, pages."""

@@ -1,0 +1,59 @@
+"""The command line `jointfmu COMMAND`.
+
+Exit status 0: done; 1: the work failed its check; 2: bad input, one line on standard error.
+"""
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status.
+
+    All imports but the interpreter's own are in here: they take a second, in which Ctrl-C may come.
+    """
+    name = "jointfmu"
+    try:
+        from .commands.parser import parser
+
+        words = list(sys.argv[1:] if argv is None else argv)
+        args = parser(words).parse_args(words)
+        name = f"jointfmu {args.command}"
+        return _run(args, name)
+    except (KeyboardInterrupt, ImportError) as error:
+        if not _interrupted(error):
+            raise
+        print(f"{name}: interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        # What is still buffered goes nowhere, else the interpreter reports it at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _interrupted(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is behind an error: some packages' imports then raise ImportError from it."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__ or error.__context__
+    return error is not None
+
+
+def _run(args: Any, name: str) -> int:
+    """Run the command; what it refuses is one line."""
+    from jointfmu.commands.common import option
+    from jointfmu.quantity.refusal import Refusal
+
+    try:
+        status = int(args.run(args))
+        print(end="", flush=True)
+        return status
+    except (ValueError, RuntimeError) as error:
+        hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
+        print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,83 @@
+"""`jointfmu build`: FMUs from parameters."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from jointfmu.commands.common import command, without_package
+from jointfmu.joints import MODELS
+from jointfmu.parameters import default, load
+
+from ..judgement import judge_file
+from .telling import tell
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    make = command(commands, "build", _build, "build FMUs")
+    make.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"FMUs to build: {', '.join(MODELS)} (default: all)"
+    )
+    make.add_argument(
+        "--flavour",
+        nargs="+",
+        default=["fmi2", "fmi3"],
+        metavar="FLAVOUR",
+        help="flavours to build: fmi2, fmi3 (default: both), python",
+    )
+    make.add_argument(
+        "--name",
+        metavar="NAME",
+        help="model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
+        "names stand side by side in one model",
+    )
+    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
+    make.add_argument(
+        "--parameters",
+        choices=("tunable", "fixed"),
+        default="tunable",
+        help="whether a tool may change parameters during a run (tunable, the default) or only before it "
+        "(fixed, which OpenModelica imports without warnings); fmi2 and fmi3",
+    )
+    make.add_argument(
+        "--wasm",
+        action="store_true",
+        help="put a WebAssembly component beside the binaries of fmi3, after the draft of FMI-LS-WASM",
+    )
+    make.add_argument(
+        "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
+    )
+    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+
+
+def _build(args: argparse.Namespace) -> int:
+    if args.name is not None and args.systems:
+        raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
+    if args.wasm and args.systems:
+        raise ValueError("--wasm is for the FMUs of joints; expected no --systems beside it")
+    file = load(args.params) if args.params else None
+    try:
+        from jointfmu_fmu_src import building
+
+        built = []
+        if args.names or not args.systems:
+            built += building.build(
+                args.names, args.flavour, file, args.out, args.parameters, args.name, args.wasm
+            )
+        if args.systems:
+            from ..systems import ssp
+
+            built += ssp.build_systems(args.out, None, file, variability=args.parameters)
+    except ImportError as error:
+        raise without_package(error, "build") from None
+    joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
+    found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
+    if args.json:
+        judged = {joint: judgement.document() for joint, judgement in found.items()}
+        print(json.dumps({"built": [str(path) for path in built], "joints": judged}))
+        return 0
+    print("\n".join(f"built {path}" for path in built))
+    for joint, judgement in found.items():
+        tell(judgement, of=f"{joint}: ")
+    return 0

@@ -1,0 +1,190 @@
+"""`jointfmu export`: the joint for finite elements, Modelica tables and CSV."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.commands.common import command, flag
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, check_writable, default, load, write_text
+
+from ..export import exports
+from ..export.forms import ERROR, FORMS, WHAT
+from ..export.placing import AXES, Placing
+from ..export.units import SI, UNITS
+from ..judgement import Judgement, judge, judge_file, known_height
+from ..pressing import pressing
+from .telling import tell
+
+if TYPE_CHECKING:
+    from ..export.writing import Written
+
+_NUMBERED = {"first": ("ansys", "calculix", "abaqus"), "first_set": ("ansys",)}
+_ABOVE = {
+    "first": "a number above all elements of your model",
+    "first_set": "a number above all element types and sets of real constants of your model",
+}
+_SI = {"K_": "N/m", "C_": "N.s/m"}
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    export = command(commands, "export", _export, "write the joint for another solver")
+    with_springs = exports.able("springs")
+    export.add_argument("form", choices=list(FORMS), metavar="FORMAT", help=f"one of {', '.join(FORMS)}")
+    export.add_argument(
+        "what",
+        choices=WHAT,
+        metavar="WHAT",
+        help="springs: springs and dashpots between node pairs "
+        f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
+        "curve: load over displacement of the whole joint",
+    )
+    joint = export.add_mutually_exclusive_group()
+    joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    joint.add_argument(
+        "--joint", choices=list(KINDS), default=with_springs[0], help=f"a default joint ({with_springs[0]})"
+    )
+    for name, texts in _working_points().items():
+        export.add_argument(flag(name), type=float, metavar="VALUE", help="; ".join(texts))
+    export.add_argument(
+        "--nodes",
+        type=Path,
+        metavar="CSV",
+        help="springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
+        "pressure [MPa] instead of a working point",
+    )
+    export.add_argument(
+        "--first", type=int, metavar="N", help="springs: first number free for elements and nodes (1)"
+    )
+    export.add_argument(
+        "--first-set",
+        type=int,
+        metavar="N",
+        help="ansys: first number free for element types and sets of real constants (1)",
+    )
+    export.add_argument("--normal", choices=list(AXES), help="springs: axis along the joint's normal (z)")
+    export.add_argument(
+        "--units", choices=list(UNITS), default=SI.name, help=f"units of the file ({SI.name})"
+    )
+    export.add_argument(
+        "--error", type=float, metavar="E", help=f"tables: largest error by straight lines ({ERROR:g})"
+    )
+    export.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write")
+
+
+def _working_points() -> dict[str, list[str]]:
+    """{name: what it is for each joint} of all that working points are made of."""
+    texts: dict[str, list[str]] = {}
+    for joint, kind in KINDS.items():
+        for i, (name, text) in enumerate(exports.of(joint).working_point.items()):
+            texts.setdefault(name, []).append(f"{kind.title}: {text}{' (0)' if i else ''}")
+    return texts
+
+
+def _export(args: argparse.Namespace) -> int:
+    if args.what not in FORMS[args.form]:
+        raise ValueError(
+            f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
+        )
+    check_writable(args.out)
+    file = load(args.params) if args.params else default(args.joint)
+    _refuse_idle(args, file)
+    written = _written(args, file)
+    write_text(args.out, written.text)
+    found = _judged(args, file)
+    facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
+    if args.json:
+        print(json.dumps({**facts, **written.facts, **found.document()}))
+        return 0
+    print(f"wrote {args.out}: {args.what} for {args.form}, {args.units}")
+    for name, value in written.facts.items():
+        number = f"{value:.6g}" if isinstance(value, float) else value
+        print(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
+    tell(found)
+    return 0
+
+
+def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
+    """The judgement at the working point, at the pressures of the user's nodes, or at the usual load."""
+    how = pressing(KINDS[file.joint])
+    load = getattr(args, how.load, None) if how else None
+    if load is None and args.nodes:
+        from ..export.mesh import read_pairs
+
+        mesh = read_pairs(args.nodes)
+        if mesh.pressure is not None:
+            mean = float(mesh.pressure @ mesh.area / mesh.area.sum())
+            return judge(
+                KINDS[file.joint].law_of(file.values), [mean], known_height(file), float(mesh.pressure.max())
+            )
+    return judge_file(file, None if load is None else [load])
+
+
+def _written(args: argparse.Namespace, file: ParameterFile) -> "Written":
+    from ..export import writing
+    from ..export.mesh import read_pairs
+
+    units = UNITS[args.units]
+    error = ERROR if args.error is None else args.error
+    if args.what == "contact":
+        return writing.contact(args.form, file, units, error)
+    state = _state(args, file.joint)
+    if args.what == "curve":
+        return writing.curve(args.form, file, state, units, error)
+    mesh = read_pairs(args.nodes) if args.nodes else None
+    first, text = next(iter(exports.of(file.joint).working_point.items()), ("", ""))
+    if mesh is not None and mesh.pressure is not None and state is not None:
+        raise ValueError(
+            f"{mesh.path} states the pressures; leave out {flag(first)}, or its column 'pressure'"
+        )
+    if (mesh is None or mesh.pressure is None) and state is None and first:
+        raise ValueError(f"springs need {flag(first)}, {text}, or --nodes with a pressure")
+    placing = Placing(units, args.normal or "z", args.first or 1, args.first_set or 1, own=mesh is None)
+    return writing.springs(args.form, file, state, mesh, placing)
+
+
+def _state(args: argparse.Namespace, joint: str) -> Any:
+    """The joint's working point, None where none is stated."""
+    offered = exports.of(joint)
+    values = {name: getattr(args, name) for name in offered.working_point}
+    if offered.state is None or all(value is None for value in values.values()):
+        return None
+    return offered.state(**{name: value or 0.0 for name, value in values.items()})
+
+
+def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
+    """Refuse a working point that would do nothing, or is missing."""
+    wanted = {} if args.what == "contact" else exports.of(joint).working_point
+    stated = [name for name in _working_points() if getattr(args, name) is not None]
+    for name in stated:
+        if name not in wanted:
+            raise ValueError(f"{flag(name)} has no meaning for the {args.what} of a {joint}")
+    first, text = next(iter(wanted.items()), ("", ""))
+    if stated and first not in stated:
+        raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
+    if args.what == "curve" and first and not stated:
+        raise ValueError(f"the curve of a {joint} needs {flag(first)}, {text}")
+
+
+def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
+    """Refuse options that would do nothing, or are missing."""
+    springs = args.what == "springs"
+    exports.required(file.joint, args.what)
+    _refuse_working_point(args, file.joint)
+    for name in ("nodes", "first", "normal"):
+        if getattr(args, name) is not None and not springs:
+            raise ValueError(f"--{name} has no meaning for a {args.what}; it is for springs")
+    if args.error is not None and springs:
+        raise ValueError("--error has no meaning for springs; it is for tables")
+    if args.first_set is not None and args.form != "ansys":
+        raise ValueError(f"--first-set has no meaning for {args.form}; it is for ansys")
+    for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
+        value, option = getattr(args, name), flag(name)
+        if value is not None and not 1 <= value <= highest:
+            raise ValueError(f"{option} = {value} is outside [1, {highest}]")
+        if value is None and args.nodes is not None and args.form in _NUMBERED[name]:
+            raise ValueError(f"--nodes needs {option}, {_ABOVE[name]}")
+    if args.form == "modelica" and args.units != SI.name:
+        raise ValueError(f"--units = {args.units}: a Modelica table is in {SI.name}")

@@ -1,0 +1,74 @@
+"""What the commands with finite elements share: arguments, the interface's parameters, the refusal."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, default, load
+
+from ..drawing.proof import proof_load
+from ..fields.clamped import clamped
+from ..judgement import Judgement, judge, known_height, overload
+
+if TYPE_CHECKING:
+    from ..fem.geometry import Assembly
+
+
+def assembly_arguments(sub: argparse.ArgumentParser) -> None:
+    """Declare the assembly, `--preload` and `--params`."""
+    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
+    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
+    sub.add_argument(
+        "--params", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
+    )
+
+
+def joint_file(path: Path | None) -> ParameterFile:
+    """Parameters of a joint with bolts: of a file, or the default of the first such joint."""
+    joints = list(clamped())
+    if path is None:
+        return default(joints[0])
+    file = load(path)
+    if file.joint not in joints:
+        allowed = " or ".join(repr(name) for name in joints)
+        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {allowed}")
+    return file
+
+
+def judge_assembly(
+    file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
+) -> Judgement:
+    """The judgement of an assembly's contact at a preload [N] per bolt, mean and greatest pressure [Pa]."""
+    found = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
+    return found.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
+
+
+def without_fem(error: Exception) -> ValueError:
+    """The refusal where a package, or a system library of gmsh, is missing."""
+    return ValueError(
+        f"finite elements need what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
+        "and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
+    )
+
+
+def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
+    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`.
+
+    Where the bolts are no two rows, the pressure under their heads carries a moment.
+    """
+    changes = {"A_0": assembly.contact_area}
+    for name in ("side1", "side2"):
+        body = getattr(assembly, name)
+        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
+    if whole:
+        rows = assembly.outer_rows()
+        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
+        if rows is None:
+            changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
+        else:
+            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
+    old = file.flat
+    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
+    return file.with_values(new, "derived", f"from the assembly {assembly.name}")

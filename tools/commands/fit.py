@@ -1,0 +1,174 @@
+"""`jointfmu fit`: parameters from measured curves and catalogue rows."""
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu import plots
+from jointfmu.commands.common import Parser, command, flag, written
+from jointfmu.files import columns
+from jointfmu.joints import KINDS
+from jointfmu.parameters import check_writable, dump, load, write_text
+
+from ..drawing.reading import number
+from ..fitting.procedure import Option, Procedure
+from ..judgement import judge_file
+from ..parts import part
+from .telling import tell
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..fitting.outcome import Outcome, Picture
+
+
+def add(commands: Any) -> None:
+    """Declare the command and what the joints are fitted to."""
+    text = "fit a joint's parameters to a measured curve or a catalogue row"
+    top = commands.add_parser("fit", help=text, description=text)
+    procedures = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
+    for choices in _procedures().values():
+        _declare(procedures, choices)
+
+
+def _procedures() -> dict[str, dict[str, Procedure]]:
+    """{name: {joint: procedure}}; procedures of several joints may share a name."""
+    found: dict[str, dict[str, Procedure]] = {}
+    for kind in KINDS.values():
+        own = part(kind, "fit")
+        for procedure in own.FITS if own else ():
+            found.setdefault(procedure.name, {})[kind.name] = procedure
+    return found
+
+
+def _declare(procedures: Any, choices: Mapping[str, Procedure]) -> None:
+    """Declare the procedures of one name: what all share, and their own options."""
+    first = next(iter(choices.values()))
+    text = "; ".join(procedure.text for procedure in choices.values())
+    sub = command(procedures, first.name, partial(_fit, choices), f"fit {text}")
+    if first.file:
+        sub.add_argument("file", type=Path, metavar="FILE", help="CSV; the heading names columns and units")
+    sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
+    sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
+    written(sub)
+    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
+    for option in {option.name: option for p in choices.values() for option in p.options}.values():
+        _option(sub, option)
+
+
+def _option(sub: argparse.ArgumentParser, option: Option) -> None:
+    metavar = "TEXT" if option.word else "VALUE"
+    sub.add_argument(
+        flag(option.name),
+        type=str if option.word or option.unit else float,
+        default=option.default,
+        choices=option.choices or None,
+        required=option.required,
+        metavar=None if option.choices else metavar,
+        help=option.text,
+    )
+
+
+def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
+    """Check what is to be written before the work, and fit."""
+    if args.out:
+        check_writable(args.out)
+    if args.plot:
+        plots.check(args.plot)
+    joint = _joint(choices, args)
+    procedure = choices[joint]
+    start = load(args.params, joint) if args.params else None
+    data = (args.file,) if procedure.file else ()
+    return _finish(args, procedure.run(*data, start, args.free, **_options(procedure, args)))
+
+
+def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, Any]:
+    """Its options as its function takes them, numbers in SI units."""
+    units = {option.unit_by for option in procedure.options}
+    return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
+
+
+def _value(option: Option, args: argparse.Namespace) -> Any:
+    value = getattr(args, option.name)
+    if not option.unit or value is None:
+        return value
+    unit = (option.unit_by and getattr(args, option.unit_by)) or option.unit
+    if value.strip().lower() in ("nan", "inf", "-inf"):
+        return float(value)  # the procedure's to refuse
+    return number(option.name, value, unit, option.unit, None)
+
+
+def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
+    """The joint whose procedure reads the file; ValueError if none does or an option is another joint's."""
+    if len(choices) == 1:
+        return next(iter(choices))
+    have = columns.names(args.file)
+    found = [joint for joint, procedure in choices.items() if procedure.column in have]
+    if len(found) != 1:
+        wanted = " or ".join(f"{procedure.column} ({joint})" for joint, procedure in choices.items())
+        raise ValueError(
+            f"{args.file}: has {'more than one column' if found else 'no column'} of {wanted}; expected one"
+        )
+    own = {option.name for option in choices[found[0]].options}
+    for other, procedure in choices.items():
+        for option in procedure.options:
+            if option.name not in own and getattr(args, option.name) != option.default:
+                raise ValueError(
+                    f"{args.file}: is of a {found[0]}; {flag(option.name)} is allowed with a {other} only"
+                )
+    return found[0]
+
+
+def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
+    """Write and print what was found."""
+    from ..fitting.outcome import percent
+
+    if args.plot:
+        pictures = [outcome.picture, *filter(None, (outcome.beside,))]
+        with plots.drawing(args.plot, (7.2 if len(pictures) == 1 else 10.8, 5.6)) as figure:
+            _draw(figure, pictures)
+    if args.out:
+        write_text(args.out, dump(outcome.parameters))
+    if args.json:
+        found, document = judge_file(outcome.parameters), outcome.document()
+        document["warnings"] += found.warnings
+        print(json.dumps(found.document() | document))
+        return 0
+    for row in outcome.rows():
+        spread = row["relative_deviation"]
+        shown = "spread unknown" if spread is None else percent(spread)
+        shown = f"+- {shown}" if shown.endswith("%") else shown
+        mark = "" if row["determined"] else "   not determined"
+        print(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{mark}")
+    for name, (value, unit, text) in outcome.facts.items():
+        print(f"{name:24} {value:.4g} {unit}  {text}")
+    for line in outcome.warnings():
+        print(f"note: {line}", file=sys.stderr)
+    tell(judge_file(outcome.parameters))
+    for path in filter(None, (args.out, args.plot)):
+        print(f"wrote {path}")
+    return 0
+
+
+def _draw(figure: "Figure", pictures: Sequence["Picture"]) -> None:
+    """Data and law above, residuals below; pictures side by side."""
+    every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
+    for (above, below), picture in zip(every.T, pictures, strict=True):
+        x, y = picture.x, picture.y
+        above.plot(*picture.line, color=plots.BLUE, label="fitted law")
+        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
+            above.plot(*line, "--", color=color, lw=1.0, label=name)
+        above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
+        below.axhline(0.0, color=plots.BLUE, lw=1.0)
+        below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
+        if picture.marks is not None:
+            for axes, values in ((above, y), (below, picture.misfit)):
+                axes.plot(x[picture.marks], values[picture.marks], "o", color=plots.RED, ms=7)
+        above.set_ylabel(picture.labels[1])
+        below.set_xlabel(picture.labels[0])
+        below.set_ylabel(picture.labels[2])
+        above.legend()

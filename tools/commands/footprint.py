@@ -1,0 +1,174 @@
+"""`jointfmu footprint`: the pressure field of a bolted joint, brought along or computed."""
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu import plots
+from jointfmu.commands.common import Parser, command
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
+
+from ..judgement import judge, known_height
+from . import footprint_compute
+from .finite_elements import joint_file
+from .telling import tell
+
+if TYPE_CHECKING:
+    from ..fields.contact import ContactField
+    from ..fields.reduction import Reduction
+
+
+def add(commands: Any) -> None:
+    """Declare the command and its sub-commands."""
+    text = "the contact pressure of a bolted joint: from a file, or by finite elements"
+    top = commands.add_parser("footprint", help=text, description=text)
+    steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
+    _import(steps)
+    footprint_compute.add(steps)
+
+
+OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}
+"""{name of the library's argument: the option's} where they differ."""
+
+
+def _import(steps: Any) -> None:
+    step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
+    step.add_argument(
+        "file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh"
+    )
+    step.add_argument(
+        "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
+    )
+    step.add_argument(
+        "--params", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
+    )
+    step.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
+    step.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
+    step.add_argument(
+        "--format", metavar="FORMAT", help="csv, mesh, ansys, abaqus or frd (default: by the name)"
+    )
+    step.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
+    step.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
+    step.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
+    step.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
+    step.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
+    step.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
+    step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
+    beside = "further listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
+    step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=beside)
+    step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
+    step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    step.set_defaults(options=OPTIONS)
+
+
+def _bring(args: argparse.Namespace) -> int:
+    if (args.moment is None) != (args.moment_file is None):
+        raise ValueError("--moment and --moment-file belong together: expected both or none")
+    if args.out:
+        check_writable(args.out)
+    if args.plot:
+        plots.check(args.plot)
+    from ..fields import figure
+    from ..fields.joint_parameters import with_field
+
+    start = joint_file(args.params)
+    field, tilted = _reading(args).field(args.file, args.moment_file)
+    source = f"nodal contact result {args.file.name}"
+    if args.moment_file:
+        source += f" and {args.moment_file.name}"
+    file, reduction = with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
+    file = replace(file, name=f"{start.name}, field of {args.file.name}")
+    if args.plot:
+        figure.draw(field, reduction, args.plot)
+    if args.out:
+        write_text(args.out, dump(file))
+    facts = _findings(args, file, field, reduction)
+    found = judge(
+        KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
+    )
+    if args.json:
+        print(json.dumps(facts | found.document()))
+    else:
+        print("\n".join(_lines(facts, start.values.A_0)))
+        tell(found)
+    return 0
+
+
+def _reading(args: argparse.Namespace) -> Any:
+    """How the file is to be read; every choice checked."""
+    from ..fields.contact_surface import AXES, OPEN, SIDES, Plane
+    from ..fields.nodal_result import LENGTHS, PRESSURES
+    from ..fields.reading import FORMATS, Reading
+
+    for name, value, allowed in (
+        ("--format", args.format, FORMATS),
+        ("--length-unit", args.length_unit, tuple(LENGTHS)),
+        ("--pressure-unit", args.pressure_unit, tuple(PRESSURES)),
+        ("--normal", args.normal, tuple(AXES)),
+        ("--rows", args.rows, tuple(AXES)),
+        ("--side", args.side, SIDES),
+        ("--open", args.open, OPEN),
+    ):
+        if value is not None and value not in allowed:
+            raise ValueError(f"{name} = {value!r} is not one of {', '.join(allowed)}")
+    return Reading(
+        format=args.format,
+        length=args.length_unit,
+        pressure=args.pressure_unit,
+        data=args.data,
+        beside=args.beside,
+        plane=Plane(args.normal, args.rows, args.side),
+        open=args.open,
+    )
+
+
+def _findings(
+    args: argparse.Namespace, file: ParameterFile, field: "ContactField", reduction: "Reduction"
+) -> dict[str, Any]:
+    joint = file.values
+    return {
+        "file": str(args.file),
+        "nodes": reduction.nodes,
+        "A_0": joint.A_0,
+        "force": field.force,
+        "force_of_the_bolts": args.preload * joint.n_bolts,
+        "p_max": float(field.pressure.max()),
+        "p_mean": field.force / joint.A_0,
+        "open_nodes": int((field.pressure == 0.0).sum()),
+        "points": reduction.points,
+        "deviation": reduction.deviation,
+        "loads": reduction.loads,
+        "largest_moment": reduction.moment * args.preload * joint.row_distance * joint.row_bolts,
+        "deviation_beyond": reduction.beyond,
+        "written": [str(path) for path in (args.out, args.plot) if path],
+    }
+
+
+def _lines(facts: dict[str, Any], before: float) -> list[str]:
+    from ..fields.loads import PRELOADS
+
+    low, high = PRELOADS
+    part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)
+    lines = [
+        f"{facts['nodes']} nodes ({facts['open_nodes']} open), pressure up to "
+        f"{facts['p_max'] / 1e6:.4g} MPa, mean {facts['p_mean'] / 1e6:.4g} MPa",
+        f"force {facts['force']:.6g} N, {part:+.2g} % of the bolts' {facts['force_of_the_bolts']:.6g} N; "
+        "the field is scaled to theirs",
+        f"A_0 is the nodes' area, {facts['A_0']:.6g} m2 (it was {before:.6g} m2)",
+    ]
+    if facts["loads"]:
+        lines.append(
+            f"{facts['points']} points stand for them: force, K_zz, K_xx, K_rx, K_ry within "
+            f"{facts['deviation']:.1e} at {facts['loads']} other loads (preload {low:g} to {high:g} times "
+            f"this one, pressed to fully open, moment up to {facts['largest_moment']:.4g} N.m at this one)"
+        )
+    else:
+        lines.append("all nodes are kept")
+    if facts["deviation_beyond"]:
+        lines.append(
+            f"larger moments open nodes: within {facts['deviation_beyond']:.1e} until a row is unloaded"
+        )
+    return [*lines, *(f"wrote {path}" for path in facts["written"])]

@@ -1,0 +1,170 @@
+"""`jointfmu footprint compute`: the pressure of a bolted joint by finite elements."""
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu import plots
+from jointfmu.commands.common import command
+from jointfmu.mechanics.curve import Curve, approach_curve
+from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
+
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
+from .telling import tell
+
+if TYPE_CHECKING:
+    from ..fem.bolted_contact import JointSolution
+    from ..fem.convergence import MeshResult
+
+FINEST = 5
+"""Most meshes of `--refine`."""
+COARSEST = 0.3
+"""Least refinement [1] at which a hole still looks like one."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "compute the contact pressure of a bolted joint by finite elements"
+    sub = command(commands, "compute", run, text)
+    assembly_arguments(sub)
+    sub.add_argument("--moment", type=float, metavar="M", help="bending moment about x [N.m] (default: 0)")
+    sub.add_argument(
+        "--out", type=Path, metavar="FILE", help="write the joint with this field, for FMUs (TOML)"
+    )
+    sub.add_argument("--field", type=Path, metavar="FILE", help="write the field (.csv, .vtu)")
+    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw the pressure (.png, .svg)")
+    sub.add_argument(
+        "--refine", type=int, default=1, metavar="N", help=f"number of meshes, 1 to {FINEST} (default: 1)"
+    )
+    sub.add_argument(
+        "--refinement",
+        type=float,
+        default=1.0,
+        metavar="R",
+        help="divides the sizes of elements (default: 1)",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the command; returns the exit status."""
+    try:
+        from ..fem import convergence, results
+        from ..fem.assembly import load as read
+        from ..fem.symmetry import unlike_holes
+    except ImportError as error:
+        raise without_fem(error) from None
+    assembly, file = read(args.assembly), joint_file(args.params)
+    moment = 0.0 if args.moment is None else args.moment
+    assembly.bolt_forces(args.preload, moment)
+    _check(args)
+    if args.field:
+        results.check(args.field)
+    file = with_assembly(file, assembly, whole=args.out is not None)
+    levels = convergence.refinements(args.refine, args.refinement)
+    try:
+        rows, solution = convergence.study(assembly, _law(file), args.preload, moment, levels)
+    except (ImportError, OSError) as error:
+        raise without_fem(error) from None
+    written = _write(args, file, solution)
+    facts = _findings(solution, moment, args.preload)
+    found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
+    found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
+    if args.json:
+        shown = facts | {"meshes": list(_meshes(rows)), "written": written}
+        print(json.dumps(shown | found.document()))
+    else:
+        print("\n".join([*_lines(facts), *_table(rows)]))
+        tell(found)
+        print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
+    return 0
+
+
+def _law(file: ParameterFile) -> Curve:
+    return approach_curve(file.values)
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse what cannot be done or written before the work."""
+    if not 1 <= args.refine <= FINEST:
+        raise ValueError(f"--refine = {args.refine} is outside [1, {FINEST}]: number of meshes")
+    if not COARSEST <= args.refinement <= 4.0:
+        raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
+    for path in filter(None, (args.out, args.field)):
+        check_writable(path)
+    if args.plot:
+        plots.check(args.plot)
+
+
+def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
+    """Write what was asked for; returns the paths."""
+    from ..fem import results
+
+    if args.out:
+        write_text(args.out, dump(_with_field(args, file, solution)))
+    if args.field:
+        results.write(solution, args.field)
+    if args.plot:
+        results.draw(solution, args.plot)
+    return [str(path) for path in (args.out, args.field, args.plot) if path]
+
+
+def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
+    """The joint with the field at the preload, and what a moment adds."""
+    from ..fem.joint_file import with_solution
+
+    return with_solution(file, solution, args.preload, args.moment or 0.0)
+
+
+def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:
+    field = solution.field
+    places, between = solution.between
+    return {
+        "assembly": solution.joint.assembly.name,
+        "preload": preload,
+        "moment": moment,
+        "area": float(field.area.sum()),
+        "force": field.force,
+        "p_mean": field.force / float(field.area.sum()),
+        "p_max": solution.peak,
+        "between": [
+            {"x": x, "y": y, "p": p} for (x, y), p in zip(places.tolist(), between.tolist(), strict=True)
+        ],
+        "open_share": float(field.area[field.pressure <= 0.0].sum() / field.area.sum()),
+        **solution.stiffness,
+    }
+
+
+def _lines(facts: dict[str, Any]) -> Iterator[str]:
+    """The findings for people."""
+    yield f"{facts['assembly']}: {facts['preload']:g} N per bolt, moment {facts['moment']:g} N.m"
+    yield f"contact   {facts['area'] * 1e4:.2f} cm2, {100 * facts['open_share']:.3g} % open"
+    yield f"force     {facts['force']:.6g} N"
+    yield f"pressure  mean {facts['p_mean'] / 1e6:.3g} MPa, peak {facts['p_max'] / 1e6:.4g} MPa"
+    for middle in facts["between"]:
+        yield f"          between bolts at ({middle['x']:g}, {middle['y']:g}) m: {middle['p'] / 1e6:.3g} MPa"
+    yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
+
+
+def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, Any]]:
+    for row in rows:
+        yield {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+
+
+def _table(rows: list["MeshResult"]) -> Iterator[str]:
+    """Meshes with the relative change from one to the next and the observed order."""
+    if len(rows) < 2:
+        return
+    from ..fem.convergence import COLUMNS, changes, orders
+
+    heads = [f"{name} [{unit}]" for name, unit in COLUMNS.items()]
+    yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)
+    for row in rows:
+        values = " ".join(f"{row.values[name]:16.6g}" for name in COLUMNS)
+        yield f"{row.refinement:6.2f} {row.unknowns:9d} {values}"
+    for change, row in zip(changes(rows), rows[1:], strict=True):
+        percent = " ".join(f"{100.0 * change[name]:14.3f} %" for name in COLUMNS)
+        yield f"change to {row.refinement:6.2f} {percent}"
+    if observed := orders(rows):
+        yield "observed order   " + " ".join(f"{observed[name]:16.1f}" for name in COLUMNS)

@@ -1,0 +1,78 @@
+"""`jointfmu modelica`: the Modelica library, from parameters."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from jointfmu.commands.common import command, flag, without_package
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import Kind
+from jointfmu.parameters import ParameterFile, load
+
+from ..judgement import Judgement, judge_file
+from .telling import tell
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
+    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file of one joint (TOML)")
+    for name, kinds in _inputs().items():
+        first = any(name == kind.working_point[0] for kind in kinds)
+        make.add_argument(
+            flag(name),
+            type=float,
+            nargs="+" if first else None,
+            metavar="VALUE",
+            help="; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
+            + ("" if first else " (default: 0)"),
+        )
+    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+
+
+def _modelica(args: argparse.Namespace) -> int:
+    file = load(args.params) if args.params else None
+    points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
+    try:
+        from ..modelica import library
+
+        written = library.write(args.out, file, points)
+    except ImportError as error:
+        raise without_package(error, "write the library") from None
+    found = _judged(file, points) if file else None
+    if args.json:
+        said = found.document() if found else {}
+        print(json.dumps({"written": [str(path) for path in written]} | said))
+        return 0
+    print(f"wrote {args.out / library.NAME}: {len(written)} files")
+    if found:
+        tell(found)
+    return 0
+
+
+def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:
+    """The judgement of the user's joint at its working points."""
+    return judge_file(file, [point[0] for point in points.get(file.joint, [])] or None)
+
+
+def _inputs() -> dict[str, list[Kind]]:
+    """{input that working points give: joints that have it}."""
+    names = dict.fromkeys(name for kind in KINDS.values() for name in kind.working_point)
+    return {name: [kind for kind in KINDS.values() if name in kind.working_point] for name in names}
+
+
+def _meaning(kind: Kind, name: str) -> str:
+    variable = kind.variables[name]
+    return f"{variable.doc} [{variable.unit}]"
+
+
+def _points(kind: Kind, args: argparse.Namespace) -> list[tuple[float, ...]]:
+    """The working points asked for: values of the first input, each with those of the others, else zero."""
+    first, *rest = kind.working_point
+    given = {name: getattr(args, name) for name in rest if getattr(args, name) is not None}
+    values: list[float] = getattr(args, first) or []
+    if given and not values:
+        needed = f"{flag(first)}, the {_meaning(kind, first)}"
+        raise ValueError(f"{flag(next(iter(given)))} needs {needed}")
+    return [(value, *(given.get(name, 0.0) for name in rest)) for value in values]

@@ -1,0 +1,103 @@
+"""`jointfmu modes`: natural frequencies of a bolted assembly that hangs freely."""
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.commands.common import command
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.parameters import check_writable, write_bytes
+
+from ..fields.clamped import clamping
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
+from .telling import tell
+
+if TYPE_CHECKING:
+    from ..fem.modes import Modes
+
+MOST = 40
+"""Most modes that are asked for."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
+    sub = command(commands, "modes", run, text)
+    assembly_arguments(sub)
+    sub.add_argument("--moment", type=float, default=0.0, metavar="M", help="about x [N.m] (default: 0)")
+    sub.add_argument("--count", type=int, default=6, metavar="N", help=f"modes, 1 to {MOST} (default: 6)")
+    sub.add_argument(
+        "--refinement",
+        type=float,
+        default=1.0,
+        metavar="R",
+        help="divides all element sizes (default: 1)",
+    )
+    sub.add_argument("--vtu", type=Path, metavar="FILE", help="write the shapes of the modes (.vtu)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the command; returns the exit status."""
+    try:
+        from ..fem import assembly_modes, shapes
+        from ..fem.assembly import load
+        from ..fem.bolted_contact import BoltedContact
+    except ImportError as error:
+        raise without_fem(error) from None
+    assembly = load(args.assembly)
+    force = float(assembly.bolt_forces(args.preload, args.moment).sum())
+    _check(args)
+    file = with_assembly(joint_file(args.params), assembly, whole=False)
+    law, shear = approach_curve(file.values), float(clamping(file.joint).shear_ratio(file.values))
+    try:
+        contact = BoltedContact.of(assembly, args.refinement)
+        solution = contact.solve(law, args.preload, args.moment)
+        modes = assembly_modes.computed(solution, shear, args.count)
+        even = assembly_modes.uniform(contact, law, force, shear, args.count)
+    except (ImportError, OSError) as error:
+        raise without_fem(error) from None
+    if args.vtu:
+        write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
+    found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
+    if args.json:
+        print(json.dumps(_document(args, assembly.name, modes, even) | found.document()))
+    else:
+        print(
+            f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
+        )
+        print("\n".join(_table(modes, even)))
+        tell(found)
+    return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    if not 1 <= args.count <= MOST:
+        raise ValueError(f"--count = {args.count} is outside [1, {MOST}]: number of modes")
+    if not 0.1 <= args.refinement <= 4.0:
+        raise ValueError(
+            f"--refinement = {args.refinement:g} is outside [0.1, 4]: divides the sizes of elements"
+        )
+    if args.vtu:
+        if args.vtu.suffix.lower() != ".vtu":
+            raise ValueError(f"{args.vtu}: suffix {args.vtu.suffix!r} is no mesh, allowed is .vtu")
+        check_writable(args.vtu)
+
+
+def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes") -> dict[str, Any]:
+    rows = zip(modes.frequency.tolist(), even.frequency.tolist(), strict=True)
+    return {
+        "assembly": name,
+        "preload": args.preload,
+        "moment": args.moment,
+        "mass": modes.mass,
+        "modes": [{"f": f, "f_uniform_pressure": g} for f, g in rows],
+        "written": [str(args.vtu)] if args.vtu else [],
+    }
+
+
+def _table(modes: "Modes", even: "Modes") -> Iterator[str]:
+    yield "mode   f [Hz]   with uniform pressure [Hz]"
+    for i, (f, g) in enumerate(zip(modes.frequency, even.frequency, strict=True), 1):
+        yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

@@ -1,0 +1,114 @@
+"""`jointfmu parameters`: what can be set of an FMU, a joint or an interface law."""
+
+import argparse
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import Field
+from pathlib import Path
+from typing import Any
+
+from jointfmu.commands.common import command
+from jointfmu.contact.laws import LAWS
+from jointfmu.contact.roughness import DECLARED
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import ParameterFile, default, load
+from jointfmu.quantity import flat_fields, flatten
+
+from .law import law_file, law_parameters
+
+_HEAD = ("name", "default", "unit", "allowed", "meaning")
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "list what can be set of an FMU, a joint or an interface law"
+    sub = command(commands, "parameters", _parameters, text)
+    sub.add_argument(
+        "name",
+        choices=[*MODELS, *KINDS, *LAWS],
+        metavar="NAME",
+        help=f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})",
+    )
+    own = sub.add_mutually_exclusive_group()
+    laws = sorted({law for kind in KINDS.values() for law in kind.laws})
+    own.add_argument(
+        "--law", choices=laws, metavar="LAW", help=f"law of the FMU or joint ({', '.join(laws)})"
+    )
+    own.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other values (TOML)")
+
+
+def _parameters(args: argparse.Namespace) -> int:
+    name = args.name
+    if name in LAWS:
+        if args.law:
+            raise ValueError(f"--law has no meaning for the law {name}; it is for FMUs and joints")
+        values = flatten(law_parameters(name, law_file(args.params, name) if args.params else None, {}))
+        fields = dict(flat_fields(LAWS[name], names=values))
+        if name == "roughness":
+            fields |= {stated: field for stated, field in DECLARED.items() if stated not in fields}
+        head = {"name": name, "law": name}
+    else:
+        file = _joint_file(name, args)
+        values = dict(file.flat)
+        if name in MODELS:
+            known = MODELS[name].of(file.joint, file.values).parameter_fields()
+            fields = {stated: field for stated, field in known.items() if stated in values}
+        else:
+            fields = dict(flat_fields(type(file.values), names=values))
+        head = {"name": name, "joint": file.joint, "law": file.law}
+    rows = [_row(stated, field, values.get(stated)) for stated, field in fields.items()]
+    if args.json:
+        print(json.dumps({**head, "parameters": rows}))
+        return 0
+    print("\n".join(_lines(rows)))
+    return 0
+
+
+def _joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
+    """The values that an FMU or joint starts from."""
+    joint = MODELS[name].joint if name in MODELS else name
+    if args.params:
+        return load(args.params, joint)
+    if args.law and args.law not in KINDS[joint].laws:
+        raise ValueError(
+            f"law = {args.law!r} is none of a {joint}, allowed are {', '.join(KINDS[joint].laws)}"
+        )
+    return default(joint, args.law)
+
+
+def _row(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
+    """One parameter: name, unit, least and largest value, meaning, default; of a choice what is allowed."""
+    meta = field.metadata
+    row = {"name": name, "meaning": meta["doc"], "default": value}
+    if "allowed" in meta:
+        return row | {"unit": None, "allowed": list(meta["allowed"])}
+    interval = meta["interval"]
+    low, high = (end if math.isfinite(end) else None for end in (interval.low, interval.high))
+    whole = {"whole": True} if meta["whole"] else {}
+    return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
+
+
+def _lines(rows: list[dict[str, Any]]) -> Iterator[str]:
+    """The rows as a table."""
+    cells = [_HEAD, *map(_cells, rows)]
+    widths = [max(len(line[i]) for line in cells) for i in range(len(_HEAD) - 1)]
+    for *first, last in cells:
+        yield "  ".join([*(cell.ljust(width) for cell, width in zip(first, widths, strict=True)), last])
+
+
+def _cells(row: dict[str, Any]) -> tuple[str, ...]:
+    allowed = row["allowed"]
+    if isinstance(allowed, list):
+        allowed = " | ".join(str(option).lower() for option in allowed)
+    elif "whole" in row:
+        allowed += " whole"
+    return (row["name"], _shown(row["default"]), row["unit"] or "", allowed, row["meaning"])
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, tuple):
+        return f"{len(value)} numbers"
+    return str(value).lower() if isinstance(value, bool | str) else f"{value:.6g}"

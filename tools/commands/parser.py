@@ -1,0 +1,61 @@
+"""The parser of the commands."""
+
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+from jointfmu import __version__
+from jointfmu.commands.common import IMPLIED, Parser
+
+COMMANDS = (
+    "new",
+    "catalogue",
+    "law",
+    "parameters",
+    "build",
+    "modelica",
+    "export",
+    "footprint",
+    "modes",
+    "report",
+    "ramp",
+    "prove",
+    "ring",
+    "system",
+    "surface",
+    "fit",
+    "uncertainty",
+    "sweep",
+    "validate",
+)
+"""Each is declared by the module of its name."""
+KERNEL = ("ramp",)
+"""Those that lie in the kernel, as they need no tool."""
+
+
+class CommandLine(Parser):
+    """The parser of commands; a sub-command may be left out."""
+
+    def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """As argparse does, with the sub-command that the words imply."""
+        return super().parse_args(_explicit(list(sys.argv[1:] if args is None else args)), namespace)
+
+
+def _explicit(words: list[str]) -> list[str]:
+    """The words with the sub-command that they imply."""
+    names = IMPLIED.get(words[0]) if words else None
+    if names is None or (words[1:2] and words[1] in (*names, "-h", "--help")):
+        return words
+    return [words[0], names[0], *words[1:]]
+
+
+def parser(words: Sequence[str] = ()) -> CommandLine:
+    """The parser of the command that words begin with; without one of all commands, which takes longer."""
+    top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
+    top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
+    for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
+        package = "jointfmu.commands" if name in KERNEL else __package__
+        import_module(f"{package}.{name}").add(commands)
+    return top

@@ -1,0 +1,81 @@
+"""`jointfmu prove`: the experiments that an FMU carries, executed in an importer."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from jointfmu.commands.common import command
+from jointfmu.joints import KINDS
+from jointfmu.parameters import load
+from jointfmu.proof import listing, report
+from jointfmu.proof.importers import IMPORTERS
+from jointfmu.proof.run import Expected, prove
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "run the experiments that an FMU carries (FMI-LS-REF) and compare with its reference results"
+    sub = command(commands, "prove", _prove, text)
+    sub.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
+    sub.add_argument(
+        "--in",
+        dest="importer",
+        choices=list(IMPORTERS),
+        default="fmpy",
+        metavar="IMPORTER",
+        help=f"what runs the FMU: {', '.join(IMPORTERS)} (default: fmpy)",
+    )
+    sub.add_argument(
+        "--listing",
+        type=Path,
+        metavar="DIR",
+        help="if all passes, write the files of the FMI cross-check for lists of exporting tools",
+    )
+    sub.add_argument(
+        "--against",
+        type=Path,
+        metavar="FILE",
+        help="parameter file: this package computes start values and references from it, those that the FMU "
+        "carries are not read",
+    )
+
+
+def _prove(args: argparse.Namespace) -> int:
+    if args.listing and args.against:
+        raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
+    proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
+    folders = listing.write(proof, args.listing) if args.listing and proof.passed else []
+    if args.json:
+        written = {"listing": [str(folder) for folder in folders]} if args.listing else {}
+        print(json.dumps(report.document(proof) | written))
+        return int(not proof.passed)
+    print("\n".join(report.lines(proof)))
+    for folder in folders:
+        print(f"wrote {folder}")
+    if args.listing and not folders:
+        print("no listing is written: not all passed", file=sys.stderr)
+    return int(not proof.passed)
+
+
+def _expected(fmu: Path, path: Path) -> Expected:
+    """What the package says of the FMU of a parameter file, without building it.
+
+    Raises ValueError if the FMU has not the inputs and outputs of one of the file's joint.
+    """
+    from jointfmu_fmu_src.proof import proof
+
+    from jointfmu.run.ramp import unpacked
+
+    file = load(path)
+    with unpacked(fmu, exchange=True) as (_, description):
+        names = {v.name for v in description.modelVariables}
+    for model in KINDS[file.joint].models:
+        if {v.name for v in (*model.inputs, *model.outputs)} <= names:
+            own = model.of(file.joint, file.values)
+            starts = {name: file.flat[name] for name in own.parameter_fields()}
+            starts |= {v.name: file.start(v.name) for v in own.inputs}
+            return Expected(str(path), starts, proof(own, file))
+    known = ", ".join(model.name for model in KINDS[file.joint].models)
+    raise ValueError(f"{fmu}: has not the variables of {known}, for which {path} is")

@@ -1,0 +1,172 @@
+"""`jointfmu ring`: resonance of a joint in its system over the load or the amplitude, by running FMUs."""
+
+import argparse
+import json
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointfmu import plots
+from jointfmu.commands.common import command, settings, without_package
+from jointfmu.files import columns
+from jointfmu.parameters import check_writable, write_text
+
+from ..systems.system import names, system
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
+    ring = command(commands, "ring", _ring, text)
+    ring.add_argument("system", metavar="SYSTEM", help=f"{', '.join(names())}, or a system's file (TOML)")
+    ring.add_argument("--joint", metavar="NAME", help="the joint, where the system has several")
+    ring.add_argument(
+        "--fmus",
+        type=Path,
+        default=Path("dist/fmi2"),
+        metavar="DIR",
+        help="folder with the FMUs of `jointfmu build --systems` (default: dist/fmi2)",
+    )
+    ring.add_argument(
+        "--load",
+        type=float,
+        nargs="+",
+        metavar="VALUE",
+        help="what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
+        "that show the joint)",
+    )
+    ring.add_argument(
+        "--inertia", type=float, metavar="VALUE", help="of the body [kg or kg.m2] (default: of the system)"
+    )
+    ring.add_argument(
+        "--amplitude",
+        type=float,
+        metavar="VALUE",
+        help="let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
+        "the motion in which the joint slips (default load: the largest of the several)",
+    )
+    settings(ring)
+    ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
+    ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
+
+
+def _ring(args: argparse.Namespace) -> int:
+    try:
+        from ..systems import ringing
+    except ImportError as error:
+        raise without_package(error, "run a system") from None
+    example = ringing.rung(system(args.system), args.joint)
+    _check(args, example.inertia_unit)
+    if args.amplitude is not None:
+        return _decays(args, example)
+    if args.settings:
+        raise ValueError("--set is given without --amplitude; allowed is with --amplitude only")
+    points = ringing.ring(example, args.fmus, args.load, args.inertia)
+    rows = [_row(point) for point in points]
+    for message in dict.fromkeys(text for point in points for text in point.messages):
+        print(message, file=sys.stderr)
+    table = _table(rows, example.load_unit)
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        from ..report.systems import SIZE, draw
+
+        with plots.drawing(args.plot, SIZE) as figure:
+            draw(figure, points, example, args.fmus)
+    misses = [line for point in points for line in point.misses]
+    if args.json:
+        print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
+    else:
+        sys.stdout.write(table)
+        for path in filter(None, (args.csv, args.plot)):
+            print(f"wrote {path}")
+    for line in misses:
+        print(f"missed: {line}", file=sys.stderr)
+    return int(bool(misses))
+
+
+def _decays(args: argparse.Namespace, example: Any) -> int:
+    """Frequency and damping over the amplitude."""
+    from ..systems import decays
+
+    points = decays.decays(example, args.fmus, args.amplitude, args.load, args.inertia, dict(args.settings))
+    body = example.body
+    for message in dict.fromkeys(text for point in points for text in point.messages):
+        print(message, file=sys.stderr)
+    heads = {
+        "load": example.load_unit,
+        "amplitude": example.motion_unit,
+        "frequency": "Hz",
+        "loop_frequency": "Hz",
+        "damping_ratio": "1",
+        "loop_damping_ratio": "1",
+    }
+    values = [np.concatenate(column) for column in zip(*map(_falling, points), strict=True)]
+    table = columns.text(list(heads.items()), values, digits=6)
+    if args.csv:
+        write_text(args.csv, table)
+    if args.plot:
+        from ..report.systems import WIDE, draw_decays
+
+        with plots.drawing(args.plot, WIDE) as figure:
+            draw_decays(figure, points, body)
+    if args.json:
+        rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
+        print(json.dumps({"system": args.system, "rows": rows}))
+        return 0
+    sys.stdout.write(table)
+    for path in filter(None, (args.csv, args.plot)):
+        print(f"wrote {path}")
+    return 0
+
+
+def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:
+    """Columns of a decay: load, amplitude, frequency [Hz] of decay and loop, damping ratio of both."""
+    hertz = 1.0 / math.tau
+    return (
+        np.full(point.amplitude.size, point.load),
+        point.amplitude,
+        hertz * point.frequency,
+        hertz * point.expected,
+        point.damping,
+        point.stated,
+    )
+
+
+def _check(args: argparse.Namespace, unit: str) -> None:
+    """Refuse what no FMU would, before the work; `unit` is the inertia's."""
+    for value in args.load or ():
+        if not math.isfinite(value):
+            raise ValueError(f"load = {value:g} is outside (-inf, inf): must be finite")
+    if args.inertia is not None and not 0.0 < args.inertia < math.inf:
+        raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
+    if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
+        raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
+    if args.csv:
+        check_writable(args.csv)
+    if args.plot:
+        plots.check(args.plot)
+
+
+def _row(point: Any) -> dict[str, float]:
+    """One working point: load, frequencies [Hz], damping ratios [1], and the largest stable steps [s] of a
+    co-simulation whose master passes the force on at once, or one step late."""
+    return {
+        "load": point.load,
+        "frequency": point.frequency / math.tau,
+        "expected_frequency": point.expected / math.tau,
+        "damping_ratio": point.damping,
+        "stated_damping_ratio": point.stated,
+        "largest_step": 2.0 / point.expected,
+        "largest_step_late": (2.0 * point.stated) ** (1.0 / 3.0) / point.expected,
+    }
+
+
+def _table(rows: list[dict[str, float]], load: str) -> str:
+    """The rows as CSV text, header `name [unit]`, six digits."""
+    units = (load, "Hz", "Hz", "1", "1", "s", "s")
+    values = [np.array([row[name] for row in rows]) for name in rows[0]]
+    return columns.text(list(zip(rows[0], units, strict=True)), values, digits=6)

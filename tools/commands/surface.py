@@ -1,0 +1,118 @@
+"""`jointfmu surface`: D and G from measured heights; `jointfmu surface synthesize`: made heights."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from jointfmu import plots
+from jointfmu.commands.common import IMPLIED, Parser, command, written
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, check_writable, default, dump, load, write_text
+from jointfmu.quantity.refusal import Refusal
+
+from ..surfaces.heights import FORMS
+from ..surfaces.reading import read
+from ..surfaces.series import METHODS, SIDES
+from . import synthesize
+
+SUBCOMMANDS = IMPLIED["surface"]
+"""The first is what the command does where none is named."""
+
+
+def add(commands: Any) -> None:
+    """Declare the command and its sub-commands."""
+    text = "identify D and G of a measured surface or of a pair"
+    top = commands.add_parser("surface", help=text, description=f"{text}; make a surface")
+    steps = top.add_subparsers(dest="step", metavar="STEP", parser_class=Parser)
+    top.usage = f"{top.prog} [-h] [{'|'.join(SUBCOMMANDS)}] ..."
+    top.epilog = f"{top.prog} FILE ... is {top.prog} {SUBCOMMANDS[0]} FILE ..."
+    find = command(steps, SUBCOMMANDS[0], _identify, text)
+    find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
+    find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
+    find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
+    find.add_argument(
+        "--range",
+        dest="span",
+        nargs=2,
+        type=float,
+        metavar=("LOW", "HIGH"),
+        help="scaling range: lags and wavelengths [m] (default: the longest straight one)",
+    )
+    find.add_argument(
+        "--longest-wave",
+        type=float,
+        metavar="L",
+        help="longest wave of h [m] (default: the length of a profile, the shorter side of a map)",
+    )
+    find.add_argument(
+        "--side",
+        choices=SIDES,
+        help="side of the contact that a single file is, the other one smooth; or both alike",
+    )
+    find.add_argument("--method", choices=METHODS, help="method to take for the joint (default: the surer)")
+    find.add_argument(
+        "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
+    )
+    find.add_argument("--joint", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}")
+    find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
+    written(find)
+    find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
+    find.add_argument(
+        "--force",
+        action="store_true",
+        help="take a field of any size; write D and G although they are not determined",
+    )
+    synthesize.add(steps, SUBCOMMANDS[1])
+
+
+def _identify(args: argparse.Namespace) -> int:
+    base = _base(args)
+    _check(args)
+    heights = [read(path, args.unit, args.force) for path in args.files]
+    from ..surfaces.identify import identify  # scipy: after what is refused at once
+    from ..surfaces.joint_parameters import with_surface
+    from . import surface_results
+
+    span = tuple(args.span) if args.span else None
+    identified = identify(heights, args.form, span, args.longest_wave, args.side)
+    file = with_surface(base, identified, args.method, args.force) if base else None
+    if args.out and file:
+        write_text(args.out, dump(file))
+    if args.plot:
+        from ..surfaces.figure import draw
+
+        draw(identified, args.plot)
+    surface_results.show(identified, heights, file, args)
+    return 0
+
+
+def _check(args: argparse.Namespace) -> None:
+    """Refuse options before any file is read."""
+    for path, ready in ((args.out, check_writable), (args.plot, plots.check)):
+        if path:
+            ready(path)
+    if not 1.0 < args.gamma < float("inf"):
+        raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
+    if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):
+        raise ValueError(f"range {args.span[0]:g} {args.span[1]:g} m, expected 0 < LOW < HIGH")
+    if args.longest_wave is not None and not 0.0 < args.longest_wave < float("inf"):
+        raise ValueError(f"longest wave = {args.longest_wave:g} m is outside (0, inf)")
+    if args.out and len(args.files) == 1 and args.side is None:
+        raise Refusal(
+            f"{args.files[0]} is one side of the contact; state which, 1, 2 or both (alike), or give the "
+            "scans of both sides",
+            "side",
+        )
+
+
+def _base(args: argparse.Namespace) -> ParameterFile | None:
+    """The parameter file to start from, if one is to be made; a default one without its roughness."""
+    if args.params:
+        return load(args.params, args.joint)
+    if args.joint:
+        from ..surfaces.joint_parameters import without_roughness
+
+        return without_roughness(default(args.joint))
+    if args.out:
+        raise ValueError(f"--out {args.out} needs --joint, one of {', '.join(KINDS)}, or --params")
+    return None

@@ -1,0 +1,66 @@
+"""`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives and a Modelica model."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from jointfmu import plots
+from jointfmu.commands.common import command, without_package
+from jointfmu.files import columns
+from jointfmu.parameters import check_writable, write_text
+
+from ..systems.system import names, system
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
+    make = command(commands, "system", _system, text)
+    make.add_argument("file", metavar="FILE", help=f"a system's file (TOML), or {', '.join(names())}")
+    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+    make.add_argument("--csv", type=Path, metavar="FILE", help="run it and write all connected outputs")
+    make.add_argument(
+        "--plot",
+        type=Path,
+        metavar="FILE",
+        help="run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)",
+    )
+
+
+def _system(args: argparse.Namespace) -> int:
+    found = system(args.file)
+    if args.csv:
+        check_writable(args.csv)
+    if args.plot:
+        plots.check(args.plot)
+    try:
+        from ..modelica import library
+        from ..modelica.systems import model_name
+        from ..systems import ssp
+
+        model = library.system_text(found)
+        built = ssp.build_systems(args.out, [found])
+    except ImportError as error:
+        raise without_package(error, "build a system") from None
+    written = args.out / "modelica" / f"{model_name(found)}.mo"
+    write_text(written, model)
+    paths = [*built, written]
+    if args.csv or args.plot:
+        from ..report import motion
+        from ..systems import cosimulation
+
+        run = cosimulation.simulate(found, args.out / "fmi2")
+        if args.csv:
+            units = motion.units(found)
+            heads = [(name, units[name]) for name in run]
+            write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
+        if args.plot:
+            with plots.drawing(args.plot, motion.SIZE) as figure:
+                motion.draw(figure, found, run)
+        paths += [path for path in (args.csv, args.plot) if path]
+    if args.json:
+        print(json.dumps({"system": found.name, "built": [str(path) for path in paths]}))
+        return 0
+    print("\n".join(f"built {path}" for path in paths))
+    return 0

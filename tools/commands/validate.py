@@ -1,0 +1,39 @@
+"""`jointfmu validate`: published numbers beside computed ones."""
+
+import argparse
+import json
+from dataclasses import asdict
+from typing import Any
+
+from jointfmu.commands.common import command
+from jointfmu.published import validation
+
+from ..fem.validation import natural_frequencies
+from .finite_elements import without_fem
+
+
+def add(commands: Any) -> None:
+    """Declare the command."""
+    sub = command(commands, "validate", _validate, "compare every published number with the computed one")
+    sub.add_argument(
+        "--frequencies",
+        action="store_true",
+        help="add the measured natural frequencies, by finite elements (half a minute)",
+    )
+
+
+def _validate(args: argparse.Namespace) -> int:
+    rows = validation.validate()
+    if args.frequencies:
+        try:
+            rows += natural_frequencies()
+        except (ImportError, OSError) as error:
+            raise without_fem(error) from None
+    misses = validation.missed(rows)
+    if args.json:
+        counts = asdict(validation.counts(rows))
+        print(json.dumps({"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)}))
+        return int(bool(misses))
+    print(validation.table(rows))
+    print(validation.summary(rows))
+    return int(bool(misses))

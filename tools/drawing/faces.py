@@ -1,0 +1,225 @@
+"""The two faces of a contact on a drawing: material and finish, Ra, Rq or a scan of each."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jointfmu.contact import fractal, roughness
+from jointfmu.quantity import Number
+
+from ..surfaces import form, reading
+from ..surfaces import roughness as scanned
+from .part import Given, Option
+from .reading import both, flag, number
+from .sheet import Sheet
+from .tables import Known, Row, row
+
+OPTIONS = (
+    Option(
+        name="material",
+        text="of both sides, or of each (jointfmu new materials)",
+        metavar="NAME",
+        many=True,
+        required=True,
+    ),
+    Option(
+        name="finish", text="of both sides, or of each (jointfmu new finishes)", metavar="NAME", many=True
+    ),
+    Option(name="Ra", text="Ra of both sides, or of each [um]", metavar="RA", many=True),
+    Option(name="Rq", text="Rq or Sq of both sides, or of each [um]", metavar="RQ", many=True),
+    Option(name="surface", text="a scan of both sides, or of each", metavar="SCAN", many=True),
+    Option(name="unit", text="length unit of scans that state none: m, mm, um, nm", metavar="UNIT"),
+    Option(name="longest_wave", text="longest wave of the roughness [mm] (default: the cut-off of its Ra)"),
+    Option(name="hardness", text="hardness of the softer side [MPa] (default: of the material)"),
+    Option(name="mu", text="coefficient of friction [1] (default: 0.15)"),
+)
+"""What every joint with rough faces takes."""
+SLOPE = 0.1
+"""Rms slope [1] of a surface of which only a height is known."""
+HURST = 0.8
+"""Hurst exponent [1] of a surface of which only a height is known."""
+GAMMA_WM = 1.5
+"""Frequency ratio of the Weierstrass-Mandelbrot function [1]."""
+CUT_OFFS = ((0.02e-6, 0.08e-3), (0.1e-6, 0.25e-3), (2e-6, 0.8e-3), (10e-6, 2.5e-3), (np.inf, 8e-3))
+"""Up to this Ra [m] this cut-off [m] (ISO 4288, Table 1; ISO 21920-3)."""
+
+
+class Face(NamedTuple):
+    """One side: rms height [m], its least and greatest value, slope [1], Hurst exponent, longest wave [m].
+
+    text : where the height comes from; stated: {name of the section [roughness] without the side: height}
+    """
+
+    Rq: float
+    low: float
+    high: float
+    slope: Known
+    hurst: Known
+    wave: Known
+    text: str
+    stated: dict[str, float]
+
+
+def materials(given: Given) -> tuple[Row, Row]:
+    """The two materials. Raises ValueError for one that the table lacks."""
+    names = both("material", given["material"])
+    assert names is not None  # it is required
+    return row("materials", names[0]), row("materials", names[1])
+
+
+class Heights(NamedTuple):
+    """What is known of h [m] of both faces: its range; and the heights for the section [roughness]."""
+
+    low: float
+    high: float
+    stated: dict[str, float]
+
+
+def put(sheet: Sheet, given: Given) -> Heights:
+    """Put materials and roughness of the two faces on a sheet.
+
+    Raises ValueError, one line: unknown names, no or two statements of the roughness, a bad number or scan.
+    """
+    pair = materials(given)
+    for prefix, material in zip(("side1", "side2"), pair, strict=True):
+        for name in ("E", "nu"):
+            known = material.numbers[name]
+            sheet.put(f"{prefix}.{name}", known.value, known.kind, f"{material.title}: {known.source}")
+    soft = min(pair, key=lambda material: material.numbers["H"].value)
+    if given["hardness"] is None:
+        known = soft.numbers["H"]
+        sheet.put("H", known.value, known.kind, f"{soft.title}: {known.source}")
+    else:
+        sheet.stated("H", number("hardness", given["hardness"], "MPa", "Pa"))
+    if given["mu"] is None:
+        sheet.put("mu", 0.15, "estimate", "dry machined metal; VDI 2230, Table A6 has 0.1 to 0.3")
+    else:
+        sheet.stated("mu", number("mu", given["mu"], "1", "1"))
+    sheet.put("traction_ratio", 0.1, "estimate", "vibration far below slip")
+    return _heights(sheet, faces(given), given["longest_wave"])
+
+
+def _heights(sheet: Sheet, pair: tuple[Face, Face], wave: str | None) -> Heights:
+    """Put the height of both faces together, and what belongs to it."""
+    h, low, high = (
+        float(roughness.together(*(getattr(face, name) for face in pair))) for name in ("Rq", "low", "high")
+    )
+    texts = "; ".join(f"side {i + 1}: {face.text}" for i, face in enumerate(pair))
+    spread = f"; {low * 1e6:.3g} to {high * 1e6:.3g} um with the range of the finish" if high > low else ""
+    sheet.put(
+        "h", h, "estimate" if high > low else "derived", f"sqrt(Rq1^2 + Rq2^2), Rq = 1.25 Ra; {texts}{spread}"
+    )
+    sheet.put("gamma", roughness.GAMMA, "derived", "boundary elements: 0.40 to 0.48 (docs/validity.md)")
+    longest = max((face.wave for face in pair), key=lambda known: known.value)
+    if wave is None:
+        sheet.take("longest_wave", longest)
+    else:
+        sheet.stated("longest_wave", number("longest_wave", wave, "mm", "m"))
+    rough = max(pair, key=lambda face: face.Rq)
+    sheet.take("hurst", rough.hurst)
+    slopes = [face.slope for face in pair]
+    value = float(roughness.together(*(known.value for known in slopes)))
+    sheet.put(
+        "slope", value, "estimate", "both sides together; " + "; ".join({known.source for known in slopes})
+    )
+    _fractal(sheet)
+    stated = {f"{name}{i + 1}": v for i, face in enumerate(pair) for name, v in face.stated.items()}
+    return Heights(low, high, stated)
+
+
+def _fractal(sheet: Sheet) -> None:
+    """D and G of profiles of an isotropic surface with the height, for laws that need them."""
+    h, wave, hurst = (sheet.value(name) for name in ("h", "longest_wave", "hurst"))
+    D, text = 2.0 - hurst, f"rms height {h:.3g} m of all waves up to {wave:g} m"
+    sheet.put("surface.D", D, "estimate", f"2 - H with the Hurst exponent {hurst:g}")
+    sheet.put("surface.G", roughness_length(D, h, wave), "derived", text)
+    sheet.put("surface.gamma", GAMMA_WM, "estimate", "the usual value")
+
+
+def roughness_length(D: float, h: float, longest: float) -> float:
+    """G [m] of profiles of dimension D whose surface has the rms height h [m] up to a longest wave [m]."""
+
+    def height(G: Number) -> Number:
+        return fractal.height(D, G, longest)
+
+    # h grows as G^(D - 1)
+    return float((h / height(1.0)) ** (1.0 / (D - 1.0)))
+
+
+def faces(given: Given) -> tuple[Face, Face]:
+    """The two faces.
+
+    Raises ValueError if the roughness is not stated or twice, or for a bad number or scan.
+    """
+    heights = [name for name in ("Ra", "Rq", "surface") if given[name]]
+    finishes = both("finish", given["finish"])
+    if len(heights) > 1:
+        raise ValueError(f"{' beside '.join(map(flag, heights))}: expected one statement of the roughness")
+    if not heights:
+        if finishes is None:
+            raise ValueError("the roughness is missing; expected --finish, --Ra, --Rq or --surface")
+        return _of_finish(finishes[0]), _of_finish(finishes[1])
+    name = heights[0]
+    texts = both(name, given[name])
+    assert texts is not None  # one of `heights`
+    if name == "surface":
+        first = _of_scan(texts[0], given["unit"])
+        return first, first if texts[1] == texts[0] else _of_scan(texts[1], given["unit"])
+    rows = (row("finishes", finishes[0]), row("finishes", finishes[1])) if finishes else (None, None)
+    pair = [_of_number(name, text, finish) for text, finish in zip(texts, rows, strict=True)]
+    return pair[0], pair[1]
+
+
+def _cut_off(Ra: float) -> Known:
+    wave = next(cut_off for up_to, cut_off in CUT_OFFS if Ra <= up_to)
+    return Known(wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra counts no longer waves")
+
+
+def _of_finish(name: str) -> Face:
+    known = row("finishes", name)
+    Ra, low, high = (known.numbers[key].value for key in ("Ra", "Ra_low", "Ra_high"))
+    text = (
+        f"{known.title}, Ra {low * 1e6:.3g} to {high * 1e6:.3g} um, taken as {Ra * 1e6:.3g} um "
+        f"({known.numbers['Ra_low'].source})"
+    )
+    Rq, least, most = (float(roughness.rms_of_mean(value)) for value in (Ra, low, high))
+    slope, hurst = known.numbers["slope"], known.numbers["hurst"]
+    return Face(Rq, least, most, slope, hurst, _cut_off(Ra), text, {"Ra": Ra})
+
+
+def _of_number(name: str, text: str, finish: Row | None) -> Face:
+    value = number(name, text, "um", "m")
+    Rq = value if name == "Rq" else float(roughness.rms_of_mean(value))
+    slope = Known(SLOPE, "estimate", "usual of machined surfaces")
+    hurst = Known(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9")
+    if finish:
+        slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
+    wave = _cut_off(Rq / roughness.FACTOR)
+    return Face(Rq, Rq, Rq, slope, hurst, wave, f"{name} {value * 1e6:.4g} um of the drawing", {name: value})
+
+
+def _of_scan(path: str, unit: str | None) -> Face:
+    prepared = form.prepare(reading.read(Path(path), unit))
+    longest = scanned.default_wave(prepared.whole)
+    found = scanned.of_scan(prepared.gappy, prepared.whole, longest)
+    source = f"scan {Path(path).name}"
+    return Face(
+        found.h,
+        found.h,
+        found.h,
+        Known(found.slope, "user", f"{source}, waves down to {found.shortest_wave:.3g} m"),
+        Known(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9"),
+        Known(longest, "user", f"length of the {source}"),
+        f"{source}, waves up to {longest:.3g} m",
+        {"Rq": found.h},
+    )
+
+
+def beyond(peak: float, hardness: float) -> list[str]:
+    """The warning if the greatest pressure [Pa] is above the hardness [Pa], where the law ends."""
+    if peak <= hardness:
+        return []
+    return [
+        f"the greatest pressure, {peak:.4g} Pa, is above the hardness, {hardness:.4g} Pa: the law ends there"
+    ]

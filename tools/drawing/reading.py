@@ -1,0 +1,55 @@
+"""Numbers as they stand on drawings: in a unit of their own or in that of the drawing, 200x100, 4xM12."""
+
+import math
+import re
+from collections.abc import Sequence
+
+from jointfmu.quantity.units import factor
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
+
+
+def flag(name: str) -> str:
+    """The option of a name."""
+    return "--" + name.replace("_", "-")
+
+
+def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) -> float:
+    """A number of the option `name` in the unit `to`; without a unit of its own it has `unit`.
+
+    Raises ValueError if it is none, of another unit, infinite, or not above `least` (None: any).
+    """
+    match = _NUMBER.fullmatch(text.strip())
+    example = f"expected a number in {unit}, or with its unit as in 1{unit}"
+    if not match:
+        raise ValueError(f"{flag(name)} = {text!r} is no number; {example}")
+    try:
+        value = float(match[1]) * factor(match[2] or unit, to)
+    except ValueError as error:
+        raise ValueError(f"{flag(name)} = {text!r}: {error}; {example}") from None
+    if not math.isfinite(value) or (least is not None and not value > least):
+        low = "-inf" if least is None else f"{least:g}"
+        raise ValueError(f"{flag(name)} = {text!r} is outside ({low}, inf)")
+    return value
+
+
+def numbers(
+    name: str, text: str, unit: str, to: str, *, by: str, count: int, least: float | None = 0.0
+) -> list[float]:
+    """So many numbers with a sign between them: 200x100. Raises ValueError as `number`."""
+    parts = text.split(by)
+    if len(parts) != count:
+        example = by.join(["200", "100"][:count])
+        raise ValueError(
+            f"{flag(name)} = {text!r} has {len(parts)} numbers, expected {count}, as in {example}"
+        )
+    return [number(name, part, unit, to, least) for part in parts]
+
+
+def both(name: str, texts: Sequence[str] | None) -> tuple[str, str] | None:
+    """What is stated of the two sides: once for both, or of each. Raises ValueError if there are more."""
+    if not texts:
+        return None
+    if len(texts) > 2:
+        raise ValueError(f"{flag(name)} has {len(texts)} values, expected one for both sides or one of each")
+    return texts[0], texts[-1]

@@ -1,0 +1,59 @@
+"""The parameters of a new joint as they are collected, each with where it comes from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import build, flat_fields
+
+from .tables import Known
+
+
+@dataclass(slots=True)
+class Sheet:
+    """{structured name: (value, kind, source)} of a joint, and of start values of its inputs."""
+
+    joint: str
+    law: str
+    known: dict[str, tuple[Any, str, str]] = field(default_factory=dict)
+    inputs: dict[str, float] = field(default_factory=dict)
+
+    def put(self, name: str, value: Any, kind: str, source: str) -> None:
+        """A parameter, or with the prefix `inputs.` a start value."""
+        if name.startswith("inputs."):
+            self.inputs[name.removeprefix("inputs.")] = value
+        self.known[name] = (value, kind, source)
+
+    def stated(self, name: str, value: Any) -> None:
+        """A parameter that stands on the drawing."""
+        self.put(name, value, "user", "stated on the drawing")
+
+    def take(self, name: str, known: Known) -> None:
+        """A parameter of a table."""
+        self.put(name, known.value, known.kind, known.source)
+
+    def value(self, name: str) -> Any:
+        """One of the values."""
+        return self.known[name][0]
+
+    def file(self, name: str, roughness: Mapping[str, float] | None = None) -> ParameterFile:
+        """The parameter file of that name, with those of the values that the joint's law has.
+
+        Raises ValueError as `quantity.build`.
+        """
+        cls = KINDS[self.joint].laws[self.law]
+        declared = {key for key, _ in flat_fields(cls)}
+        own = {key: known for key, known in self.known.items() if key in declared}
+        starts = {key: known for key, known in self.known.items() if key.startswith("inputs.")}
+        kept = own | starts
+        file = ParameterFile(
+            self.joint,
+            name,
+            build(cls, {key: value for key, (value, _, _) in own.items()}),
+            {key: kind for key, (_, kind, _) in kept.items()},
+            {key: source for key, (_, _, source) in kept.items()},
+            self.inputs,
+        )
+        return file.with_roughness(roughness, "user", "stated on the drawing") if roughness else file

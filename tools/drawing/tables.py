@@ -1,0 +1,125 @@
+"""The shipped tables of materials, finishes and bolts: models/tables/*.toml."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from jointfmu.parameters import entries, read_document
+from jointfmu.quantity import quantity
+from jointfmu.quantity.units import factor
+
+
+class Known(NamedTuple):
+    """A number in its SI unit, where it comes from (one of parameters.ORIGINS), and the source."""
+
+    value: float
+    kind: str
+    source: str
+
+
+MATERIAL = {
+    "E": quantity("Pa", "Young's modulus"),
+    "nu": quantity("1", "Poisson's ratio"),
+    "density": quantity("kg/m3", "density"),
+    "H": quantity("Pa", "hardness"),
+}
+FINISH = {
+    "Ra": quantity("m", "usual Ra"),
+    "Ra_low": quantity("m", "least Ra"),
+    "Ra_high": quantity("m", "greatest Ra"),
+    "slope": quantity("1", "rms slope of one surface"),
+    "hurst": quantity("1", "Hurst exponent"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of a table: its name, other names, a title, and numbers by column."""
+
+    name: str
+    also: tuple[str, ...]
+    title: str
+    numbers: Mapping[str, Known]
+
+
+@cache
+def table(name: str) -> dict[str, Row]:
+    """`materials` or `finishes`: {name: row}."""
+    path, document = _document(name)
+    columns = {"materials": MATERIAL, "finishes": FINISH}[name]
+    rows = {}
+    for title, body in document.items():
+        plain = {key: body.pop(key) for key in ("also", "title")}
+        values, kinds, sources = entries(path, columns, body)
+        known = {key: Known(float(value), kinds[key], sources[key]) for key, value in values.items()}
+        rows[title] = Row(title, tuple(plain["also"]), plain["title"], known)
+    return rows
+
+
+def row(name: str, wanted: str) -> Row:
+    """The row of a table by one of its names, whatever its case and hyphens; ValueError if there is none."""
+    rows = table(name)
+    for found in rows.values():
+        if _key(wanted) in map(_key, (found.name, *found.also)):
+            return found
+    one = {"materials": "material", "finishes": "finish"}[name]
+    raise ValueError(f"{one} {wanted!r} is unknown, allowed are {', '.join(rows)} (jointfmu new {name})")
+
+
+def _key(text: str) -> str:
+    return text.lower().replace("-", " ").strip()
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """A metric bolt; lengths [m]."""
+
+    name: str
+    d: float
+    pitch: float
+    hole: float
+    hexagon: float
+    socket: float
+
+
+@cache
+def threads() -> dict[str, Thread]:
+    """{name: bolt} of coarse pitch."""
+    _, document = _document("bolts")
+    columns = [factor(column["unit"], "m") for column in document["columns"].values()]
+    names = list(document["columns"])
+    mm = factor("mm", "m")
+    return {
+        name: Thread(
+            name,
+            d=float(name[1:]) * mm,
+            **{c: v * f for c, v, f in zip(names, values, columns, strict=True)},
+        )
+        for name, values in document["rows"].items()
+    }
+
+
+def thread_source(column: str) -> str:
+    """Where a column of the bolts comes from."""
+    return str(_document("bolts")[1]["columns"][column]["source"])
+
+
+@cache
+def classes() -> dict[str, dict[str, tuple[float, float]]]:
+    """{property class: {yield, proof: stress [Pa] up to and above M16}}."""
+    stated = _document("bolts")[1]["classes"]
+    size = factor(stated["unit"], "Pa")
+    return {
+        name: {key: (pair[0] * size, pair[1] * size) for key, pair in body.items()}
+        for name, body in stated.items()
+        if isinstance(body, dict)
+    }
+
+
+def _document(name: str) -> tuple[Path, dict[str, Any]]:
+    path = Path(str(files("jointfmu_models") / "tables" / f"{name}.toml"))
+    document = read_document(path, "a table")
+    return path, {key: value for key, value in document.items() if key not in ("schema", "table")}

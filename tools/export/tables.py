@@ -1,0 +1,126 @@
+"""Curves of the package as tables that a solver joins by straight lines."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from jointfmu.mechanics.curve import Curve
+
+from ..thinning import kept
+
+Array = NDArray[np.float64]
+
+_DENSE = 64
+"""Points per segment of a curve at which errors are measured."""
+_LEAST = 10_000
+"""The same of a whole curve at least: some have few segments."""
+_FEWEST = 12
+"""Fewest of them on a line: a parabola's top is then met within a per cent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A load over a displacement.
+
+    rows      : (n, 3) displacement, load, stiffness of the curve there
+    straight  : [1] largest errors of load and stiffness where a solver joins the rows by lines
+    monotone  : [1] the same with the monotone cubic of Fritsch and Butland
+    """
+
+    rows: Array
+    straight: tuple[float, float]
+    monotone: tuple[float, float]
+
+
+def law_table(curve: Curve, error: float) -> Table:
+    """Pressure [Pa] over approach [m] from first touch, stiffness [N/m3], up to the hardness.
+
+    One line leads over the closing of the contact, where the law itself does not reach; the errors are
+    those above it.
+    """
+    x, y, k = _dense(curve)
+    some = x >= 0.0
+    table = thinned(x[some] - curve.displacement[0], y[some], k[some], error)
+    rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
+    return Table(rows, table.straight, table.monotone)
+
+
+def load_table(curve: Curve, area: float, error: float) -> Table:
+    """`law_table` of an area [m2]: load [N] and stiffness [N/m], and a row without load before it."""
+    table = law_table(curve, error)
+    rows = table.rows * [1.0, area, area]
+    return Table(np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.straight, table.monotone)
+
+
+def odd_table(curve: Curve, error: float) -> Table:
+    """A curve through zero with its mirror image."""
+    half = _dense(curve)
+    rows = thinned(*half, error).rows
+    rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
+    x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
+    return Table(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
+
+
+def thinned(
+    x: Array,
+    y: Array,
+    k: Array,
+    error: float,
+    floor: tuple[float, float] = (0.0, 0.0),
+    keep: Collection[int] = (),
+) -> Table:
+    """The fewest of the points (n) of a curve, taken one after the other, whose lines keep to it.
+
+    error : [1] largest error of y by straight lines, relative to y or floor[0], the larger
+    floor : load and stiffness to which errors refer at least
+    keep  : points that stay
+    """
+    if not 0.0 < error < 0.5:
+        raise ValueError(f"error = {error:g} is outside (0, 0.5)")
+    size = np.maximum(np.abs(y), floor[0])
+    size = np.where(size > 0.0, size, np.inf)
+
+    def off(i: int, j: int) -> float:
+        line = y[i] + (y[j] - y[i]) / (x[j] - x[i]) * (x[i : j + 1] - x[i])
+        return float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1]))
+
+    stops = {*keep, x.size - 1}
+    index = kept(stops, lambda i, j: off(i, j) <= error)
+    between = np.diff(index)[~np.isin(index[1:], list(stops))]
+    if np.any(between < _FEWEST):
+        raise ValueError(
+            f"error = {error:g} is too small for a table; it would have {index.size} rows or more"
+        )
+    rows = np.stack([x[index], y[index], k[index]], axis=1)
+    return Table(rows, *_errors(rows, x, y, k, floor))
+
+
+def _errors(
+    rows: Array, x: Array, y: Array, k: Array, floor: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Largest errors of load and stiffness by straight lines and by the monotone cubic."""
+    which = np.clip(np.searchsorted(rows[:, 0], x, side="right") - 1, 0, len(rows) - 2)
+    slope = np.array([(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(rows)])[which]
+    cubic = PchipInterpolator(rows[:, 0], rows[:, 1])
+
+    def worst(approximate: Array, exact: Array, least: float) -> float:
+        size = np.maximum(np.abs(exact), least)
+        some = size > 0.0
+        return float(np.max(np.abs(approximate - exact)[some] / size[some]))
+
+    straight = worst(np.interp(x, rows[:, 0], rows[:, 1]), y, floor[0]), worst(slope, k, floor[1])
+    return straight, (worst(cubic(x), y, floor[0]), worst(cubic(x, 1), k, floor[1]))
+
+
+def _dense(curve: Curve) -> tuple[Array, Array, Array]:
+    """The curve at many points."""
+    nodes = curve.displacement
+    dense = max(_DENSE, _LEAST // (nodes.size - 1))
+    part = np.arange(dense) / dense
+    x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * part).ravel(), nodes[-1])
+    load, stiffness = curve.derivatives(x, 1)
+    return x, load, stiffness

@@ -1,0 +1,120 @@
+"""One file of each kind: the numbers of a joint, its comment, its text."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+
+from . import ansys, columns, keywords, tables
+from .exports import LoadCurve, required
+from .mesh import Mesh
+from .placing import Placing
+from .units import Units
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """The text of a file and what is worth saying about it."""
+
+    text: str
+    facts: dict[str, Any]
+
+
+def springs(form: str, file: ParameterFile, state: Any, mesh: Mesh | None, placing: Placing) -> Written:
+    """Springs (and dashpots) of a joint between node pairs.
+
+    state : working point, or None where the mesh states the pressures
+    mesh  : the user's node pairs, or None for the joint's own nodes
+
+    Raises ValueError if the joint has no springs, or they do not go with the pairs.
+    """
+    field, where = required(file.joint, "springs")(file.values, state, mesh, placing)
+    units = placing.units
+    sums = ", ".join(f"{n} {v:.9g} {'N/m' if n[0] == 'K' else 'N.s/m'}" for n, v in field.sums.items())
+    about = [
+        f"springs of a {KINDS[file.joint].title} between node pairs, linear about a working point",
+        f"parameters: {file.name} ({file.joint})",
+        f"working point: {where}",
+        f"units: {units.name}",
+        f"pairs: {len(field.nodes)}, left out because they are open: {field.opened}",
+        f"sums over the pairs, SI: {sums}",
+        f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
+        f"the joint's normal is the model's {placing.normal}",
+    ]
+    if form == "ansys":
+        text = ansys.springs_text(field, placing, [*about, "MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping"])
+    elif form == "csv":
+        text = columns.springs_csv(field, placing, about)
+    else:
+        if form == "calculix":
+            about.append("no dashpots: CalculiX has none along an axis between coincident nodes")
+        text = keywords.springs_text(field, placing, about, dashpots=form == "abaqus")
+    facts = {"pairs": len(field.nodes), "open": field.opened, "correction": field.correction, **field.sums}
+    return Written(text, facts)
+
+
+def contact(form: str, file: ParameterFile, units: Units, error: float) -> Written:
+    """The interface's pressure over its approach, for a contact of two surfaces.
+
+    Raises ValueError if the joint has none.
+    """
+    curve, more = required(file.joint, "contact")(file.values)
+    table = tables.law_table(curve, error)
+    about = [
+        "normal contact of the rough interface: pressure over overclosure from first touch",
+        f"parameters: {file.name} ({file.joint})",
+        f"units: {units.name}",
+        f"straight lines keep to the law's pressure within {table.straight[0]:.2g}, to its stiffness within "
+        f"{table.straight[1]:.2g},",
+        f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
+        *more,
+    ]
+    if form == "csv":
+        heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
+        text = columns.table_csv(table.rows, heads, units, about)
+    else:
+        about.append(f"the last row is {keywords.FAR:g} m further on the last tangent")
+        most = None
+        if form == "calculix":
+            most = keywords.CALCULIX_ROWS
+            about.append(
+                "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table"
+            )
+        text = keywords.contact_text(table, units, about, most)
+    return Written(text, _facts(table))
+
+
+def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float) -> Written:
+    """Load over displacement of the whole joint, with its stiffness.
+
+    Raises ValueError if the joint has no such curve or its working point is missing.
+    """
+    load: LoadCurve = required(file.joint, "curve")
+    table = load.table(file.values, state, error)
+    heads = [(v.name, v.unit) for v in load.columns]
+    about = [load.meaning, f"parameters: {file.name} ({file.joint})"]
+    if state is not None:
+        about.append(f"working point: {state}")
+    about += [
+        "columns: " + ", ".join(f"{n} [{units.symbol(u)}]" for n, u in heads),
+        f"straight lines keep to the load within {table.straight[0]:.2g}, to the stiffness within "
+        f"{table.straight[1]:.2g};",
+        f"the monotone cubic of Fritsch and Butland within {table.monotone[0]:.2g} and "
+        f"{table.monotone[1]:.2g}",
+    ]
+    if form == "modelica":
+        return Written(
+            columns.modelica_text(table.rows, load.name, about), {"table": load.name, **_facts(table)}
+        )
+    return Written(columns.table_csv(table.rows, heads, units, about), _facts(table))
+
+
+def _facts(table: tables.Table) -> dict[str, Any]:
+    return {
+        "rows": len(table.rows),
+        "error": table.straight[0],
+        "stiffness_error": table.straight[1],
+        "error_monotone": table.monotone[0],
+        "stiffness_error_monotone": table.monotone[1],
+    }

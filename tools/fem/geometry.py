@@ -1,0 +1,232 @@
+"""Two bodies bolted together on a plane: their parametric shapes and the bolts between them.
+
+The contact lies in the plane z = 0, side 1 below and side 2 above it. A body is a stack of layers,
+each a rectangle with an optional rectangular opening, all centred on the z axis.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.quantity import check, quantity
+
+from .bolts import Bolts
+
+Array = NDArray[np.float64]
+
+
+SAME = 1e-9
+"""Lengths [m] that differ by less are equal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A slab of a body.
+
+    bottom, top   : [m] distances from the contact plane
+    outer, inner  : (2) [m] half lengths along x and y of its outline and of its opening (0: none)
+    drilled       : whether the holes of the bolts pass through it
+    """
+
+    bottom: float
+    top: float
+    outer: tuple[float, float]
+    inner: tuple[float, float] = (0.0, 0.0)
+    drilled: bool = False
+
+    def solid(self, x: Array, y: Array) -> NDArray[np.bool_]:
+        """Whether the layer is solid at points (...) [m] of the plan, holes of bolts apart."""
+        inside = (np.abs(x) < self.outer[0]) & (np.abs(y) < self.outer[1])
+        return np.asarray(inside & ~((np.abs(x) < self.inner[0]) & (np.abs(y) < self.inner[1])))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plate:
+    """A rectangular plate; all of it but the holes is in contact."""
+
+    length: float = quantity("m", "length along x", gt=0.0)
+    width: float = quantity("m", "width along y", gt=0.0)
+    thickness: float = quantity("m", "thickness", gt=0.0)
+    E: float = quantity("Pa", "Young's modulus", gt=0.0)
+    nu: float = quantity("1", "Poisson's ratio", gt=-1.0, lt=0.5)
+    density: float = quantity("kg/m3", "density", gt=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def clamped(self) -> float:
+        """Thickness [m] under the head of a bolt."""
+        return self.thickness
+
+    def layers(self) -> tuple[Layer, ...]:
+        """The slabs of the body, from the contact outward."""
+        return (Layer(0.0, self.thickness, (0.5 * self.length, 0.5 * self.width), drilled=True),)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoxSection:
+    """A rectangular box open at the contact: a flange there, four walls, a floor at the far end."""
+
+    length: float = quantity("m", "outer length of the flange along x", gt=0.0)
+    width: float = quantity("m", "outer width of the flange along y", gt=0.0)
+    height: float = quantity("m", "height from the contact to the far end", gt=0.0)
+    wall: float = quantity("m", "thickness of the walls", gt=0.0)
+    flange_width: float = quantity("m", "width of the contact frame", gt=0.0)
+    flange_thickness: float = quantity("m", "thickness of the flange", gt=0.0)
+    floor: float = quantity("m", "thickness of the floor at the far end; 0: open", ge=0.0)
+    wall_inset: float = quantity("m", "from the outer edge of the flange to the wall's outer face", ge=0.0)
+    E: float = quantity("Pa", "Young's modulus", gt=0.0)
+    nu: float = quantity("1", "Poisson's ratio", gt=-1.0, lt=0.5)
+    density: float = quantity("kg/m3", "density", gt=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+        least, most = self.wall_inset + self.wall, 0.5 * min(self.length, self.width)
+        if not least - SAME <= self.flange_width < most:
+            raise ValueError(
+                f"flange_width = {self.flange_width:g} m is outside [{least:g}, {most:g}): "
+                "the walls stand on the flange, and the flange leaves the middle open"
+            )
+        if not self.flange_thickness < self.height - self.floor:
+            raise ValueError(
+                f"flange_thickness = {self.flange_thickness:g} m is outside "
+                f"(0, {self.height - self.floor:g}): flange, walls and floor make up the height"
+            )
+
+    @property
+    def clamped(self) -> float:
+        """Thickness [m] under the head of a bolt."""
+        return self.flange_thickness
+
+    def layers(self) -> tuple[Layer, ...]:
+        """The slabs of the body, from the contact outward."""
+        opening = self._half(self.flange_width)
+        outside, inside = self._half(self.wall_inset), self._half(self.wall_inset + self.wall)
+        base, end = self.flange_thickness, self.height - self.floor
+        flange = Layer(0.0, base, self._half(0.0), opening, drilled=True)
+        walls = Layer(base, end, outside, inside)
+        return (flange, walls, Layer(end, self.height, outside)) if self.floor else (flange, walls)
+
+    def _half(self, inset: float) -> tuple[float, float]:
+        return 0.5 * self.length - inset, 0.5 * self.width - inset
+
+
+Body = Plate | BoxSection
+
+
+@dataclass(frozen=True, slots=True)
+class Assembly:
+    """Two bodies and their bolts. A body that cannot take the bolts is refused with ValueError."""
+
+    name: str
+    side1: Body
+    side2: Body
+    bolts: Bolts
+
+    def __post_init__(self) -> None:
+        check_bolts(self)
+
+    @property
+    def row_distance(self) -> float:
+        """Distance L_a [m] of the two outermost rows of bolts, which carry a moment about x."""
+        return float(np.ptp(self.bolts.positions[:, 1]))
+
+    def outer_rows(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
+        """Which bolts (n) make up the outermost row y > 0 and the opposite one; None if they are no pair."""
+        y, size = self.bolts.positions[:, 1], self.row_distance
+        high, low = (np.abs(y - end) < SAME + 1e-6 * size for end in (y.max(), y.min()))
+        return (high, low) if size > 0.0 and high.sum() == low.sum() else None
+
+    @property
+    def contact_area(self) -> float:
+        """Area [m2] where the bodies touch, the holes cut out."""
+        layers = [body.layers()[0] for body in (self.side1, self.side2)]
+        outer = np.min([layer.outer for layer in layers], axis=0)
+        inner1, inner2 = (np.minimum(layer.inner, outer) for layer in layers)
+        opening = 4.0 * (inner1.prod() + inner2.prod() - np.minimum(inner1, inner2).prod())
+        holes = len(self.bolts.positions) * 0.25 * np.pi * self.bolts.hole_diameter**2
+        return float(4.0 * outer.prod() - opening - holes)
+
+    def bolt_forces(self, preload: float, moment: float = 0.0) -> Array:
+        """Force (n) [N] of each bolt for a preload [N] per bolt and a moment [N.m] about x.
+
+        The moment raises the outermost row y > 0 by M/(L_a N_b) and lowers the opposite one, N_b
+        bolts in each (Zhao 2018, section 3). ValueError if a bolt would lose its force.
+        """
+        if not (np.isfinite(preload) and preload > 0.0):
+            raise ValueError(f"preload = {preload:g} N is outside (0, inf): force of each bolt")
+        force = np.full(len(self.bolts.positions), float(preload))
+        if moment == 0.0:
+            return force
+        rows, most = self.outer_rows(), self.most_moment(preload)
+        if rows is None:
+            raise ValueError(f"moment = {moment:g} N.m needs two outer rows with as many bolts each")
+        if not abs(moment) < most:
+            why = "a row of bolts would lose its force"
+            raise ValueError(f"moment = {moment:g} N.m is outside ({-most:g}, {most:g}): {why}")
+        for row, sign in zip(rows, (1.0, -1.0), strict=True):
+            force[row] += sign * preload * moment / most
+        return force
+
+    def most_moment(self, preload: float) -> float:
+        """Moment [N.m] that takes all force of a row of bolts; 0 if there are no two rows."""
+        rows = self.outer_rows()
+        return 0.0 if rows is None else preload * self.row_distance * float(rows[0].sum())
+
+
+def check_bolts(assembly: Assembly) -> None:
+    """Raise ValueError if a head does not lie flat on its body, or if two heads overlap."""
+    bolts = assembly.bolts
+    hole, head, at = 0.5 * bolts.hole_diameter, 0.5 * bolts.head_diameter, bolts.positions
+    if hole >= head:
+        raise ValueError(
+            f"hole_diameter = {2 * hole:g} m is outside (0, {2 * head:g}): the head covers the hole"
+        )
+    for i, (x, y) in enumerate(at):
+        for side in ("side1", "side2"):
+            if text := _obstacle(getattr(assembly, side), x, y, head):
+                raise ValueError(
+                    f"bolt {i + 1} at ({x:g}, {y:g}) m with head_diameter = {2 * head:g} m {text} of {side}"
+                )
+        near = np.hypot(*(at[:i] - at[i]).T)
+        if near.size and near.min() < 2.0 * head:
+            raise ValueError(
+                f"head_diameter = {2 * head:g} m is outside (0, {near.min():g}): bolts {near.argmin() + 1} "
+                f"and {i + 1} overlap"
+            )
+
+
+def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
+    """What keeps a disc on the flange from lying flat; None if nothing does."""
+    flange, *rest = body.layers()
+    if not _within(x, y, radius, flange.outer) or _meets(x, y, radius, flange.inner):
+        return "reaches beyond the flange"
+    if rest and _meets(x, y, radius, rest[0].outer) and not _within(x, y, radius, rest[0].inner):
+        return "runs into a wall"
+    return None
+
+
+def _within(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
+    """Whether a disc lies inside the rectangle; touching is inside."""
+    return abs(x) + radius <= half[0] + SAME and abs(y) + radius <= half[1] + SAME
+
+
+def _meets(x: float, y: float, radius: float, half: tuple[float, float]) -> bool:
+    """Whether a disc and the inside of the rectangle have a point in common."""
+    gap = np.hypot(max(abs(x) - half[0], 0.0), max(abs(y) - half[1], 0.0))
+    return min(half) > 0.0 and bool(gap < radius - SAME)
+
+
+def rectangles(assembly: Assembly) -> Iterator[tuple[float, float]]:
+    """Half lengths [m] of every rectangle on which a body has an edge, each once."""
+    seen: set[tuple[float, float]] = set()
+    for body in (assembly.side1, assembly.side2):
+        for layer in body.layers():
+            for half in (layer.outer, layer.inner):
+                key = (round(half[0], 9), round(half[1], 9))
+                if min(half) > 0.0 and key not in seen:
+                    seen.add(key)
+                    yield half

@@ -1,0 +1,91 @@
+"""The computed contact as files: nodal CSV, VTU for ParaView, a picture."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu import plots
+from jointfmu.parameters import check_writable, write_bytes, write_text
+
+from ..fields import csvfile
+from .bolted_contact import JointSolution
+from .vtu import packed
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+SUFFIXES = (".csv", ".vtu")
+
+
+def check(path: str | Path) -> None:
+    """Raise ValueError if a field could not be written there: suffix, place. For use before long work."""
+    if Path(path).suffix.lower() not in SUFFIXES:
+        raise ValueError(
+            f"{path}: suffix {Path(path).suffix!r} is no field, allowed are {', '.join(SUFFIXES)}"
+        )
+    check_writable(path)
+
+
+def write(solution: JointSolution, path: str | Path) -> None:
+    """Write the field: quadrature points and their areas as .csv, the nodes of the mesh as .vtu."""
+    check(path)
+    if Path(path).suffix.lower() == ".csv":
+        write_text(path, csvfile.text(solution.field))
+    else:
+        write_bytes(path, vtu(solution))
+
+
+def quarters(solution: JointSolution) -> tuple[Array, Index, Array]:
+    """Every element of the contact cut in four: points (k, 2) [m], cells (m, 4), approach (k) [m].
+
+    The points are the nodes of the contact and the middles of its elements.
+    """
+    interface, nodal = solution.joint.interface, solution.contact.at_nodes
+    dofs = np.asarray(interface.basis.element_dofs)
+    weight = np.repeat([-0.25, 0.5], 4)  # of the corners and edges in the middle of 8 nodes
+    middles = interface.nodes.shape[1] + np.arange(dofs.shape[1])
+    (a, b, c, d), (ab, bc, cd, da) = np.split(dofs, 2)
+    cells = [(a, ab, middles, da), (ab, b, bc, middles), (middles, bc, c, cd), (da, middles, cd, d)]
+    points = np.concatenate(
+        [interface.nodes, np.einsum("i,xin->xn", weight, interface.nodes[:, dofs])], axis=1
+    )
+    return points.T, np.concatenate(cells, axis=1).T, np.concatenate([nodal, weight @ nodal[dofs]])
+
+
+def vtu(solution: JointSolution) -> bytes:
+    """Quadrilaterals of the contact with pressure [Pa] and approach [m] at their corners."""
+    places, cells, approach = quarters(solution)
+    data = {"pressure": solution.contact.model.law.derivatives(approach, 1)[0], "approach": approach}
+    points = np.column_stack([places, np.zeros(len(places))])
+    return packed(points, "quad", cells, data)
+
+
+def draw(solution: JointSolution, path: str | Path) -> None:
+    """A picture of the pressure over the contact, with the peak and the values midway between bolts."""
+    from matplotlib.tri import Triangulation
+
+    contact = solution.contact
+    points, cells, approach = quarters(solution)
+    wide, high = np.ptp(points, axis=0)
+    scale = 6.4 / max(wide, high)
+    with plots.drawing(path, (scale * wide + 2.4, scale * high + 1.2)) as figure:
+        axes = figure.subplots()
+        axes.grid(False)
+        triangles = np.concatenate([cells[:, [0, 1, 2]], cells[:, [0, 2, 3]]])
+        pressure = contact.model.law.derivatives(approach, 1)[0] / 1e6
+        shape = Triangulation(points[:, 0], points[:, 1], triangles)
+        colours = axes.tripcolor(shape, pressure, shading="gouraud", cmap="viridis")
+        figure.colorbar(colours, label="contact pressure in MPa", shrink=0.8)
+        top = int(np.argmax(contact.node_pressure))
+        x, y = solution.joint.interface.nodes[:, top]
+        axes.plot(x, y, "o", color=plots.RED, fillstyle="none")
+        axes.annotate(
+            f"{solution.peak / 1e6:.2f}", (x, y), (8, -12), textcoords="offset points", color=plots.RED
+        )
+        for place, value in zip(*solution.between, strict=True):
+            axes.annotate(f"{value / 1e6:.2f}", place, ha="center", va="center", color="white", size=8)
+        axes.set(xlabel="x in m", ylabel="y in m", aspect="equal")
+        force = solution.force / 1e3
+        bolts = f"{force.min():g}" if np.ptp(force) == 0.0 else f"{force.min():g} to {force.max():g}"
+        axes.set_title(f"{solution.joint.assembly.name}, {bolts} kN per bolt", size=10)

@@ -1,0 +1,216 @@
+"""Abaqus listings: field reports (.rpt) of Abaqus/CAE and printed tables (.dat) of Abaqus/Standard.
+
+A report says for which part it lists nodes; a line of dashes parts the names of its columns from the rows,
+and where the page is too narrow for all columns both go on in the next line. In a data file the columns
+stand after NODE, the rows after them may have a status (CL, OP), rows of zeros are left out, and tables
+repeat for each increment. Of several frames the last one with a pressure counts.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from jointfmu.quantity.refusal import Refusal
+
+from . import deck
+from .nodal_result import NodalResult
+
+PRESSURE, AREA = "CPRESS", "CNAREA"
+_PLACE = ("COOR1", "COOR2", "COOR3")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+_COLUMN = re.compile(r"[A-Z]+\d*(?:\..*)?")
+_SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
+
+
+class Row(NamedTuple):
+    """What a listing says of a node.
+
+    where  : file and line
+    frame  : step and increment; `part` the instance that the node belongs to
+    values : {column: value}; a column of several components by the component
+    """
+
+    where: str
+    frame: str
+    part: str
+    node: int
+    values: dict[str, float]
+
+
+class Values(NamedTuple):
+    """Values by part and node, of one frame."""
+
+    pressure: dict[tuple[str, int], float]
+    area: dict[tuple[str, int], float]
+    place: dict[tuple[str, int], tuple[float, ...]]
+
+
+def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
+    """The contact result of listings, with their coordinates and areas or an input deck among them; in SI.
+
+    Raises ValueError naming file and line: a file that cannot be read, a column that is missing, a row that
+    does not fit its columns, a node with two values.
+    """
+    path, meshes = paths[0], [p for p in paths[1:] if p.suffix.lower() == ".inp"]
+    values, left_out = _values([p for p in paths if p not in meshes])
+    if not values.pressure:
+        raise ValueError(f"{path}: has no contact pressure, a column {PRESSURE} for nodes (Unique Nodal)")
+    if meshes:
+        return _on_deck(path, meshes[0], values, left_out, length, pressure)
+    for there, text in (
+        (values.place, "no coordinates, columns COOR1, COOR2 and COOR3 (COORD)"),
+        (values.area, f"no nodal areas, a column {AREA}"),
+    ):
+        if not any(there.values()):
+            raise Refusal(f"{path}: has {text}; list them too, or give the input deck (.inp)", "beside")
+    nodes = sorted(key for key, area in values.area.items() if area > 0.0)
+    if missing := [key for key in nodes if key not in values.place]:
+        raise ValueError(f"{path}: node {missing[0][1]} has an area and no coordinates")
+    absent = 0.0 if left_out else np.nan
+    return NodalResult(
+        path=path,
+        word="node",
+        names=np.array([node for _, node in nodes], dtype=np.int64),
+        place=np.array([values.place[key] for key in nodes]).reshape(-1, 3) * length,
+        pressure=np.array([values.pressure.get(key, absent) for key in nodes]) * pressure,
+        area=np.array([values.area[key] for key in nodes]) * length**2,
+    )
+
+
+def _on_deck(
+    path: Path, mesh_path: Path, values: Values, left_out: bool, length: float, pressure: float
+) -> NodalResult:
+    """The pressures on the faces of an input deck."""
+    parts = sorted({part for part, _ in values.pressure})
+    if len(parts) > 1:
+        text = (
+            f"{path}: lists nodes of {len(parts)} parts ({', '.join(parts)}), an input deck has one numbering"
+        )
+        raise Refusal(text, "beside")
+    mesh = deck.read(mesh_path)
+    listed = {node: value for (_, node), value in values.pressure.items()}
+    if stray := mesh.stray(listed):
+        raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
+    return mesh.result(path, listed, length, pressure, left_out)
+
+
+def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
+    """Pressures and areas of the last frame that has pressures, the last coordinates, and whether rows of
+    zeros are left out."""
+    frames: dict[str, Values] = {}
+    last, left_out = "", False
+    places: dict[tuple[str, int], tuple[float, ...]] = {}
+    for path in paths:
+        lines = _text(path)
+        report = any(line.lstrip().startswith("Field Output") for line in lines)
+        left_out |= not report
+        for row in _report(path, lines) if report else _printed(path, lines):
+            frame = frames.setdefault(row.frame, Values({}, {}, {}))
+            key = row.part, row.node
+            for name, table in ((PRESSURE, frame.pressure), (AREA, frame.area)):
+                if name in row.values and table.setdefault(key, row.values[name]) != row.values[name]:
+                    raise ValueError(f"{row.where}: node {row.node} has a second {name}, expected one")
+            if all(name in row.values for name in _PLACE):
+                frame.place[key] = places[key] = tuple(row.values[name] for name in _PLACE)
+            if PRESSURE in row.values:
+                last = row.frame
+    found = frames.get(last, Values({}, {}, {}))
+    return Values(found.pressure, found.area, places | found.place), left_out
+
+
+def _text(path: Path) -> list[str]:
+    try:
+        return path.read_text(encoding="latin-1").splitlines()
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an Abaqus listing") from None
+
+
+def _report(path: Path, lines: list[str]) -> Iterator[Row]:
+    """The rows of a field report whose nodes stand for themselves, not for an element."""
+    step = frame = part = ""
+    head: list[str] | None = None  # between the part and the rows
+    columns: list[str] = []
+    words: list[str] = []  # of a row that goes on in the next line
+    for number, line in enumerate(lines, 1):
+        text, where = line.strip(), f"{path}: line {number}"
+        if text.startswith("Step:"):
+            step = text
+        elif text.startswith("Frame:"):
+            frame = text
+        elif text.startswith("Field Output"):
+            head, columns, words = None, [], []
+            if text.startswith("Field Output reported at nodes for"):
+                head, part = [], text.split(":", 1)[-1].strip().split(".")[0]
+        elif text and set(text) == {"-"} and head:
+            columns, head = [*columns, *_columns(where, head)], []
+        elif not text or text.upper().startswith(_SUMMARIES):
+            columns = [] if text else columns
+        elif columns and _NUMBER.fullmatch(text.split()[0]):
+            words += text.split()
+            head = None
+            if len(words) > len(columns):
+                yield _row(where, f"{step} {frame}", part, columns, words)
+                words = []
+        elif head is not None and (columns or head or text.startswith("Node")):
+            head.append(text)
+
+
+def _columns(where: str, head: Sequence[str]) -> list[str]:
+    """Names of columns in the lines of a head: in the first one, with a place (@Loc 1) each in the second.
+
+    A name may go on with that of a contact pair, as in CPRESS  ASSEMBLY_A/ASSEMBLY_B.
+    """
+    words = [word for word in head[0].split() if word not in ("Node", "Label")]
+    names: list[str] = []
+    for word in words:
+        if names and not _COLUMN.fullmatch(word):
+            names[-1] += f" {word}"
+        else:
+            names.append(word)
+    count = sum(line.count("@Loc") for line in head)
+    if count not in (0, len(names)):
+        raise ValueError(f"{where}: has {count} columns, their names are not told apart: {' '.join(words)}")
+    known = [_known(name) for name in names]
+    if known.count(PRESSURE) > 1:
+        raise ValueError(
+            f"{where}: has {known.count(PRESSURE)} columns {PRESSURE}, expected one contact pair"
+        )
+    return known
+
+
+def _known(name: str) -> str:
+    """What a column is called here: COOR1 for COORD.COOR1, CPRESS for that of a contact pair."""
+    first = name.split()[0]
+    return first.removeprefix("COORD.") if first.startswith("COORD.") else first
+
+
+def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> Row:
+    numbers = words[-len(columns) :]
+    if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(_NUMBER.fullmatch, numbers)):
+        raise ValueError(f"{where}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
+    values = [float(word.upper().replace("D", "E")) for word in numbers]
+    return Row(where, frame, part, int(words[0]), dict(zip(columns, values, strict=True)))
+
+
+def _printed(path: Path, lines: list[str]) -> Iterator[Row]:
+    """The rows of the node tables of a data file."""
+    step = increment = ""
+    columns: list[str] = []
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        if not words:
+            continue
+        if words[:4] == ["S", "T", "E", "P"]:
+            step, columns = " ".join(words[4:5]), []
+        elif words[0] == "INCREMENT" and words[-1] == "SUMMARY":
+            increment, columns = words[1], []
+        elif words[0] == "NODE" and "FOOT-" in words:
+            columns = [word for word in words if word not in ("NODE", "FOOT-", "STATUS")]
+        elif words[0] in _SUMMARIES or "TABLE" in words:
+            columns = []
+        elif columns and words[0].isdigit() and len(words) > 1:
+            numbers = [word for word in words if not word.isalpha()]  # without CL, OP
+            yield _row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)

@@ -1,0 +1,171 @@
+"""ANSYS listings: nodal contact pressure (PRNSOL,CONT), nodes (NLIST) and contact elements (ELIST).
+
+Nodes and elements may come from an archive (CDWRITE, .cdb) instead. A listing is a text of pages. A table
+begins with its header, a line of column names that starts with NODE or ELEM, and page headers may interrupt
+it anywhere. Only lines with a number for every column are its rows; the summary of extreme values at the end
+is passed over.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.quantity.refusal import Refusal
+
+from . import cdb
+from .nodal_result import NodalResult, Nodes
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+_ELEMENT_HEAD = 6
+"""Columns before the nodes of an element: its number, material, type, constants, system, section."""
+_FACES = (3, 4, 6, 8)
+PRESSURE = "PRES"
+
+
+def read(paths: Sequence[Path], length: float, pressure: float) -> NodalResult:
+    """The contact result of one or more listings, or of one with an archive; units in SI.
+
+    Raises ValueError naming file and line: a file that cannot be read, a table that is missing, a node
+    with two values, an element with a node that is not listed.
+    """
+    values: dict[int, float] = {}
+    places: dict[int, tuple[float, ...]] = {}
+    elements: list[list[int]] = []
+    meshes = [path for path in paths[1:] if path.suffix.lower() == ".cdb"]
+    for path in (path for path in paths if path not in meshes):
+        for where, content, row in _rows(path):
+            if content == "element":
+                elements.append([int(x) for x in row[_ELEMENT_HEAD:]])
+            elif content == "more":
+                elements[-1] += [int(x) for x in row]
+            else:
+                pressed = content == "pressure"
+                listed: dict[int, object] = values if pressed else places  # type: ignore[assignment]
+                name, value = int(row[0]), row[1] if pressed else tuple(row[1:])
+                if listed.setdefault(name, value) != value:
+                    raise ValueError(f"{where}: node {name} has a second {content}, expected one")
+    first = paths[0]
+    if meshes and values:
+        return _on_archive(first, meshes[0], values, length, pressure)
+    for table, text in (
+        (values, f"no contact pressure, a table with NODE and {PRESSURE} (PRNSOL,CONT)"),
+        (places, "no nodes, a table with NODE, X, Y and Z (NLIST)"),
+        (elements, "no contact elements, a table with ELEM and NODES (ESEL,S,ENAME,,174 and ELIST)"),
+    ):
+        if not table:
+            raise Refusal(f"{first}: has {text}; give further listings", "beside")
+    return _result(first, values, places, elements, length, pressure)
+
+
+def _on_archive(
+    path: Path, archive: Path, values: dict[int, float], length: float, pressure: float
+) -> NodalResult:
+    """The pressures on those faces of an archive whose corners are listed."""
+    mesh = cdb.read(archive)
+    if stray := mesh.stray(node for node, value in values.items() if value):
+        raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {archive}")
+    return mesh.result(path, values, length, pressure)
+
+
+def _result(
+    path: Path,
+    values: dict[int, float],
+    places: dict[int, tuple[float, ...]],
+    elements: Sequence[Sequence[int]],
+    length: float,
+    pressure: float,
+) -> NodalResult:
+    used = sorted({node for element in elements for node in element if node})
+    if missing := [node for node in used if node not in places]:
+        raise ValueError(f"{path}: node {missing[0]} of a contact element is not listed (NLIST)")
+    if stray := sorted(values.keys() - set(used)):
+        loaded = [node for node in stray if values[node] != 0.0]
+        if loaded:
+            raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
+    index = {name: i for i, name in enumerate(used)}
+    return NodalResult(
+        path=path,
+        word="node",
+        names=np.array(used, dtype=np.int64),
+        place=np.array([places[name] for name in used]) * length,
+        pressure=np.array([values.get(name, np.nan) for name in used]) * pressure,
+        faces=_faces(path, elements, index),
+    )
+
+
+def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int]) -> list[Nodes]:
+    """Elements of one size together; a quadrilateral whose third and fourth node agree is a triangle."""
+    blocks: dict[int, list[list[int]]] = {}
+    for element in elements:
+        nodes = [node for node in element if node]
+        if len(nodes) == 8 and nodes[2] == nodes[3]:
+            nodes = [nodes[i] for i in (0, 1, 2, 4, 5, 7)]
+        elif len(nodes) == 4 and nodes[2] == nodes[3]:
+            nodes = nodes[:3]
+        if len(nodes) not in _FACES:
+            raise ValueError(
+                f"{path}: an element has {len(nodes)} nodes, expected contact elements with 3, 4, 6 or 8: "
+                "select them before ELIST"
+            )
+        blocks.setdefault(len(nodes), []).append([index[node] for node in nodes])
+    return [np.array(rows, dtype=np.intp) for rows in blocks.values()]
+
+
+def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
+    """(file and line, content, numbers) of all rows: pressure, place, element, more nodes of an element."""
+    try:
+        text = path.read_text(encoding="latin-1")
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an ANSYS listing") from None
+    head: list[str] = []
+    before = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        words = line.replace("(", " ").split()
+        if not words:
+            continue
+        if words[0] in ("NODE", "ELEM") and not any(map(_is_number, words)):
+            head, before = words, ""
+            continue
+        if words[0] in ("MINIMUM", "MAXIMUM"):
+            head = []
+        numbers = _numbers(line)
+        if not head or numbers is None:
+            continue
+        where = f"{path}: line {number}"
+        content, row = _content(head, numbers, where, before)
+        if content:
+            yield where, content, row
+            before = content
+
+
+def _is_number(word: str) -> bool:
+    return _NUMBER.fullmatch(word) is not None
+
+
+def _numbers(line: str) -> list[float] | None:
+    """Numbers of a line that has nothing else; they may touch, as in 12-0.5E-003-0.1E-003."""
+    if _NUMBER.sub("", line).strip():
+        return None
+    return [float(x.replace("D", "E").replace("d", "e")) for x in _NUMBER.findall(line)]
+
+
+def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:
+    """What a row of a table is, and its numbers that count."""
+    if head[0] == "ELEM":
+        whole = all(x % 1.0 == 0.0 for x in numbers)
+        if not whole:
+            return "", []
+        if len(numbers) > _ELEMENT_HEAD:
+            return "element", numbers
+        return ("more", numbers) if before in ("element", "more") else ("", [])
+    if PRESSURE in head and "X" not in head:
+        if len(numbers) != len(head):
+            raise ValueError(f"{where}: has {len(numbers)} numbers, its table {len(head)}: {' '.join(head)}")
+        return "pressure", [numbers[0], numbers[head.index(PRESSURE)]]
+    if head[1:4] == ["X", "Y", "Z"]:
+        if len(numbers) < 4:
+            raise ValueError(f"{where}: has {len(numbers)} numbers, expected NODE, X, Y and Z")
+        return "place", numbers[:4]
+    return "", []

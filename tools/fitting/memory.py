@@ -1,0 +1,195 @@
+"""What the fits of joints with memory share: the model of a measurement, the search, facts and notes."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from jointfmu.quantity.refusal import Refusal
+
+from .branches import Loops
+from .exchange import Exchange
+from .hysteresis import Hysteresis
+from .least_squares import Array, Residuals, Solution, Unknown, solve
+from .measurement import Measurement
+from .oscillator import Free, Oscillator, Response
+
+DAMPING = "damping_ratio"
+"""Unknown that is no parameter of the joint: the damping ratio of the structure beside it [1]."""
+FIRST_DAMPING, MOST_DAMPING = 1e-3, 0.3
+ALIKE = 0.5
+"""Correlation of neighbouring residuals [1] above which the law itself misses the data."""
+ROUGH, TOLERANCE = 1e-3, 1e-6
+"""Relative change of cost or parameters at which the first and the second fit end [1]."""
+ROUGH_NOISE = 0.01
+"""Noise of the first fit over the size of the data [1]; it holds the search back only."""
+QUIET = 1e-9
+"""Least noise over the largest [1]: data without any are made by a program."""
+
+Law = Callable[[Mapping[str, float]], Hysteresis]
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A measurement's model: the law over the unknowns, and what vibrates.
+
+    law     : {name: value} of the unknowns -> law of the loop
+    inertia : mass or inertia on the joint, None with loops
+    damping : damping ratio of the structure beside the joint [1], if it is not an unknown
+    """
+
+    law: Law
+    inertia: float | None
+    damping: float
+
+    def of(self, values: Mapping[str, float]) -> Hysteresis:
+        """The law of the loop at the values."""
+        return self.law({name: value for name, value in values.items() if name != DAMPING})
+
+    def residuals(self, data: Loops | Free | Response, values: Mapping[str, float], scale: Array) -> Array:
+        """Residuals of the data at the values."""
+        law = self.of(values)
+        if isinstance(data, Loops):
+            return data.residuals(law, scale)
+        return data.residuals(self.oscillator(law, values), scale)
+
+    def oscillator(self, law: Hysteresis, values: Mapping[str, float]) -> Oscillator:
+        """The mass on the joint."""
+        assert self.inertia is not None
+        return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
+
+
+def model(measurement: Measurement, law: Law, setting: str, inertia: float | None, damping: float) -> Model:
+    """The model of a measurement; `setting` is the option of the inertia.
+
+    Raises ValueError if what vibrates is stated with loops, is missing otherwise, or is out of its range.
+    """
+    what = setting.replace("_", " ")
+    if measurement.kind == "loops":
+        if inertia is not None:
+            raise ValueError(f"{measurement.path}: has loops, nothing vibrates; allowed is no {what}")
+    elif inertia is None:
+        raise Refusal(f"{measurement.path}: has a vibration ({measurement.kind}); state the {what}", setting)
+    elif not 0.0 < inertia < np.inf:
+        raise ValueError(f"{what} = {inertia:g} is outside (0, inf)")
+    if not 0.0 <= damping < MOST_DAMPING:
+        raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
+    return Model(law, inertia, damping)
+
+
+def damping_unknown() -> Unknown:
+    """The damping ratio of the structure as an unknown."""
+    return Unknown(DAMPING, "1", FIRST_DAMPING, 1e-9, MOST_DAMPING)
+
+
+def search(
+    measurement: Measurement,
+    unknowns: Sequence[Unknown],
+    model: Model,
+    starts: Mapping[str, Sequence[float]],
+    level: Exchange | None = None,
+    moved: bool = False,
+) -> tuple[Solution, Array]:
+    """The best values; each group of data is weighted by its own noise, which a first fit finds.
+
+    starts : {name: values beside the start's} at which the search may begin
+    level  : the stiffness at rest and the unknown that carries it, which begins where the data have it
+    moved  : whether the search moves that stiffness instead of the unknown
+
+    Returns the solution and the noise (n) of the data.
+
+    Raises ValueError and RuntimeError as `solve`; ValueError if the law allows none of the starts.
+    """
+    data = measurement.data
+
+    def residuals(scale: Array) -> Residuals:
+        return lambda values: model.residuals(data, values, scale)
+
+    def exchanged(of: Residuals) -> Residuals:
+        if exchange is None:
+            return of
+        swap, near = exchange, own[exchange.name].start
+        return lambda values: of(swap.values(values, near))
+
+    rough = data.scale
+    seen = None if level is None else measurement.rest_stiffness(model.inertia)
+    own = {u.name: u for u in _best(unknowns, residuals(rough), starts, level, seen)}
+    exchange = level if moved else None
+    found = [exchange.unknown(own) if exchange and u.name == exchange.name else u for u in own.values()]
+    first = solve(found, exchanged(residuals(rough)), noise=ROUGH_NOISE, tolerance=ROUGH)
+    square = np.bincount(data.groups, first.residuals[: rough.size] ** 2) / np.bincount(data.groups)
+    scale = rough * np.sqrt(np.maximum(square, QUIET**2 * np.max(square)))[data.groups]
+    found = [replace(u, start=_inside(u, first.values[u.name])) for u in found]
+    solution = solve(found, exchanged(residuals(scale)), nuisances=data.nuisances, tolerance=TOLERANCE)
+    return (exchange.back(solution, own) if exchange else solution), scale
+
+
+def _inside(unknown: Unknown, value: float) -> float:
+    """A value kept off the bounds."""
+    low = max(unknown.low * (1.0 + 1e-6), 1e-300)
+    return float(min(max(value, low), unknown.high * (1.0 - 1e-6)))
+
+
+def _best(
+    unknowns: Sequence[Unknown],
+    residuals: Residuals,
+    starts: Mapping[str, Sequence[float]],
+    level: Exchange | None,
+    seen: float | None,
+) -> Sequence[Unknown]:
+    """The unknowns at the best of the starting points; at their own starts where no other is allowed.
+
+    seen : stiffness that `level` has at every starting point
+    """
+    best, least = unknowns, np.inf
+    for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
+        values = dict(zip((u.name for u in unknowns), point, strict=True))
+        try:
+            if level is not None and seen is not None:
+                rest = {name: value for name, value in values.items() if name != level.name}
+                values |= level.values(rest | {level.label: seen}, values[level.name])
+            if not all(u.low < values[u.name] < u.high for u in unknowns):
+                continue
+            cost = float(np.sum(residuals(values) ** 2))
+        except (ValueError, RuntimeError):
+            continue
+        if cost < least:
+            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
+    return best
+
+
+def facts(
+    measurement: Measurement, solution: Solution, law: Hysteresis, scale: Array
+) -> dict[str, tuple[float, str, str]]:
+    """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
+    data, (_, unit) = measurement.data, measurement.heads.unit
+    found = {
+        "points": (float(data.scale.size), "1", "data points used"),
+        "amplitude": (measurement.amplitude, unit, f"largest {measurement.heads.motion}"),
+    }
+    if isinstance(data, Loops) and law.elastic:
+        found["offset"] = (data.rest(law, scale), unit, f"{measurement.heads.motion} at rest, taken off")
+    if isinstance(data, Loops) and data.areas:
+        area, size = max(data.areas, key=lambda loop: loop[1])
+        found["loop_area"] = (area, "J", "measured, of the widest loop")
+        found["loop_area_law"] = (float(law.area(np.array([0.5 * size]))[0]), "J", "of the fitted law there")
+    _, loss = law.equivalent(np.array([measurement.amplitude]))
+    found["loss_factor"] = (float(loss[0]), "1", "of the fitted law at the largest amplitude")
+    found["noise"] = (solution.noise, "1", "of a residual over what its group has")
+    return found
+
+
+def notes(measurement: Measurement, solution: Solution) -> list[str]:
+    """Whether the law misses the data systematically."""
+    if measurement.kind == "response":
+        return []
+    rest = solution.residuals[: measurement.data.groups.size]
+    same = np.diff(measurement.data.groups) == 0
+    alike = float(np.sum((rest[1:] * rest[:-1])[same]) / np.sum(rest**2)) if np.any(rest) else 0.0
+    if alike <= ALIKE:
+        return []
+    return [
+        f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the data "
+        "systematically, the standard deviations are too small"
+    ]

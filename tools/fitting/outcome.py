@@ -1,0 +1,156 @@
+"""What every fit hands back: the parameter file, how well it is determined, and the plotted data."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.files.stamp import build_time
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Interval, flat_fields
+
+from .identifiability import combinations, undetermined
+from .least_squares import Array, Solution, Unknown
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Data, fitted curve and misfit over one abscissa, in the units of the labels.
+
+    x, y      : (n) data;  misfit : (n) data minus law
+    line      : (m), (m) the law
+    marks     : (n) bool, points to stand out
+    also      : {name: as line} of further laws
+    """
+
+    x: Array
+    y: Array
+    misfit: Array
+    line: tuple[Array, Array]
+    labels: tuple[str, str, str]
+    marks: NDArray[np.bool_] | None = None
+    also: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A fit.
+
+    facts : {name: (value, unit, meaning)} beside the parameters
+    notes : what the user should know, one line each
+    beside : a second picture, drawn beside the first
+    """
+
+    parameters: ParameterFile
+    solution: Solution
+    facts: Mapping[str, tuple[float, str, str]]
+    picture: Picture
+    notes: Sequence[str] = ()
+    beside: Picture | None = None
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Every unknown with value, unit, relative standard deviation and whether it is determined."""
+        loose, deviations = undetermined(self.solution), self.solution.deviations
+        return [
+            {
+                "name": u.name,
+                "value": self.solution.values[u.name],
+                "unit": u.unit,
+                "relative_deviation": _finite(deviations[u.name]),
+                "determined": u.name not in loose,
+            }
+            for u in self.solution.unknowns
+        ]
+
+    def warnings(self) -> list[str]:
+        """What the data do not determine, by name, and where the fit stopped; one line each."""
+        lines = []
+        if loose := undetermined(self.solution):
+            lines.append(f"the data do not determine {', '.join(loose)}: other values fit as well")
+            ranked = combinations(self.solution)
+            for combination in ranked:
+                if combination.determined:
+                    lines.append(
+                        f"the combination {combination} is determined within {percent(combination.deviation)}"
+                    )
+                elif len(combination.exponents) > 1:
+                    lines.append(
+                        f"the combination {combination} stays open: {percent(combination.deviation)}"
+                    )
+        lines += [f"{name} ended on its bound" for name in self.solution.at_bound]
+        if self.solution.limit:
+            lines.append(f"the fit ended where the model refuses: {self.solution.limit}")
+        return lines + list(self.notes)
+
+    def document(self) -> dict[str, Any]:
+        """Everything as one JSON object."""
+        return {
+            "joint": self.parameters.joint,
+            "unknowns": self.rows(),
+            "correlation": [[_finite(x) for x in row] for row in self.solution.correlation.tolist()],
+            "combinations": [
+                {
+                    "exponents": dict(combination.exponents),
+                    "relative_deviation": _finite(combination.deviation),
+                    "determined": combination.determined,
+                }
+                for combination in combinations(self.solution)
+            ],
+            "facts": {name: {"value": _finite(v), "unit": unit} for name, (v, unit, _) in self.facts.items()},
+            "warnings": self.warnings(),
+            "parameters": dict(self.parameters.flat),
+        }
+
+
+def percent(part: float) -> str:
+    """A relative standard deviation as text."""
+    if part < 1.0:
+        return f"{100.0 * part:.2g} %"
+    return f"{np.exp(part):.2g} times more or less" if part < 5.0 else "orders of magnitude"
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def unknowns(
+    start: ParameterFile, names: Sequence[str], bounds: Mapping[str, tuple[float, float]]
+) -> list[Unknown]:
+    """The named parameters with their declared intervals, narrowed by `bounds`.
+
+    Raises ValueError for a name that the joint lacks, that is no number, or that is given twice.
+    """
+    values, wanted = start.flat, []
+    declared = {n: f for n, f in flat_fields(type(start.values)) if isinstance(values.get(n), float)}
+    for name in names:
+        if name not in declared:
+            raise ValueError(f"{name!r} is no parameter to fit; allowed are {', '.join(declared)}")
+        if names.count(name) > 1:
+            raise ValueError(f"{name!r} is given twice; allowed is once")
+        meta = declared[name].metadata
+        narrow = meta["interval"].intersection(Interval(*bounds.get(name, ())))
+        wanted.append(Unknown(name, meta["unit"], float(values[name]), narrow.low, narrow.high))
+    return wanted
+
+
+def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Mapping[str, float]], Array]:
+    """`predict` over {name: value} of the unknowns, the other parameters as in `start`."""
+    return lambda values: predict(start.with_values(values, "calibration", "fit").values)
+
+
+def fitted(
+    start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
+) -> ParameterFile:
+    """The file with fitted values; their source says from what, when and over which range."""
+    file = start.with_values(values, origin, f"fitted to {data}, {today()}, {span}")
+    return replace(file, name=f"fitted to {data}")
+
+
+def today() -> str:
+    """The date, or that of SOURCE_DATE_EPOCH where it is set (for files that repeat).
+
+    Raises ValueError if the variable is no number of seconds.
+    """
+    return build_time().date().isoformat()

@@ -1,0 +1,1 @@
+"""The main job: all FMUs built, checked, compared with the papers, and the report."""

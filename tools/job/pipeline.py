@@ -1,0 +1,137 @@
+"""The main job: build every FMU, validate and prove it, run the ramps, compare, write the report."""
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.building import FLAVOURS, build
+
+from jointfmu.joints import MODELS
+from jointfmu.parameters import write_text
+from jointfmu.progress import track
+from jointfmu.proof.outcome import Proof
+from jointfmu.proof.run import prove
+from jointfmu.published import validation
+from jointfmu.run import ramp
+
+from ..laboratory import write_laboratory
+from ..report import write_report
+from ..systems import cosimulation, decays
+from ..systems.decays import Decay
+from ..systems.master import Array
+from ..systems.ringing import Ringing, examples
+from ..systems.ssp import build_systems
+from ..systems.system import System
+from .checks import Check, check, check_decays, check_ringing, default_ramp, published_through_fmus, same
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What was built and found; `fmus` is the folder of the FMUs of FMI 2.0."""
+
+    fmus: Path
+    built: list[Path] = field(default_factory=list)
+    systems: list[Path] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+    ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
+    proofs: list[Proof] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
+    rows: list[validation.Row] = field(default_factory=list)
+    fmu_rows: list[validation.Row] = field(default_factory=list)
+    ringing: dict[str, list[Ringing]] = field(default_factory=dict)
+    decays: dict[str, list[Decay]] = field(default_factory=dict)
+    arms: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
+
+    @property
+    def misses(self) -> list[str]:
+        """One line for everything that failed; of an FMU's published points those that the package meets."""
+        lines = list(self.problems)
+        lines += [f"{shown(proof.fmu)}: {text}" for proof in self.proofs for text in proof.misses]
+        lines += [
+            f"{c.fmu}: {c.name}: {c.deviation:.2g}, allowed {c.allowed:.0e}"
+            for c in self.checks
+            if not c.passed
+        ]
+        met = {(r.point.paper, r.point.id) for r in self.rows if r.passed}
+        worse = [r for r in self.fmu_rows if not r.passed and (r.point.paper, r.point.id) in met]
+        for source, rows in (("package", validation.missed(self.rows)), ("FMU", worse)):
+            lines += [
+                f"{r.point.paper}: {r.point.id} by the {source}: published {r.point.value}, "
+                f"computed {r.computed:.6g}"
+                for r in rows
+            ]
+        return lines
+
+
+def shown(fmu: Path) -> str:
+    """An FMU as it is named in the report."""
+    return f"{fmu.parent.name}/{fmu.stem}"
+
+
+def run(out: Path) -> Outcome:
+    """Build all flavours, prove, check, and write the laboratory and `out/report/index.html`, ramps as CSV.
+
+    The ramps shown are those of the flavour `fmi2`; the others must repeat them.
+    """
+    folder = out / "fmi2"
+    outcome = Outcome(folder)
+    outcome.built = build([], list(FLAVOURS), None, out)
+    outcome.systems = build_systems(out, joints=False)
+    for name in track(MODELS, "validate and ramp", len(MODELS)):
+        for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
+            outcome.problems += [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))]
+        result = default_ramp(name, folder)
+        outcome.ramps[name] = result
+        outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
+        write_text(out / "report" / f"{name}.csv", result.csv())
+        outcome.checks += check(name, folder, result)
+        outcome.checks += [same(name, out / beside, result) for beside in FLAVOURS if out / beside != folder]
+    components = [path for path in outcome.systems if path.suffix == ".fmu"]
+    for path in components:
+        outcome.problems += [f"{shown(path)}: {text}" for text in validate_fmu(str(path))]
+    outcome.proofs = [prove(path) for path in (*outcome.built, *components)]
+    for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):
+        if step == "package":
+            outcome.rows = validation.validate()
+        elif step == "FMUs":
+            outcome.fmu_rows = published_through_fmus(folder)
+        elif step == "systems":
+            outcome.ringing = examples(folder)
+            outcome.decays = decays.examples(folder)
+            outcome.arms = cosimulation.arms(folder)
+            outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
+        else:
+            write_report(out / "report" / "index.html", outcome)
+            write_laboratory(out / "report" / "laboratory.html")
+    return outcome
+
+
+def main(out: Path) -> int:
+    """Run the main job; the last lines say what was built, compared and missed."""
+    try:
+        outcome = run(out)
+    except (ValueError, RuntimeError) as error:
+        print(f"build_fmus.py: {error}", file=sys.stderr)
+        return 2 if isinstance(error, ValueError) else 1
+    misses = outcome.misses
+    folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
+    print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")
+    print(f"systems: {', '.join(p.name for p in outcome.systems if p.suffix == '.ssp')} in {out / 'ssp'}")
+    partners = [path for path in outcome.systems if path.suffix == ".fmu"]
+    print(f"validated with fmpy: {len(outcome.built) + len(partners)}; ramps run: {len(outcome.ramps)}")
+    worst = max((proof.worst.share for proof in outcome.proofs if proof.worst), default=0.0)
+    runs = sum(proof.runs for proof in outcome.proofs)
+    print(
+        f"proved in fmpy: {len(outcome.proofs)} FMUs by {runs} runs of their experiments, "
+        f"at worst {worst:.1e} of what is allowed"
+    )
+    print(
+        f"compared: {validation.summary(outcome.rows)}; "
+        f"{len(outcome.fmu_rows)} of them again through the FMUs; {len(outcome.checks)} checks of the ramps"
+    )
+    print(f"report: {out / 'report' / 'index.html'}; laboratory: {out / 'report' / 'laboratory.html'}")
+    print(f"missed: {len(misses)}")
+    for line in misses:
+        print(f"  {line}")
+    return int(bool(misses))

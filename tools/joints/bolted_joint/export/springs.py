@@ -1,0 +1,139 @@
+"""The bolted joint at a working point as springs and dashpots between node pairs (Zhao 2018, section 2).
+
+The springs are the interface: the bolts are a part of the structure around it.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import LinearNDInterpolator
+from scipy.spatial import KDTree
+
+from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.shape import PressureShape
+
+from ....export.mesh import Mesh
+from ....export.springs import Springs
+
+Array = NDArray[np.float64]
+
+SUMS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
+FORCE_TOLERANCE = 0.3
+"""How far the force of the pressures on a mesh may be from the joint's before it is made equal [1]."""
+AREA_TOLERANCE = 0.1
+"""How far the area of a mesh may be from the joint's A_0 [1]."""
+_OUTSIDE = 0.1
+
+
+def of_joint(spring: BoltedJointSpring, preload: float, moment: float, first: int = 1) -> Springs:
+    """The joint's own nodes, preload [N] per bolt and moment [N.m].
+
+    Every node of the pressure shape becomes a pair of coincident nodes: side 1 is labelled from
+    `first` on, side 2 follows.
+    """
+    count = spring.shape.share.size
+    labels = first + np.arange(2 * count, dtype=np.int64).reshape(2, count).T
+    return _split(spring, labels, preload, moment, None)
+
+
+def on_mesh(spring: BoltedJointSpring, mesh: Mesh, preload: float, moment: float) -> Springs:
+    """The joint's pressure on the pairs of a mesh, preload [N] per bolt and moment [N.m].
+
+    The pressure shape is interpolated linearly between its nodes (outside of them: the nearest one)
+    and normalised to the same total force; the stiffnesses are then multiplied by one factor so that
+    they add up to the joint's.
+
+    Raises ValueError if a pair lies off the joint, if the areas do not add up to A_0 within
+    AREA_TOLERANCE, or the interpolated pressures to the joint's force within FORCE_TOLERANCE.
+    """
+    _check_area(spring, mesh)
+    shape, place = spring.shape, mesh.position
+    share = mesh.area / mesh.area.sum()
+    far, nearest = KDTree(shape.position).query(place)
+    allowed = _OUTSIDE * float(np.hypot(*np.ptp(shape.position, axis=0)))
+    if np.any(far > allowed):
+        worst = int(np.argmax(far))
+        raise ValueError(
+            f"{mesh.path}: node {mesh.nodes[worst, 0]} is {far[worst]:.3g} m off the joint, allowed are "
+            f"{allowed:.3g} m; place and size must be the joint's"
+        )
+    values = np.stack([shape.equal, shape.tilt], axis=1)
+    linear = LinearNDInterpolator(shape.position, values)(place)
+    equal, tilt = np.where(np.isnan(linear), values[nearest], linear).T
+    force = float(share @ equal)
+    if abs(force - 1.0) > FORCE_TOLERANCE:
+        raise ValueError(
+            f"{mesh.path}: the pressures at its nodes carry {force:.3g} times the joint's force, allowed is "
+            f"within {FORCE_TOLERANCE:.0%}; refine the mesh, or give the pressure at its nodes"
+        )
+    equal /= force
+    tilt -= (share @ tilt) * equal
+    there = spring.on(PressureShape(share, place, equal, tilt))
+    return _split(there, mesh.nodes, preload, moment, _sums(spring, preload, moment))
+
+
+def under_pressure(spring: BoltedJointSpring, mesh: Mesh) -> Springs:
+    """The pairs of a mesh under the pressures that its file states.
+
+    Raises ValueError as `on_mesh` does for the area.
+    """
+    if mesh.pressure is None:
+        raise ValueError(f"{mesh.path}: has no column 'pressure'; expected pressure [Pa]")
+    _check_area(spring, mesh)
+    share = mesh.area / mesh.area.sum()
+    mean = float(share @ mesh.pressure)
+    shape = PressureShape(share, mesh.position, mesh.pressure / mean, np.zeros_like(share))
+    there = spring.on(shape)
+    return _split(there, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
+
+
+def _check_area(spring: BoltedJointSpring, mesh: Mesh) -> None:
+    area, expected = float(mesh.area.sum()), float(spring.joint.A_0)
+    if abs(area / expected - 1.0) > AREA_TOLERANCE:
+        raise ValueError(
+            f"{mesh.path}: the areas add up to {area:.4g} m2, the joint has A_0 = {expected:.4g} m2; "
+            f"allowed is within {AREA_TOLERANCE:.0%}"
+        )
+
+
+def _sums(spring: BoltedJointSpring, preload: float, moment: float) -> dict[str, float]:
+    rest = (0.0, 0.0, 0.0)
+    state = spring.motion(preload, moment, rest, rest)
+    sums = {name: float(state[name]) for name in SUMS}
+    return sums | {"K_zz": sums["K_zz"] - float(spring.joint.n_bolts * spring.joint.bolt_stiffness)}
+
+
+def _split(
+    spring: BoltedJointSpring,
+    nodes: NDArray[np.int64],
+    preload: float,
+    moment: float,
+    whole: dict[str, float] | None,
+) -> Springs:
+    """Share out the joint's stiffness and damping (or `whole`) in proportion to share times k(p)."""
+    joint, shape = spring.joint, spring.shape
+    p = pressures(joint, shape, preload, moment)
+    highest = spring.curve.end[1]
+    if not (np.isfinite(preload + moment) and 0.0 < np.max(p) <= highest):
+        raise ValueError(
+            f"preload = {preload:g} N per bolt with moment = {moment:g} N.m is outside the law: expected "
+            f"some contact and a pressure of at most {highest:g} Pa"
+        )
+    each = shape.share * spring.curve.derivatives(spring.curve.inverse(p), 1)[1]
+    closed = each > 0.0
+    part = (each / each.sum())[closed]
+    own = _sums(spring, preload, moment)
+    sums = whole or own
+    return Springs(
+        nodes[closed],
+        shape.position[closed],
+        (shape.share * joint.A_0)[closed],
+        p[closed],
+        sums["K_zz"] * part,
+        sums["K_xx"] * part,
+        sums["C_zz"] * part,
+        sums["C_xx"] * part,
+        sums,
+        sums["K_zz"] / own["K_zz"],
+        int(np.sum(~closed)),
+    )

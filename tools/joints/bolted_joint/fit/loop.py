@@ -1,0 +1,181 @@
+"""Loops, decays and responses in shear to the bolted joint's friction, level and exponent.
+
+At a constant preload the first loading of the joint's friction is its own normal curve once more (Jäger
+1995, Ciavarella 1998):
+
+    B(u) = mu (F_N(0) - F_N(kappa u/mu)),    kappa = K_T/K_N,
+
+F_N(s) the force of all nodes, moved apart by s from where the preload has them. So the stiffness at rest
+gives the level of the law, mu the force at which everything slips, and how the stiffness falls between
+the two the exponent of K_N over the load.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.mechanics.curve import Curve, approach_curve
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.units import sizes
+
+from ....fitting import memory, memory_pictures
+from ....fitting.exchange import Exchange
+from ....fitting.heads import Heads
+from ....fitting.hysteresis import Hysteresis
+from ....fitting.least_squares import Array
+from ....fitting.measurement import Measurement, measured
+from ....fitting.outcome import Outcome, fitted, unknowns
+from .preload import even_shape
+
+HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
+FREE: Mapping[str, tuple[str, ...]] = {
+    "zhao2018": ("mu", "surface.G", "surface.D"),
+    "roughness": ("mu", "h"),
+}
+"""What is fitted, of each law: friction, level and, where the law has one, exponent. Vibrations hardly see
+the exponent beside the level: without it."""
+STARTS: Mapping[str, Sequence[float]] = {
+    "mu": (0.05, 0.15, 0.4),
+    "surface.D": (1.2, 1.45),
+}
+"""Where the fit looks for a start, beside the start file's; the level begins where the data have it."""
+_NODES = 48
+"""Steps of the table of first loading, graded towards rest."""
+
+
+def first_loading(joint: Bolted, preload: float) -> tuple[Hysteresis, dict[str, tuple[float, str, str]]]:
+    """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
+
+    Raises ValueError if nothing is in contact or a pressure is beyond the law.
+    """
+    curve, approach, weight = _tightened(joint, preload)
+    kappa, mu = float(shear_ratio(joint)), joint.mu
+    apart = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
+    load, stiffness, bend = (value @ weight for value in curve.derivatives(approach - apart[:, None], 2))
+    table = CubicHermiteSpline(apart * mu / kappa, mu * (load[0] - load), kappa * stiffness)
+    whole = table.antiderivative()
+    end, limit = float(apart[-1] * mu / kappa), float(mu * load[0])
+
+    def friction(motion: Array) -> Array:
+        return np.where(motion < end, table(np.minimum(motion, end)), limit)
+
+    def work(motion: Array) -> Array:
+        inside = np.minimum(motion, end)
+        return np.asarray(whole(inside) + limit * (motion - inside))
+
+    return Hysteresis(friction, work), {
+        "friction_limit": (limit, "N", "mu times the normal force"),
+        "shear_stiffness": (float(kappa * stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
+        "exponent": (
+            float(bend[0] * load[0] / stiffness[0] ** 2),
+            "1",
+            "power of the load with which the stiffness falls as the joint opens",
+        ),
+    }
+
+
+def rest_stiffness(joint: Bolted, preload: float) -> float:
+    """K_xx [N/m] at a preload [N] of each bolt; ValueError as `first_loading`."""
+    curve, approach, weight = _tightened(joint, preload)
+    return float(shear_ratio(joint) * (curve.derivatives(approach, 1)[1] @ weight))
+
+
+def _tightened(joint: Bolted, preload: float) -> tuple[Curve, Array, Array]:
+    """The interface's curve, approach (n) [m] of the nodes and their areas (n) [m2]."""
+    shape, curve = even_shape(joint.pattern), approach_curve(joint)
+    pressure = pressures(joint, shape, preload, 0.0)
+    if not 0.0 < (most := float(np.max(pressure))) < curve.end[1]:
+        raise ValueError(
+            f"preload = {preload:g} N per bolt presses with {most:.3g} Pa, allowed is up to "
+            f"{curve.end[1]:.3g} Pa"
+        )
+    return curve, curve.inverse(pressure), joint.A_0 * shape.share
+
+
+def fit(
+    path: str | Path,
+    start: ParameterFile | None = None,
+    free: Sequence[str] | None = None,
+    *,
+    preload: float | None = None,
+    modal_mass: float | None = None,
+    damping_ratio: float = 0.0,
+) -> Outcome:
+    """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
+
+    Parameters
+    ----------
+    free       : names to fit; None: those of FREE; `damping_ratio` may be one
+    preload    : [N] of each bolt; None: that of the start's inputs
+    modal_mass : [kg] what vibrates on the joint; needed unless the file has loops
+    damping_ratio : [1] of the structure, beside the joint
+
+    Raises ValueError, one line: the file, its units, its values; a loop that creates energy; a name that
+    cannot be fitted. RuntimeError if the fit finds no end.
+    """
+    data = measured(path, HEADS)
+    file = start or default("bolted_joint")
+    force = file.start("preload") if preload is None else preload
+    if not 0.0 < force < np.inf:
+        raise Refusal(
+            f"preload = {force:g} N is outside (0, inf); state that of each bolt in the test", "preload"
+        )
+    names = list(free or FREE[file.law][: 3 if data.kind == "loops" else 2])
+
+    def joint(values: Mapping[str, float]) -> Bolted:
+        parameters: Bolted = file.with_values(values, "calibration", "fit").values
+        return parameters
+
+    model = memory.model(
+        data, lambda values: first_loading(joint(values), force)[0], "modal_mass", modal_mass, damping_ratio
+    )
+    wanted = unknowns(file, [name for name in names if name != memory.DAMPING], {})
+    wanted += [memory.damping_unknown()] * (memory.DAMPING in names)
+    level = _level(file, names, joint, force)
+    moved = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
+    solution, scale = memory.search(data, wanted, model, STARTS, level, moved and level is not None)
+    result = fitted(
+        file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
+    )
+    law, described = first_loading(result.values, force)
+    picture, beside = memory_pictures.pictures(data, model, solution.values, scale)
+    return Outcome(
+        result,
+        solution,
+        described
+        | _reached(data, law, described["friction_limit"][0])
+        | memory.facts(data, solution, law, scale),
+        picture,
+        notes=memory.notes(data, solution),
+        beside=beside,
+    )
+
+
+def _level(
+    file: ParameterFile,
+    names: Sequence[str],
+    joint: Callable[[Mapping[str, float]], Bolted],
+    preload: float,
+) -> Exchange | None:
+    """The stiffness at rest and the parameter of its level, if that is fitted."""
+    _, level, *_ = FREE[file.law]
+    if level not in names:
+        return None
+    return Exchange(
+        level, lambda values: rest_stiffness(joint(_own(values)), preload), "N/m", "shear_stiffness"
+    )
+
+
+def _own(values: Mapping[str, float]) -> dict[str, float]:
+    """Those of the joint."""
+    return {name: value for name, value in values.items() if name != memory.DAMPING}
+
+
+def _reached(data: Measurement, law: Hysteresis, limit: float) -> dict[str, tuple[float, str, str]]:
+    """How near to gross slip the data come."""
+    force = float(law.friction(np.array([data.amplitude]))[0])
+    return {"slip_reached": (force / limit, "1", "largest friction force of the data over friction_limit")}

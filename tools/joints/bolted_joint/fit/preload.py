@@ -1,0 +1,227 @@
+"""Stiffness or resonance over preload to the bolted joint's parameters.
+
+The joint is the spring of one degree of freedom, in series with the structure where that is stated:
+
+    1/K = 1/K_joint(preload) + 1/K_series,        f = sqrt(K/mass)/(2 pi).
+
+K_joint grows nearly as a power of the preload, `K_N ~ P^(D/(3-D))` for D below 1.5 and `~ P` above,
+so that a curve gives an exponent (D, below about 1.5) and a level. The level is that of G, of the moduli
+and, weakly, of H together: G is fitted, the others are taken from the start; A_0 has no effect, the law
+knows loads, no pressures. A resonance gives K/mass; without a stated mass the level goes into `mass`
+and G stays as it is.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.contact.interface import stiffness_curve
+from jointfmu.files import columns
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
+from jointfmu.mechanics.footprint.shape import MergedShape
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity.units import Sizes, factor, sizes
+
+from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.outcome import Outcome, Picture, fitted, unknowns
+
+SERIES = "series_stiffness"
+"""Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
+COLUMNS: Mapping[str, Sizes] = {
+    "preload": sizes("N", "kN"),
+    "stiffness": sizes("N/m", "N/um", "kN/mm", "N/mm"),
+    "frequency": sizes("Hz", "kHz"),
+}
+DIRECTIONS = ("normal", "tangential")
+LEAST = 4
+"""Fewest points of a curve."""
+STARTS: Mapping[str, tuple[float, ...]] = {
+    "surface.D": (1.25, 1.42, 1.6),
+    "surface.G": tuple(1.21e-8 * np.logspace(-3.0, 3.0, 7)),
+}
+"""Where the fit looks for a start, beside the start file's values."""
+
+
+def joint_stiffness(joint: Bolted, preload: Array, direction: str = "normal") -> Array:
+    """K_zz or K_xx (...) [N/m] of the tightened joint at preloads (...) [N]: exactly the exported ones."""
+    shape = even_shape(joint.pattern)
+    p = pressures(joint, shape, preload, 0.0)
+    curve = approach_curve(joint)
+    k, _ = stiffness_curve(joint, np.maximum(p, curve.closed))
+    closing = p < curve.closed  # what the curve continues to zero pressure
+    k[closing] = curve.derivatives(curve.inverse(p[closing]), 1)[1]
+    normal = joint.A_0 * np.sum(shape.share * k, axis=-1)
+    if direction == "normal":
+        return np.asarray(normal + joint.n_bolts * joint.bolt_stiffness)
+    return np.asarray(shear_ratio(joint) * normal)
+
+
+@cache
+def even_shape(pattern: PressureSource) -> MergedShape:
+    """The pressure shape, nodes of equal pressure without a moment put together."""
+    return pressure_shape(pattern).merged(moment=False)
+
+
+def fit(
+    path: str | Path,
+    start: ParameterFile | None = None,
+    free: Sequence[str] | None = None,
+    *,
+    direction: str = "normal",
+    modal_mass: float | None = None,
+    series: float | None = None,
+) -> Outcome:
+    """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
+
+    Parameters
+    ----------
+    free       : names to fit; None: surface.D with surface.G, or with mass if it is not stated
+    direction  : of the motion, one of DIRECTIONS
+    modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
+    series     : [N/m] stiffness of the structure in series; None: none, unless SERIES is in `free`
+
+    Raises ValueError, one line: the file, its units, its values; a name that cannot be fitted.
+    RuntimeError if the fit finds no end.
+    """
+    curve = _measured(Path(path))
+    file = _stated(start or default("bolted_joint"), curve, modal_mass, series)
+    mass = curve.of == "frequency" and modal_mass is None
+    names = list(free if free is not None else ("surface.D", "mass" if mass else "surface.G"))
+
+    def predict(values: Mapping[str, float]) -> Array:
+        own = {name: value for name, value in values.items() if name != SERIES}
+        joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
+        return curve.predicted(joint, values.get(SERIES, series), direction)
+
+    def miss(values: Mapping[str, float]) -> Array:
+        return np.log(predict(values) / curve.value)
+
+    solution = solve(_best_start(file, names, curve, miss), miss)
+    own = {name: value for name, value in solution.values.items() if name != SERIES}
+    span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.of}"
+    result = fitted(file, own, "calibration", Path(path).name, span)
+    stiffness = solution.values.get(SERIES, series)
+    grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
+    finer = replace(curve, preload=grid, value=np.ones_like(grid))
+    unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
+    kN = COLUMNS["preload"]["kN"]
+    picture = Picture(
+        x=curve.preload / kN,
+        y=curve.value * size,
+        misfit=100.0 * np.expm1(-solution.residuals),
+        line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
+        labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
+    )
+    return Outcome(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A curve over preload, ascending: `of` is stiffness [N/m] or frequency [Hz]."""
+
+    of: str
+    preload: Array
+    value: Array
+
+    def predicted(self, joint: Bolted, series: float | None, direction: str) -> Array:
+        """The same quantity of a joint, with a stiffness [N/m] in series if there is one."""
+        K = joint_stiffness(joint, self.preload, direction)
+        K = K if series is None else 1.0 / (1.0 / K + 1.0 / series)
+        return K if self.of == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
+
+
+def _measured(path: Path) -> Measured:
+    """Read and check the file."""
+    table = columns.read(path, COLUMNS, LEAST)
+    preload = table.require("preload", COLUMNS)
+    given = [name for name in ("stiffness", "frequency") if name in table.columns]
+    if len(given) != 1:
+        have = "both" if given else "neither"
+        choice = {name: COLUMNS[name] for name in ("stiffness", "frequency")}
+        raise ValueError(
+            f"{path}: has {have} of stiffness and frequency; expected one: {columns.heading(choice)}"
+        )
+    for name in ("preload", given[0]):
+        if np.any(bad := table.columns[name] <= 0.0):
+            unit = next(iter(COLUMNS[name]))
+            worst = table.columns[name][bad][0]
+            raise ValueError(f"{path}: {name} = {worst:g} {unit} is outside (0, inf)")
+    order = np.argsort(preload, kind="stable")
+    preload, value = preload[order], table.columns[given[0]][order]
+    if np.unique(preload).size < LEAST:
+        raise ValueError(
+            f"{path}: has {np.unique(preload).size} different preloads, at least {LEAST} are needed"
+        )
+    slope = float(np.polyfit(np.log(preload), np.log(value), 1)[0])
+    if slope <= 0.0:
+        raise ValueError(f"{path}: the {given[0]} does not rise with the preload (power {slope:.2g})")
+    return Measured(given[0], preload, value)
+
+
+def _stated(
+    start: ParameterFile, curve: Measured, modal_mass: float | None, series: float | None
+) -> ParameterFile:
+    """The start with what the user states about the test."""
+    for name, value, unit in (("modal mass", modal_mass, "kg"), ("series stiffness", series, "N/m")):
+        if value is not None and not 0.0 < value < np.inf:
+            raise ValueError(f"{name} = {value:g} {unit} is outside (0, inf)")
+    if modal_mass is None:
+        return start
+    if curve.of == "stiffness":
+        raise ValueError(
+            f"modal mass = {modal_mass:g} kg is stated, but the file has stiffnesses, no frequencies"
+        )
+    return start.with_values({"mass": modal_mass}, "user", "modal mass stated with the frequencies")
+
+
+def _best_start(
+    file: ParameterFile, names: Sequence[str], curve: Measured, miss: Callable[[Mapping[str, float]], Array]
+) -> list[Unknown]:
+    """The unknowns at the best of some starting points."""
+    wanted = unknowns(file, [name for name in names if name != SERIES], {})
+    level = (
+        curve.value[-1]
+        if curve.of == "stiffness"
+        else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
+    )
+    wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
+    grids = [(u.start, *STARTS.get(u.name, ())) for u in wanted]
+    best, least = wanted, np.inf
+    for point in product(*grids):
+        values = dict(zip((u.name for u in wanted), point, strict=True))
+        try:
+            rest = miss(values)
+        except (ValueError, RuntimeError):
+            continue
+        if "mass" in values:
+            values["mass"] *= float(np.exp(2.0 * np.mean(rest)))
+            rest = rest - np.mean(rest)
+        if (cost := float(rest @ rest)) < least:
+            least, best = cost, [replace(u, start=values[u.name]) for u in wanted]
+    return best
+
+
+def _facts(curve: Measured, solution: Solution) -> dict[str, tuple[float, str, str]]:
+    power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
+    return {
+        "points": (float(curve.preload.size), "1", "points used"),
+        "power": (power, "1", f"of the preload with which the {curve.of} grows"),
+        "noise": (solution.noise, "1", "relative standard deviation of a point about the fitted law"),
+        "largest_misfit": (float(np.max(np.abs(solution.residuals))), "1", "relative"),
+    }
+
+
+def _notes(names: Sequence[str], mass: bool) -> list[str]:
+    """What the kind of data leaves open."""
+    if mass and "mass" in names and "surface.G" not in names:
+        return [
+            "frequencies without a stated mass give K/mass only: the level is in mass, surface.G is kept; "
+            "state the modal mass to fit surface.G"
+        ]
+    return []

@@ -1,0 +1,218 @@
+"""The parameters of a bolted joint from the drawing of its plates."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.parameters import ParameterFile
+
+from ....drawing import faces, vdi2230
+from ....drawing.part import Given, NewJoint
+from ....drawing.reading import number, numbers
+from ....drawing.sheet import Sheet
+from ....drawing.tables import Thread, classes, thread_source
+from ....judgement import overload
+from . import layout
+
+Array = NDArray[np.float64]
+REST = (0.0, 0.0, 0.0)
+LARGE = 16e-3
+"""Diameter [m] above which the second strengths of a class hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clamped:
+    """One bolt and what it clamps.
+
+    grip           : [m] thickness of the parts between head and nut, or above the thread
+    layers         : those parts with their moduli
+    hole, bearing  : [m] diameters; outer: [m] D_A of the parts
+    slope          : tan(phi) of the cone [1]; cone: [m] its diameter at the interface
+    bolt, members  : [N/m] stiffnesses
+    """
+
+    grip: float
+    layers: tuple[vdi2230.Layer, ...]
+    hole: float
+    bearing: float
+    outer: float
+    slope: float
+    cone: float
+    bolt: float
+    members: float
+
+
+def joint(given: Given) -> NewJoint:
+    """The joint of a drawing; ValueError, one line, for what does not fit."""
+    length, width = numbers("plate", given["plate"], "mm", "m", by="x", count=2)
+    count, thread = layout.bolts(given["bolts"])
+    at = layout.positions(given, count)
+    law = given["law"] or "roughness"
+    sheet = Sheet(KIND.name, law)
+    heights = faces.put(sheet, given)
+    hole, hole_source = _hole(given, thread)
+    moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
+    if given["field"] == "computed" and given["tapped"]:
+        raise ValueError("--field computed beside --tapped: expected a head or nut on both sides for it")
+    one = clamped(given, thread, (length, width), at, hole, moduli)
+    plate = BoltedPlate(
+        length=length,
+        width=width,
+        x=tuple(at[:, 0].tolist()),
+        y=tuple(at[:, 1].tolist()),
+        hole_diameter=hole,
+        cone_diameter=one.cone,
+    )
+    _put_plate(sheet, plate, one, hole_source)
+    _put_bolts(sheet, plate, one, thread)
+    mass = plate.area * one.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
+    sheet.put("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
+    preload, warnings = _preload(sheet, given, thread)
+    for choice in ("critical_area", "spot_stiffness"):
+        default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
+        sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
+    name = f"plate {given['plate']} with {given['bolts']}"
+    file = sheet.file(name, None if law == "roughness" else heights.stated)
+    if given["field"] == "computed":
+        from .computed import with_computed_field
+
+        density = [material.numbers["density"].value for material in faces.materials(given)]
+        file = with_computed_field(file, plate, one.layers, one.bearing, density, preload)
+    facts = _facts(file, one, heights, preload)
+    return NewJoint(file, facts, warnings)
+
+
+def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:
+    if given["hole"] is None:
+        return thread.hole, ("published", f"{thread_source('hole')} for {thread.name}")
+    return number("hole", given["hole"], "mm", "m"), ("user", "stated on the drawing")
+
+
+def clamped(
+    given: Given,
+    thread: Thread,
+    size: tuple[float, float],
+    at: Array,
+    hole: float,
+    moduli: tuple[float, float],
+) -> Clamped:
+    """One bolt and what it clamps. Raises ValueError for thicknesses or diameters that do not fit."""
+    head, tapped = given["head"] or "hexagon", bool(given["tapped"])
+    bearing = getattr(thread, head)
+    if given["bearing"] is not None:
+        bearing = number("bearing", given["bearing"], "mm", "m")
+    for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
+        if not value > low:
+            raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
+    thick = [number("grip", text, "mm", "m") for text in given["grip"]]
+    if len(thick) > (1 if tapped else 2):
+        expected = "that of side 1" if tapped else "both plates together, or each"
+        raise ValueError(f"--grip has {len(thick)} values, expected {expected}")
+    if tapped:
+        layers: tuple[vdi2230.Layer, ...] = (vdi2230.Layer(thick[0], moduli[0]),)
+    else:
+        pair = thick if len(thick) == 2 else [0.5 * thick[0]] * 2
+        layers = tuple(vdi2230.Layer(t, E) for t, E in zip(pair, moduli, strict=True))
+    grip = float(sum(layer.thickness for layer in layers))
+    outer = outer_diameter(size, at)
+    slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
+    if not slope > 0.0:
+        raise ValueError(f"--grip = {grip * 1e3:g} mm is too short for a deformation cone of VDI 2230")
+    shank = vdi2230.shank_length(thread, grip, head, tapped)
+    delta_S = vdi2230.bolt_compliance(thread, grip, shank, head, moduli[1] if tapped else None)
+    delta_P = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
+    cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
+    return Clamped(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+
+
+def outer_diameter(size: tuple[float, float], at: Array) -> float:
+    """D_A [m]: twice a bolt's distance from the nearest edge, or that from the next bolt if less; on average.
+
+    Raises ValueError for a bolt beyond the edge.
+    """
+    edge = np.min(np.array(size) - 2.0 * np.abs(at), axis=1)
+    if np.min(edge) <= 0.0:
+        i = int(np.argmin(edge))
+        x, y = at[i] * 1e3
+        raise ValueError(f"bolt {i + 1} at ({x:g}, {y:g}) mm leaves the plate")
+    apart = np.hypot(*np.moveaxis(at[:, None, :] - at, -1, 0)) + np.diag(np.full(len(at), np.inf))
+    return float(np.mean(np.minimum(edge, np.min(apart, axis=1))))
+
+
+def _put_plate(sheet: Sheet, plate: BoltedPlate, one: Clamped, hole_source: tuple[str, str]) -> None:
+    for name in ("length", "width", "x", "y"):
+        sheet.stated(f"plate.{name}", getattr(plate, name))
+    sheet.put("plate.hole_diameter", plate.hole_diameter, *hole_source)
+    cone = (
+        f"VDI 2230, cone from d_w = {one.bearing * 1e3:g} mm over "
+        f"{min(layer.thickness for layer in one.layers) * 1e3:g} mm with tan(phi) = {one.slope:.4g}"
+    )
+    sheet.put("plate.cone_diameter", plate.cone_diameter, "derived", cone)
+    sheet.put("A_0", plate.area, "derived", "the plate without its holes")
+
+
+def _put_bolts(sheet: Sheet, plate: BoltedPlate, one: Clamped, thread: Thread) -> None:
+    row_bolts, row_distance = plate.rows
+    rows = "the places of the bolts: two rows that would carry a moment about x as they do"
+    sheet.put("n_bolts", float(len(plate.x)), "user", "stated on the drawing")
+    sheet.put("row_bolts", row_bolts, "derived", rows)
+    sheet.put("row_distance", row_distance, "derived", rows)
+    text = f"VDI 2230, 1/delta_S of {thread.name} over {one.grip * 1e3:g} mm of grip"
+    sheet.put("bolt_stiffness", one.bolt, "derived", text)
+
+
+def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[str]]:
+    """Put the preload; the warning if it is more than a bolt of the stated class bears."""
+    name = given["property_class"] or "8.8"
+    large = int(thread.d > LARGE)
+    if given["preload"] is None:
+        preload = vdi2230.assembly_preload(thread, classes()[name]["yield"][large])
+        text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
+        sheet.put("inputs.preload", preload, "estimate", text)
+    else:
+        preload = number("preload", given["preload"], "N", "N")
+        sheet.stated("inputs.preload", preload)
+    if given["property_class"] is None:
+        return preload, []
+    most = classes()[name]["proof"][large] * vdi2230.stress_area(thread)
+    return preload, overload(
+        "preload", preload, (most, f"the proof load of {thread.name}-{name} (ISO 898-1)")
+    )
+
+
+def _facts(
+    file: ParameterFile, one: Clamped, heights: faces.Heights, preload: float
+) -> dict[str, tuple[float, str, str]]:
+    """What a designer wants to know of the joint, beside its parameters."""
+    values = file.values
+    state = BoltedJointSpring.of(values).motion(preload, 0.0, REST, REST)
+    bolts = values.n_bolts * one.bolt
+    K = float(state["K_zz"]) - bolts
+    facts = {
+        "preload": (preload, "N", "force of each bolt"),
+        "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
+        "p_max": (float(state["p_max"]), "Pa", "greatest pressure, beside a bolt"),
+        "h": (float(file.flat.get("h", np.nan)), "m", "rms height of both faces together"),
+        "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, bolts apart"),
+        "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
+        "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
+        "member_stiffness": (
+            one.members,
+            "N/m",
+            "of the parts that one bolt clamps, 1/delta_P of VDI 2230; a spring in series, not in the joint",
+        ),
+        "load_factor": (
+            one.bolt / (one.bolt + one.members),
+            "1",
+            "Phi_K = delta_P/(delta_S + delta_P): part of an outer force that the bolts take",
+        ),
+    }
+    if heights.high > heights.low and file.law == "roughness":
+        h = float(file.flat["h"])
+        facts["K_zz_low"] = (K * h / heights.high, "N/m", "with the roughest usual finish")
+        facts["K_zz_high"] = (K * h / heights.low, "N/m", "with the finest usual finish")
+    return {name: fact for name, fact in facts.items() if np.isfinite(fact[0])}

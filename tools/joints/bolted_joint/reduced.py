@@ -1,0 +1,198 @@
+"""The bolted joint for many samples at once: stiffness, damping and approach along a ramp of preload.
+
+Without a moment and tightened only, a node's pressure is the mean pressure times a fixed number
+`equal`. Sums over the nodes are sums over a few Gauss points of its distribution, taken from a table
+over the log of the pressure whose places relative to the end of the ramp are the same for all samples:
+one matrix for all of them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from jointfmu.contact.laws import mindlin
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import Bolted, node_pressure, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.model import Variable
+from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
+from jointfmu.quantity import flatten
+
+from ...batch.approach import held, tabulate
+from ...batch.chebyshev import discrete_gauss
+from ...batch.samples import columns
+from ...uncertainty.reduced import Reduced
+
+Array = NDArray[np.float64]
+
+EQUAL = 6
+"""Gauss points of the distribution of the pressure over the nodes [1]."""
+CELL = 0.15
+"""Places per unit of log-pressure of the table on which all samples share their matrices [1]."""
+_POWER = 0.8
+"""The stiffness grows about like this power of the pressure; what is left is interpolated."""
+_PLAN = ("pattern.", "plate.")
+"""Prefixes of what decides the distribution of the pressure."""
+_BELOW = 1e-6
+"""Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
+
+
+@lru_cache(maxsize=64)
+def equal_pressures(pattern: PressureSource) -> tuple[Array, Array]:
+    """Pressure over mean pressure (q) [1], ascending, and shares of the area (q) that stand for all nodes.
+
+    Open nodes have no part in it.
+    """
+    shape = pressure_shape(pattern)
+    closed = shape.equal > 0.0
+    logs, shares = discrete_gauss(np.log(shape.equal[closed]), shape.share[closed], EQUAL)
+    return np.exp(logs), shares
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Places on the log-pressure relative to the mean pressure at the end of the ramp, for all samples.
+
+    table : (t) where the rows are read
+    force : (f) log of the force over its end, for the integral of dF/K
+    """
+
+    table: Array
+    force: Array
+
+    @classmethod
+    def of(cls, start: float, equal: Array) -> "Places":
+        """From the log of the force over its end, `start`."""
+        force = np.arange(start, 0.5 * CELL, CELL)
+        table = np.arange(start + np.log(equal[0]) - CELL, np.log(equal[-1]) + 2.0 * CELL, CELL)
+        return cls(table, force)
+
+    def sums(self, equal: Array, shares: Array, force: Array) -> Array:
+        """(t, force) from values over p^POWER at the table's places to sums over the nodes at forces."""
+        spline = CubicSpline(self.table, np.eye(self.table.size))
+        total = np.zeros((self.table.size, force.size))
+        for e, share in zip(equal, shares, strict=True):
+            total += share * np.exp(_POWER * (force + np.log(e))) * spline(force + np.log(e)).T
+        return total
+
+    def integral(self, force: Array) -> Array:
+        """(f, force) from an integrand over the log of the force to its integral from the first place."""
+        return np.asarray(CubicSpline(self.force, np.eye(self.force.size)).antiderivative()(force).T)
+
+
+def evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
+    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m).
+
+    The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
+    values : by structured name, numbers or samples (n); samples of the pattern go one by one
+    """
+    samples = {name for name, value in values.items() if isinstance(value, np.ndarray)}
+    names = [name for name in values if name.startswith(_PLAN) and name in samples]
+    if not names:
+        return _evaluate(parameters, values, loads, factor)
+    parts = []
+    for i in range(factor.size):
+        sample = {k: v[i : i + 1] if isinstance(v, np.ndarray) else v for k, v in values.items()}
+        sample |= {name: float(values[name][i]) for name in names}
+        parts.append(_evaluate(parameters, sample, loads, factor[i : i + 1]))
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@lru_cache(maxsize=8)
+def _matrices(pattern: PressureSource, start: float, ramp: bytes) -> tuple[Places, Array, Array, Array]:
+    equal, shares = equal_pressures(pattern)
+    places, force = Places.of(start, equal), np.frombuffer(ramp)
+    ends = (places.force, force)
+    to_force, to_ramp = (places.sums(equal, shares, end) for end in ends)
+    return places, to_force, to_ramp, places.integral(force)
+
+
+def _evaluate(
+    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+) -> dict[str, Array]:
+    joint = columns(parameters, values, 1)
+    pattern = type(joint.pattern)(**flatten(joint.pattern))
+    equal, shares = equal_pressures(pattern)
+    touching = loads > 0.0
+    ramp = np.log(loads[touching] / loads[-1])
+    mean = np.broadcast_to(factor * loads[-1] * joint.n_bolts / joint.A_0, factor.shape)
+    works = ("plastic_work", "elastic_work") if joint.plastic_damping else ()
+    rows, closed = tabulate(joint, 0.0 * mean, mean * equal[-1] * np.exp(2.0 * CELL), works)
+    first = float(np.min(np.log(_BELOW * closed / mean))) - np.log(equal[-1])
+    start = CELL * np.floor(min(first, ramp[0] - 1.0) / CELL / 10.0) * 10.0
+    places, to_force, to_ramp, integral = _matrices(pattern, start, ramp.tobytes())
+    end = np.log(joint.hardness)
+    table = held(rows, places.table, np.log(mean), end)
+    scaled = {name: np.exp(value - _POWER * places.table) for name, value in table.items()}
+    direct = ramp < np.max(np.log(closed / mean)) - np.log(equal[0]) + 4.0 * CELL
+    near = [held(rows, ramp[direct], np.log(mean * e), end) for e in equal] if np.any(direct) else []
+
+    def total(name: str) -> Array:
+        sums = scaled[name] @ to_ramp
+        if near:
+            sums[:, direct] = sum(share * np.exp(n[name]) for share, n in zip(shares, near, strict=True))
+        return np.asarray(sums)
+
+    force = joint.A_0 * mean * np.exp(places.force)
+    compliance = force / (joint.A_0 * (scaled["k"] @ to_force))
+    K = joint.A_0 * total("k")
+    rho = shear_ratio(joint)
+    C = 0.0 * K
+    if works:
+        C = mindlin.viscous_equivalent(total(works[0]) / total(works[1]), joint.mass, K)
+    eta_t = joint.loss_factor()
+    tangential = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K)
+    approach = 3.0 * compliance[:, :1] + compliance @ integral
+    curves = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
+    zero = np.zeros((factor.size, int(np.sum(~touching))))
+    curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
+    return curves | {"K_zz": curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness}
+
+
+def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
+    """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]."""
+    spring, rest = BoltedJointSpring.of_nodes(replace(joint, memory=False)), (0.0, 0.0, 0.0)
+    states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
+    curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
+    return curves | {"approach": approach(spring, loads)}
+
+
+def approach(spring: BoltedJointSpring, loads: Array) -> Array:
+    """Integral of dF/K_zz over the force of all bolts from 0 to preloads (m) [N].
+
+    Three Gauss-Legendre nodes per log-spaced panel; nodes of the pressure pattern that its symmetry makes
+    equal are taken together.
+    """
+    joint, shape = spring.joint, spring.shape.merged(moment=False)
+    lowest = 1e-9 * spring.curve.closed * joint.A_0 / joint.n_bolts
+    ends = np.unique(np.concatenate([np.geomspace(lowest, np.max(loads), 60), loads[loads > lowest]]))
+    places, weights = np.polynomial.legendre.leggauss(3)
+    half, middle = 0.5 * np.diff(np.log(ends)), 0.5 * np.log(ends[1:] * ends[:-1])
+    preload = np.concatenate([ends[:1], np.exp(middle[:, None] + half[:, None] * places).ravel()])
+    node = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, preload[:, None], 0.0))
+    K = joint.A_0 * spring.curve.derivatives(node, 1)[1] @ shape.share
+    rate = joint.n_bolts * preload / K
+    panels = half * (rate[1:].reshape(-1, 3) @ weights)
+    integral = 3.0 * rate[0] + np.concatenate([[0.0], np.cumsum(panels)])
+    return np.where(loads > lowest, integral[np.clip(np.searchsorted(ends, loads), 0, ends.size - 1)], 0.0)
+
+
+_OUTPUTS = ("K_zz", "K_xx", "C_zz", "C_xx")
+REDUCED = Reduced(
+    load=KIND.variables["preload"],
+    outputs=(
+        *(KIND.variables[name] for name in _OUTPUTS),
+        Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),
+    ),
+    to=lambda joint: 30e3,
+    most=lambda joint: joint.H * joint.A_0 / joint.n_bolts,
+    evaluate=evaluate,
+    exact=exact,
+)

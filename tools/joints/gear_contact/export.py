@@ -1,0 +1,35 @@
+"""What other solvers are given of a gear contact."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from jointfmu.joints.gear_contact import KIND
+from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
+
+from ...export.exports import Exports, LoadCurve
+
+if TYPE_CHECKING:
+    from jointfmu.mechanics.curve import Curve
+
+    from ...export.tables import Table
+
+
+def _contact(gear: Contact) -> "tuple[Curve, Sequence[str]]":
+    return GearContactSpring.of(gear).curve, ()
+
+
+def _load(gear: Contact, _: None, error: float) -> "Table":
+    from ...export.tables import load_table
+
+    return load_table(GearContactSpring.of(gear).curve, gear.A_0, error)
+
+
+EXPORTS = Exports(
+    contact=_contact,
+    curve=LoadCurve(
+        meaning="normal load over approach of the flanks from first touch; without load while apart",
+        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K_N")),
+        name="force",
+        table=_load,
+    ),
+)

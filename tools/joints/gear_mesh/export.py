@@ -1,0 +1,42 @@
+"""What other solvers are given of a gear mesh."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointfmu.joints.gear_mesh import KIND
+from jointfmu.joints.gear_mesh.spring import Mesh, pair_curve
+from jointfmu.mechanics.curve import Curve, approach_curve
+
+from ...export.exports import Exports, LoadCurve
+
+if TYPE_CHECKING:
+    from ...export.tables import Table
+
+
+def _contact(mesh: Mesh) -> tuple[Curve, Sequence[str]]:
+    return approach_curve(mesh), ("the flanks alone; what the teeth give way comes on top",)
+
+
+def _load(mesh: Mesh, _: None, error: float) -> "Table":
+    from ...export.tables import Table, law_table
+
+    pair, closing = pair_curve(mesh)
+    i = int(np.argmin(np.abs(pair.displacement - closing)))
+    columns = (pair.load, pair.stiffness, pair.bend_start, pair.bend_end)
+    load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
+    half = law_table(Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), error)
+    rows = np.vstack([half.rows[:0:-1] * [-1.0, -1.0, 1.0], half.rows])
+    return Table(rows, half.straight, half.monotone)
+
+
+EXPORTS = Exports(
+    contact=_contact,
+    curve=LoadCurve(
+        meaning="force over deflection of the flanks beyond the backlash, mean over the mesh cycle",
+        columns=tuple(KIND.variables[name] for name in ("s_rel", "f", "K")),
+        name="force",
+        table=_load,
+    ),
+)

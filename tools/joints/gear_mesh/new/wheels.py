@@ -1,0 +1,175 @@
+"""The parameters of a gear mesh from the drawing of its wheels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointfmu.contact.surface import Elastic, contact_modulus
+from jointfmu.joints.gear_mesh import KIND
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring
+
+from ....drawing import faces
+from ....drawing.line_contact import patch
+from ....drawing.part import Given, NewJoint
+from ....drawing.reading import number
+from ....drawing.sheet import Sheet
+
+E_STEEL = 206e9
+"""Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""
+CORRECTION = 0.8
+"""C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
+LOADED = 100e3
+"""Tangential load over face width [N/m] below which ISO 6336-1 takes teeth for softer."""
+DAMPING = 0.06
+"""Damping ratio of the mesh on its two wheels as solid discs [1]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wheels:
+    """Two external involute wheels without profile shift, addendum of one module.
+
+    module [m] and angles [rad] are those of the normal section; z: teeth; width [m]
+    """
+
+    module: float
+    z: tuple[float, float]
+    width: float
+    pressure_angle: float
+    helix_angle: float
+
+    @property
+    def transverse_angle(self) -> float:
+        """alpha_t [rad], tan(alpha_t) = tan(alpha_n)/cos(beta)."""
+        return float(np.arctan(np.tan(self.pressure_angle) / np.cos(self.helix_angle)))
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Reference radii [m]."""
+        first, second = (0.5 * self.module * z / np.cos(self.helix_angle) for z in self.z)
+        return float(first), float(second)
+
+    @property
+    def base_radii(self) -> tuple[float, float]:
+        """r cos(alpha_t) [m]."""
+        first, second = (r * np.cos(self.transverse_angle) for r in self.radii)
+        return float(first), float(second)
+
+    @property
+    def contact_ratio(self) -> float:
+        """epsilon_alpha [1] of the transverse section (ISO 21771): the mean length of the lines of contact
+        is epsilon_alpha width/cos(beta_b), whatever the overlap.
+        """
+        (r1, r2), base = self.radii, self.base_radii
+        path = sum(np.sqrt((r + self.module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)) - (
+            r1 + r2
+        ) * np.sin(self.transverse_angle)
+        return float(path / (2.0 * np.pi * base[0] / self.z[0]))
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta [1] (ISO 21771): cycles over which the transverse sections are spread."""
+        return float(self.width * np.sin(self.helix_angle) / (np.pi * self.module))
+
+    @property
+    def curvature(self) -> float:
+        """1/R_1 + 1/R_2 [1/m] at the pitch point, in the section normal to the flanks."""
+        base = np.arcsin(np.sin(self.helix_angle) * np.cos(self.pressure_angle))
+        bulge = (np.cos(base) / (r * np.sin(self.transverse_angle)) for r in self.radii)
+        return float(sum(bulge))
+
+    def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
+        """c' width [N/m] of one pair with contact over the full width, moduli [Pa].
+
+        ISO 6336-1, method B: solid wheels, no profile shift, basic rack with a dedendum of 1.2 modules
+        (C_B is 1 at 20 degrees), K_A = 1; softer where the torque of wheel 1 [N.m] loads less than LOADED.
+        """
+        virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.z]
+        q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
+        material = 2.0 / (1.0 / moduli[0] + 1.0 / moduli[1]) / E_STEEL
+        rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
+        loaded = min(torque / self.radii[0] / self.width / LOADED, 1.0) ** 0.25
+        theory = 1e9 / q * np.cos(self.helix_angle) * material * self.width
+        return float(CORRECTION * rack * loaded * theory)
+
+    def mesh_stiffness(self, tooth: float) -> float:
+        """c_gamma width [N/m] of ISO 6336-1 with the stiffness of one pair [N/m]."""
+        return tooth * (0.75 * self.contact_ratio + 0.25)
+
+    def damping(self, stiffness: float, density: tuple[float, float]) -> float:
+        """2 DAMPING sqrt(stiffness mass) [N.s/m], of the two wheels as solid discs on the line of action."""
+        masses = [
+            0.5 * np.pi * rho * self.width * r**4 / b**2
+            for rho, r, b in zip(density, self.radii, self.base_radii, strict=True)
+        ]
+        return float(2.0 * DAMPING * np.sqrt(stiffness / (1.0 / masses[0] + 1.0 / masses[1])))
+
+
+def mesh(given: Given) -> NewJoint:
+    """The mesh of a drawing; ValueError, one line, for what does not fit."""
+    wheels, torque = _wheels(given), number("torque", given["torque"], "N.m", "N.m")
+    sheet = Sheet(KIND.name, "roughness")
+    faces.put(sheet, given)
+    moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
+    load = torque / wheels.base_radii[0]
+    sides = [Elastic(E=E, nu=sheet.value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
+    found = patch(load, wheels.width, wheels.curvature, contact_modulus(*sides))
+    _put(sheet, wheels, given, wheels.tooth_stiffness(moduli, torque))
+    text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
+    sheet.put("A_0", float(found.area), "derived", text)
+    file = sheet.file(f"wheels of module {given['module']}, {wheels.z[0]:g} to {wheels.z[1]:g} teeth")
+    spring = GearMeshSpring.of(file.values)
+    deflection = float(spring.curve.inverse(load / wheels.contact_ratio))
+    stiffness = wheels.contact_ratio * float(spring.curve.derivatives(np.array([deflection]), 1)[1][0])
+    facts = {
+        "load": (load, "N", "normal force of the mesh at the torque"),
+        "p_hertz": (float(found.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
+        "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
+        "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
+        "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
+        "h": (file.flat["h"], "m", "rms height of both flanks together"),
+        "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
+        "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
+        "deflection": (deflection, "m", "of a pair at this load"),
+    }
+    return NewJoint(file, facts, faces.beyond(float(found.pressure), file.flat["H"]))
+
+
+def _wheels(given: Given) -> Wheels:
+    if len(given["teeth"]) != 2:
+        raise ValueError(f"--teeth has {len(given['teeth'])} values, expected one of each wheel")
+    teeth = [number("teeth", text, "1", "1") for text in given["teeth"]]
+    if any(z % 1.0 for z in teeth):
+        raise ValueError(f"--teeth = {' '.join(given['teeth'])}: expected whole numbers")
+    angles = []
+    for name, usual, least, most in (("pressure_angle", "20", 0.0, 45.0), ("helix_angle", "0", -1.0, 60.0)):
+        angle = number(name, given[name] or usual, "deg", "rad", least=None)
+        if not max(least, 0.0) <= np.degrees(angle) < most or (least == 0.0 and angle == 0.0):
+            low = "(0" if least == 0.0 else "[0"
+            raise ValueError(f"--{name.replace('_', '-')} = {given[name]} deg is outside {low}, {most:g})")
+        angles.append(angle)
+    width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
+    return Wheels(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
+
+
+def _put(sheet: Sheet, wheels: Wheels, given: Given, K: float) -> None:
+    """Put what the wheels decide; K: of one pair [N/m]."""
+    for i, radius in enumerate(wheels.base_radii):
+        sheet.put(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
+    sheet.stated("teeth1", wheels.z[0])
+    if given["backlash"] is None:
+        distance = sum(wheels.radii) * 1e3
+        least = 2.0 / 3.0 * (0.06 + 0.0005 * distance + 0.03 * wheels.module * 1e3) * 1e-3
+        text = f"least backlash of ISO/TR 10064-2, Annex A, at {distance:.4g} mm of centre distance"
+        sheet.put("backlash", least, "estimate", text)
+    else:
+        sheet.stated("backlash", number("backlash", given["backlash"], "um", "m"))
+    sheet.put("K_tooth", K, "derived", "single stiffness c' of ISO 6336-1, method B, times the width")
+    text = "ISO 21771, addendum of one module, transverse"
+    sheet.put("contact_ratio", wheels.contact_ratio, "derived", text)
+    sheet.put("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
+    sheet.put("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
+    density = tuple(material.numbers["density"].value for material in faces.materials(given))
+    d = wheels.damping(K * wheels.contact_ratio, (density[0], density[1]))
+    sheet.put("d", d, "estimate", f"a damping ratio of {DAMPING:g} for the wheels as solid discs")
+    for name in ("phi1", "phi2"):
+        sheet.put(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")

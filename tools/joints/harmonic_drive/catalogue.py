@@ -1,0 +1,204 @@
+"""Harmonic drives of the makers' catalogues: models/reference/harmonic_drive_catalogue_*.csv.
+
+A row of stiffness holds for the series that it names, and from ratio 80 on for all ratios. Torques are
+printed for some series and ratios; where a series lacks them, those of the same size and ratio in another
+one are an estimate. Limits of hysteresis and lost motion are printed for actuators with the same stiffness,
+starting and back-driving torque for single drives.
+"""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
+from typing import TypeAlias
+
+from jointfmu.quantity.units import factor
+
+from ...catalogue import Catalogue, Column, Item, Printed
+
+COLUMNS = (
+    Column("ratio", "1", "speed ratio", "1"),
+    Column("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
+    Column("K2", "N.m/rad", "stiffness between T1 and T2", "N.m/rad"),
+    Column("K3", "N.m/rad", "stiffness above T2", "N.m/rad"),
+    Column("T1", "N.m", "torque at the first corner", "N.m"),
+    Column("T2", "N.m", "torque at the second corner", "N.m"),
+    Column("rated_torque", "N.m", "rated torque", "N.m"),
+    Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
+    Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
+    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque", "arcmin"),
+    Column("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
+    Column("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
+    Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
+    Column("efficiency", "1", "at rated torque and 2000 rev/min", "1"),
+)
+RATIOS = ("80", "100", "120", "160")
+"""What a row for ratio 80 and more stands for, where any series has a torque at that size."""
+STRONG = ("CSG", "SHG")
+"""Series of higher torque, by STRONGER."""
+STRONGER = 1.3
+"""Torque of a CSG over that of a CSF of the same size and ratio [1]."""
+ALIKE = ("CSG", "SHG", "HFUC", "HFUS")
+"""Series with torques, in the order in which others take them from."""
+Torques: TypeAlias = Mapping[tuple[str, str, str], Mapping[str, str]]
+"""{(series, size, ratio): row}."""
+_NAMES = 3
+"""Nearest names that a refusal tells."""
+
+
+def find(name: str) -> Item:
+    """A drive by its name, SERIES-SIZE-RATIO, whatever its case and signs; what follows is passed over.
+
+    Raises ValueError with the nearest names if there is none.
+    """
+    known = {_key(item.name): item for item in items()}
+    wanted = _key(name)
+    begun = [item for key, item in known.items() if wanted == key or wanted.startswith(f"{key}-")]
+    if begun:
+        return max(begun, key=lambda item: len(item.name))
+    near = get_close_matches(wanted, known, _NAMES, 0.0)
+    raise ValueError(
+        f"catalogue {name!r} is unknown; nearest are {', '.join(known[key].name for key in near)} "
+        "(jointfmu catalogue)"
+    )
+
+
+@cache
+def items() -> tuple[Item, ...]:
+    """All drives with a row of stiffness, and those that share one with them."""
+    torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
+    found = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
+    single = {}
+    for row in _table("friction"):
+        found[row["drive"]] = _single(row, found[row["like"]])
+        if row["running_mNm"]:
+            single[row["like"].split("-", 1)[1]] = found[row["drive"]]
+    return tuple(_estimated(item, single) for item in found.values())
+
+
+def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
+    """The drives for which a row of stiffness holds."""
+    group = row["series"].removeprefix("HD ")
+    ratios = [row["ratio"]]
+    if row["ratio"].endswith("+"):
+        ratios = [r for r in RATIOS if any((s, row["size"], r) in torques for s in ALIKE)]
+    what = f"{group}, size {row['size']}, ratio {row['ratio']}"
+    source = f"{what} of the Harmonic Drive catalogue ({row['source']})"
+    printed = {name: row[column] for name, column in _STIFFNESS.items()}
+    lines = {name: Printed(float(text), "catalogue", source) for name, text in printed.items() if text}
+    if "K3" not in lines:
+        lines["K3"] = Printed(lines["K2"].value, "estimate", f"not printed; K2 of {source}")
+    for series in group.split("/"):
+        own = series if group == series else f"{series}-{row['size']}"
+        for ratio in ratios:
+            name = f"{own}-{ratio}"
+            numbers = {
+                "ratio": Printed(float(ratio), "catalogue", f"{name}: {source}"),
+                **lines,
+                **_torque(torques, series, row["size"], ratio),
+                **_limits(row["size"], float(ratio)),
+            }
+            yield Item(name, numbers)
+
+
+_STIFFNESS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
+"""{column: its heading in the file}."""
+_TORQUE = {"rated_torque": "rated_Nm", "peak_torque": "repeated_peak_Nm"}
+_LIMITS = {"hysteresis_loss": "hysteresis_below_arcmin", "lost_motion": "lost_motion_below_arcmin"}
+_SINGLE = {
+    "ratio": ("ratio", 1.0),
+    "K1": ("K1_Nm_per_rad", 1.0),
+    "K3": ("K3_Nm_per_rad", 1.0),
+    "rated_torque": ("rated_Nm", 1.0),
+    "peak_torque": ("repeated_peak_Nm", 1.0),
+    "starting_torque": ("starting_mNm", 1e-3),
+    "running_torque": ("running_mNm", 1e-3),
+    "back_driving_torque": ("back_driving_Nm", 1.0),
+    "efficiency": ("efficiency", 1.0),
+}
+"""{column: its heading in the file of single drives, SI unit over that of the file}."""
+
+
+def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
+    """Rated and repeated peak torque of a drive: as printed, else of a series alike; none if none has it."""
+    if series.startswith("RSF"):
+        return {}
+    for other in (series, *ALIKE):
+        if row := torques.get((other, size, ratio)):
+            name = f"{other}-{size}-{ratio}"
+            if other == series:
+                kind, part = "catalogue", 1.0
+                text = f"{name} of the Harmonic Drive catalogue ({row['source']})"
+            elif other in STRONG and series not in STRONG:
+                kind, part = "estimate", 1.0 / STRONGER
+                text = f"that of {name} over {STRONGER:g}: the catalogue gives the CSG 30 % more than the CSF"
+            else:
+                kind, text, part = "estimate", f"that of {name}", 1.0
+            return {column: Printed(part * float(row[head]), kind, text) for column, head in _TORQUE.items()}
+    return {}
+
+
+def _limits(size: str, ratio: float) -> dict[str, Printed]:
+    """Upper limits of hysteresis and lost motion: of actuators with the same stiffness, else of them all."""
+    step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
+    rows = [row for row in _table("accuracy") if row["ratio"] == step]
+    alike = [row for row in rows if row["size"] == size]
+    found = {}
+    for column, head in _LIMITS.items():
+        row = max(alike or rows, key=lambda row: float(row[head]))
+        text = f"limit for the actuators {row['series']}-{row['size']}A, whose stiffness is the same"
+        if not alike:
+            text = f"limit for all actuators {row['series']}, none of which has this size"
+        value = float(row[head]) * factor("arcmin", "rad")
+        found[column] = Printed(value, "estimate", f"{text} ({row['source']})", bound=True)
+    return found
+
+
+def _single(row: Mapping[str, str], like: Item) -> Item:
+    """A drive whose friction is printed; what else is not is that of `like`, which may be itself."""
+    name, numbers = row["drive"], dict(like.numbers)
+    if name != like.name:
+        text = f"that of {like.name}, of the same size, ratio and stiffness; "
+        numbers = {c: Printed(n.value, "estimate", text + n.source, n.bound) for c, n in numbers.items()}
+    source = f"{name}: {row['source']}"
+    for column, (head, unit) in _SINGLE.items():
+        if row[head] and (name != like.name or column not in ("ratio", "K1", "K3")):
+            numbers[column] = Printed(unit * float(row[head]), "catalogue", source)
+    return Item(name, numbers)
+
+
+def _estimated(item: Item, single: Mapping[str, Item]) -> Item:
+    """The drive with estimates of the friction that is not printed of it.
+
+    single : {size-ratio: drive whose starting and running torque are printed}
+
+    All of it is that of such a drive; the running torque alone is above the starting torque by as much as at
+    that size.
+    """
+    size, _, ratio = item.name.split("-", 1)[1].partition("-")
+    own, start = dict(item.numbers), item.numbers.get("starting_torque")
+    if start is None and (other := single.get(f"{size}-{ratio}")):
+        text = f"that of {other.name}, of the same size, ratio and stiffness; "
+        for column in ("starting_torque", "running_torque", "back_driving_torque"):
+            number = other.numbers[column]
+            own[column] = Printed(number.value, "estimate", text + number.source)
+    elif start is not None and "running_torque" not in own:
+        other = next(drive for key, drive in single.items() if key.startswith(f"{size}-"))
+        rise = other.numbers["running_torque"].value - other.numbers["starting_torque"].value
+        text = f"starting torque, and the rise to running torque of {other.name}, of the same size"
+        own["running_torque"] = Printed(start.value + rise, "estimate", text)
+    return Item(item.name, own)
+
+
+def _table(name: str) -> list[dict[str, str]]:
+    path = files("jointfmu_models") / "reference" / f"harmonic_drive_catalogue_{name}.csv"
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def _key(name: str) -> str:
+    return re.sub(r"[\s_/-]+", "-", name.strip().lower())
+
+
+CATALOGUE = Catalogue(columns=COLUMNS, items=items)

@@ -1,0 +1,112 @@
+"""What fits the harmonic drive: a measured torque-angle curve, its loops, a catalogue row."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu.parameters import ParameterFile
+
+from ....fitting.procedure import Option, Procedure
+
+if TYPE_CHECKING:
+    from ....fitting.outcome import Outcome
+
+Names = Sequence[str] | None
+
+
+def _torque_angle(
+    path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
+) -> "Outcome":
+    from . import table, torque_angle
+
+    if law is None:
+        return torque_angle.fit(path, start, free, rated_torque)
+    if free:
+        raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
+    return table.fit(path, start, rated_torque)
+
+
+def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "Outcome":
+    from . import hysteresis
+
+    return hysteresis.fit(path, start, free, inertia)
+
+
+def _catalogue(
+    start: ParameterFile | None,
+    free: Names,
+    rated_torque: float | None,
+    source: str,
+    ratio: float | None,
+    law: str,
+    **row: float,
+) -> "Outcome":
+    from . import catalogue, lines
+    from .row import Row
+
+    rated, origin = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
+    fit = lines.fit if law == "catalogue" else catalogue.fit
+    return fit(Row(**row, rated=rated), start, free, origin, ratio, source)
+
+
+_PER_ANGLE: Any = {"unit": "N.m/rad", "unit_by": "stiffness_unit"}
+_STIFFNESSES = (
+    ("K1", "stiffness below T1 [N.m/rad]"),
+    ("K2", "stiffness between T1 and T2 [N.m/rad]"),
+    ("K3", "stiffness above T2 [N.m/rad]"),
+)
+
+
+FITS = (
+    Procedure(
+        name="torque-angle",
+        text="a torque-angle curve to the harmonic drive",
+        file=True,
+        options=(
+            Option(name="rated_torque", text="of the drive [N.m]; scales max_torque with it", unit="N.m"),
+            Option(
+                name="law",
+                text="table: the mid-line itself (default: the law of the start, fitted)",
+                word=True,
+                choices=("table",),
+            ),
+        ),
+        run=_torque_angle,
+    ),
+    Procedure(
+        name="loop",
+        text="loops, decays or responses to the hysteresis of the harmonic drive",
+        file=True,
+        column="angle",
+        options=(
+            Option(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
+        ),
+        run=_loop,
+    ),
+    Procedure(
+        name="catalogue",
+        text="a catalogue row to the harmonic drive",
+        file=False,
+        options=(
+            *(Option(name=name, text=text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
+            Option(name="T1", text="torque at the first corner [N.m]", required=True, unit="N.m"),
+            Option(name="T2", text="torque at the second corner [N.m]", required=True, unit="N.m"),
+            Option(
+                name="stiffness_unit",
+                text="of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+                word=True,
+            ),
+            Option(name="rated_torque", text="rated torque [N.m] (default: T2)", unit="N.m"),
+            Option(name="source", text="where the row is printed", word=True, default="catalogue"),
+            Option(name="ratio", text="speed ratio (default: that of the start)"),
+            Option(
+                name="law",
+                text="catalogue: the three lines; hu2023: that of the contact pair, fitted to them",
+                word=True,
+                default="catalogue",
+                choices=("catalogue", "hu2023"),
+            ),
+        ),
+        run=_catalogue,
+    ),
+)

@@ -1,0 +1,126 @@
+"""A catalogue's torsional stiffness to the law of the contact pair.
+
+The law keeps the angle at T1, T2 and the rated torque; between them and up to max_torque it follows
+the polygon as well as a smooth curve can. The unknowns are those of a measured curve.
+`torque_smoothing`, the torque below which the pressure does not grow yet, is T1, where the catalogue's
+stiffness starts to rise; it becomes a fourth unknown if three do not keep the angles.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise, product
+
+import numpy as np
+
+from jointfmu.parameters import ParameterFile, default
+
+from ....fitting.least_squares import Array, Solution, solve
+from ....fitting.outcome import Outcome, fitted, model, unknowns
+from . import drive
+from .row import Row
+from .row_pictures import angle_picture, stiffness_picture
+
+FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+FURTHER = "torque_smoothing"
+"""Fitted too if the others alone do not keep the angles."""
+AIMED = 0.009
+"""Largest relative miss of the angle at T1, T2 and the rated torque [1]: 1 % with a margin."""
+TIGHT = (2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4)
+"""Standard deviations of the angle at the three torques [1], taken in turn until it is kept."""
+LOOSE = 0.2
+"""Standard deviation of the angle elsewhere [1]: the polygon's corners are no property of the drive."""
+MAX_OVER_RATED = 4.0
+"""max_torque over rated torque [1]: about the repeated peak torque of catalogue drives."""
+
+
+def fit(
+    row: Row,
+    start: ParameterFile | None = None,
+    free: Sequence[str] | None = None,
+    rated_kind: str = "catalogue",
+    ratio: float | None = None,
+    source: str = "catalogue",
+) -> Outcome:
+    """The smooth law of a row; `free` None: FREE, and FURTHER if need be; `source`: where it is printed.
+
+    Raises ValueError for a name that cannot be fitted, RuntimeError if no law keeps the angles.
+    """
+    file = start or default("harmonic_drive")
+    origin = f"{source} ({row})"
+    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
+    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated_kind, rated)
+    if ratio is not None:
+        file = file.with_values({"ratio": ratio}, "catalogue", origin)
+    file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
+    torque, most = torques(row, file.values.max_torque), file.values.max_torque
+    choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
+    file = drive.scaled(file, choices[0], torque, row.angle(torque))
+    solution, tight = _solved(row, file, choices, torque)
+    result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
+    result = replace(result, name=f"fitted to {source}")
+    miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
+    facts = {
+        f"angle_error_{name}": (
+            float(miss[np.flatnonzero(torque == T)[0]]),
+            "1",
+            f"law over catalogue - 1 at {T:g} N.m",
+        )
+        for name, T in (("T1", row.T1), ("T2", row.T2), ("rated", row.rated))
+    }
+    facts["angle_error_largest"] = (
+        float(miss[np.argmax(np.abs(miss))]),
+        "1",
+        f"at {torque[np.argmax(np.abs(miss))]:.3g} N.m, largest between {torque[0]:.3g} and {most:g} N.m",
+    )
+    facts["max_torque"] = (most, "N.m", f"{MAX_OVER_RATED:g} times the rated torque {row.rated:g} N.m")
+    note = (
+        f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
+        f"{100 * LOOSE:g} % elsewhere"
+    )
+    return Outcome(
+        result,
+        solution,
+        facts,
+        angle_picture(row, result.values, {}, torque),
+        notes=[note],
+        beside=stiffness_picture(row, result.values, {}, most),
+    )
+
+
+def torques(row: Row, most: float) -> Array:
+    """The torques [N.m] at which law and polygon are compared: kept ones and some between."""
+    ends = np.array([0.0, row.T1, row.T2, max(most, 1.5 * row.T2)])
+    between = [np.linspace(a, b, 7)[1:] for a, b in pairwise(ends)]
+    return np.unique(np.concatenate([row.kept, *between]))
+
+
+def _solved(
+    row: Row, file: ParameterFile, choices: Sequence[Sequence[str]], torque: Array
+) -> tuple[Solution, float]:
+    """The first and loosest of the weighted fits that keeps the angles, and its standard deviation there.
+
+    `choices` are the unknowns to try in turn.
+    """
+    kept, target = np.isin(torque, row.kept), row.angle(torque)
+    angles = model(file, lambda joint: drive.windup(joint, torque))
+    limits = dict(drive.bounds(file)) | {"K_FTS0": (row.K2, np.inf)}
+    best = np.inf
+    for free, tight in product(choices, TIGHT):
+        spread = np.where(kept, tight, LOOSE)
+        solution = solve(
+            unknowns(file, free, limits),
+            lambda values, spread=spread: (angles(values) / target - 1.0) / spread,  # type: ignore[misc]
+            noise=1.0,
+            tolerance=1e-5,
+        )
+        worst = float(np.max(np.abs(solution.residuals * spread)[kept]))
+        if worst <= AIMED:
+            return solution, tight
+        best = min(best, worst)
+        file = file.with_values(
+            {n: v for n, v in solution.values.items() if n not in solution.at_bound}, "catalogue", "start"
+        )
+    raise RuntimeError(
+        f"no law with {', '.join(choices[-1])} free keeps the angle of {row} at T1, T2 and rated torque "
+        f"{row.rated:g} N.m within {100 * AIMED:g} %: the best misses it by {100 * best:.2g} %"
+    )

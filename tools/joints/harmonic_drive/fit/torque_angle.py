@@ -1,0 +1,199 @@
+"""A measured torque-angle curve to the harmonic drive's parameters.
+
+The curve fixes its level at small torque, its level at large torque and how fast it goes from one to
+the other: `drive_scale` (K_TS), `K_FTS0` and `zero_torque_pressure` (how little the pair is pressed
+before the torque counts). The surface and the mean over the peak pressure do the same as `drive_scale`;
+they stay as they are unless asked for.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jointfmu.files import columns
+from jointfmu.joints.harmonic_drive.law import PairDrive
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.units import Sizes, sizes
+
+from ....fitting import loop
+from ....fitting.least_squares import Array, Solution, solve
+from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from . import drive
+
+FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
+COLUMNS: Mapping[str, Sizes] = {
+    "torque": sizes("N.m", "mN.m", "kN.m"),
+    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
+}
+LEAST = 10
+"""Fewest points of a curve."""
+ARCMIN = COLUMNS["angle"]["arcmin"]
+CREATED = 0.01
+"""Energy that a loop may create, as noise and drift do, over that of its box [1]."""
+ALIKE = 0.5
+"""Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """A file's mid-line and the drive to start from, of its size."""
+
+    path: Path
+    line: loop.Backbone
+    start: ParameterFile
+
+
+def fit(
+    path: str | Path,
+    start: ParameterFile | None = None,
+    free: Sequence[str] | None = None,
+    rated_torque: float | None = None,
+) -> Outcome:
+    """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
+
+    The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
+    scales the start's torques (max_torque, smoothing) to another size of drive. `free` None: FREE, of lines
+    of a catalogue their stiffnesses.
+
+    Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
+    that cannot be fitted. RuntimeError if the fit finds no end.
+    """
+    record = read(path, start, rated_torque)
+    line, file = record.line, record.start
+    if file.law == "table":
+        raise ValueError(f"{record.path}: the law table has nothing to fit; --law table makes a new table")
+    names = tuple(free or (FREE if file.law != "catalogue" else drive.LEVELS["catalogue"]))
+    centred = line.angle - np.interp(0.0, line.torque, line.angle)
+    file = drive.scaled(file, names, line.torque, centred)
+    weight = np.sqrt(line.count)
+    size = float(np.ptp(line.angle))
+
+    def offset(predicted: Array) -> float:
+        return float(np.average(line.angle - predicted, weights=line.count))
+
+    def miss(predicted: Array) -> Array:
+        return np.asarray(weight * (line.angle - predicted - offset(predicted)) / size)
+
+    angles = model(file, lambda joint: drive.windup(joint, line.torque))
+    solution = solve(
+        unknowns(file, names, drive.bounds(file)),
+        lambda values: miss(angles(values)),
+        nuisances=1,
+    )
+    result = fitted(file, solution.values, "calibration", record.path.name, span(line))
+    return outcome(record, result, solution, offset(angles(solution.values)), solution.noise * size)
+
+
+def read(path: str | Path, start: ParameterFile | None, rated_torque: float | None) -> Record:
+    """The mid-line of a file and the drive to start from; ValueError as `fit`."""
+    table = columns.read(path, COLUMNS, LEAST)
+    torque, angle = (table.require(name, COLUMNS) for name in COLUMNS)
+    try:
+        line = loop.backbone(torque, angle)
+    except ValueError as error:
+        raise ValueError(f"{table.path}: {error}") from None
+    begun = start or default("harmonic_drive")
+    file = _sized(begun, line.torque, rated_torque, table.path)
+    _check_size(line, file, table)
+    size = begun.values.rated_torque / file.values.rated_torque
+    usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
+    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, COLUMNS, begun)
+    return Record(table.path, line, file)
+
+
+def span(line: loop.Backbone) -> str:
+    """Over which torques, in words."""
+    return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
+
+
+def outcome(record: Record, result: ParameterFile, solution: Solution, shift: float, noise: float) -> Outcome:
+    """What is told of a drive beside its mid-line; offset of the angle and noise of a sample in rad."""
+    line = record.line
+    rest = line.angle - drive.windup(result.values, line.torque) - shift
+    grid = np.linspace(line.torque[0], line.torque[-1], 400)
+    picture = Picture(
+        x=line.torque,
+        y=(line.angle - shift) / ARCMIN,
+        misfit=rest / ARCMIN,
+        line=(grid, drive.windup(result.values, grid) / ARCMIN),
+        labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
+    )
+    return Outcome(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
+
+
+def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
+    """The start for a drive of this size; its table must reach the curve's end."""
+    drive_, reach = start.values, float(np.max(np.abs(torque)))
+    if rated is not None:
+        factor = drive_.reach / drive_.rated_torque
+        start = drive.resized(start, rated, factor, "user", "stated with the torque-angle curve")
+    if isinstance(start.values, PairDrive) and reach > start.values.max_torque:
+        raise Refusal(
+            f"{path}: torque reaches {reach:g} N.m, beyond max_torque = {start.values.max_torque:g} N.m of "
+            f"{start.name}: state the drive's rated torque, max_torque is scaled with it",
+            "rated_torque",
+        )
+    return start
+
+
+def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Columns) -> None:
+    """Refuse a wind-up that no drive of this size has, before a long fit; and a loop that creates energy."""
+    turned, span = float(np.ptp(line.angle)), float(np.ptp(line.torque))
+    rated = start.values.rated_torque
+    low, high = drive.WINDUP
+    path, at_rated = table.path, turned * rated / span
+    if not low <= at_rated <= high:
+        usual = float(np.sqrt(low * high))
+        raise Refusal(
+            f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
+            f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
+            f"{drive.likely_unit(usual / at_rated, table.units, COLUMNS)}, or state the drive's rated torque",
+            "rated_torque",
+        )
+    if line.loop_area is not None:
+        area, deviation = line.loop_area
+        if area < -max(3.0 * deviation, CREATED * span * turned):
+            raise ValueError(
+                f"{path}: the loop creates energy, loop_area = {area:.3g} J, expected is 0 or more: the "
+                "angle has to lag behind the torque; reverse the order of the rows if they run back in time"
+            )
+
+
+def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> dict[str, tuple[float, str, str]]:
+    """What was read off the record beside the parameters."""
+    facts = {
+        "points": (float(np.sum(line.count)), "1", "samples used"),
+        "branches": (float(line.branches), "1", "branches used"),
+        "offset": (shift, "rad", "angle at zero torque, taken off"),
+    }
+    texts = {
+        "loop_area": ("J", "dissipated per loop"),
+        "backlash": ("rad", "angle between the branches at zero torque"),
+        "drift": ("rad", "drift of the angle over the record, taken off"),
+    }
+    for name, (unit, text) in texts.items():
+        if (value := getattr(line, name)) is not None:
+            facts[name] = (value[0], unit, text)
+            facts[f"{name}_deviation"] = (value[1], unit, "its standard deviation")
+    facts["noise"] = (noise, "rad", "standard deviation of one sample about the fitted law")
+    facts["largest_misfit"] = (float(np.max(np.abs(rest))), "rad", "of the mid-line from the fitted law")
+    return facts
+
+
+def _notes(line: loop.Backbone, rest: Array) -> list[str]:
+    """What was not determined by the record, and whether the law misses the curve systematically."""
+    notes = []
+    if line.loop_area is None:
+        notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
+    elif line.drift is None:
+        notes.append("a single loop that is not closed: a drift cannot be told from the loop")
+    alike = float(np.sum(rest[1:] * rest[:-1]) / np.sum(rest**2)) if np.any(rest) else 0.0
+    if alike > ALIKE:
+        notes.append(
+            f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the curve "
+            "systematically, the standard deviations are too small"
+        )
+    return notes

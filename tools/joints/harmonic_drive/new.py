@@ -1,0 +1,192 @@
+"""A harmonic drive from its catalogue: by its name, or by the row that is printed there."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from ...catalogue import Printed
+from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.reading import flag, number
+from .quoted_friction import QUOTED, efficiency, friction
+
+if TYPE_CHECKING:
+    from .fit.row import Row
+
+_ROW: Mapping[str, str] = {"K1": "N.m/rad", "K2": "N.m/rad", "K3": "N.m/rad", "T1": "N.m", "T2": "N.m"}
+_FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]: "1"}
+_UNITS: Mapping[str, str] = {"ratio": "1", **_ROW, "rated_torque": "N.m", **_FRICTION}
+DAMPING = 1e-4
+"""d over K1 [s]: 2 % of critical where the drive swings with 60 Hz."""
+PEAK = 4.0
+"""max_torque over rated torque [1] where no repeated peak torque is known: about that of catalogue drives."""
+
+
+def _drive(given: Given) -> NewJoint:
+    source = given["source"] or given["catalogue"] or "catalogue"
+    printed = _bought(given["catalogue"]) if given["catalogue"] else {}
+    for name, unit in _UNITS.items():
+        if given[name] is not None:
+            value = number(name, given[name], _unit(given, name), unit)
+            printed[name] = _stated(given, value)
+    if given["hysteresis"] is not None:
+        printed["hysteresis_loss"] = _stated(
+            given, number("hysteresis", given["hysteresis"], "arcmin", "rad")
+        )
+    if missing := [flag(name) for name in ("ratio", *_ROW) if name not in printed]:
+        raise ValueError(f"{', '.join(missing)} missing: state the row of the catalogue, or --catalogue NAME")
+    if "rated_torque" not in printed:
+        text = "no rated torque given; T2 of the catalogue"
+        printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
+    brakes = _brakes(given, printed)
+    printed = {name: number for name, number in printed.items() if name not in QUOTED}
+    return (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
+
+
+def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
+    """Friction parameters: of what is stated, else of a drive whose starting torque is printed."""
+    stated = [name for name in QUOTED if given[name] is not None]
+    start = printed.get("starting_torque")
+    if start is None or start.kind == "estimate":
+        if stated:
+            raise ValueError(
+                f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts"
+            )
+        return {}
+    if "efficiency" in stated and not printed["efficiency"].value < 1.0:
+        raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
+    if {"efficiency", "back_driving_torque"} <= set(stated):
+        raise ValueError("--efficiency and --back-driving-torque both fix load_loss; expected one of them")
+    dropped = {"efficiency"} if "back_driving_torque" in stated else set()
+    if stated:
+        dropped |= {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
+    return friction({name: number for name, number in printed.items() if name not in dropped})
+
+
+def _bought(name: str) -> dict[str, Printed]:
+    from . import catalogue
+
+    return dict(catalogue.find(name).numbers)
+
+
+def _stated(given: Given, value: float) -> Printed:
+    """A number of the row, or one that takes the place of the named drive's."""
+    kind = "user" if given["catalogue"] and not given["source"] else "catalogue"
+    return Printed(value, kind, given["source"] or "stated")
+
+
+def _unit(given: Given, name: str) -> str:
+    """The unit of a number that is stated without one."""
+    return given["stiffness_unit"] or _UNITS[name] if name.startswith("K") else _UNITS[name]
+
+
+def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
+    """The drive with the stiffness of the row itself."""
+    from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+
+    from .fit import lines
+    from .quoted import LOST_MOTION, lost_motion
+
+    _row(printed)  # refuses what cannot be
+    rated, peak = printed["rated_torque"].value, printed.pop("peak_torque", None)
+    if peak is None:
+        peak = Printed(PEAK * rated, "estimate", f"{PEAK:g} times rated_torque")
+    printed["max_torque"] = peak
+    facts = {}
+    if "hysteresis_loss" in printed and printed["hysteresis_loss"].kind == "estimate":
+        bound = printed["hysteresis_loss"]
+        text = f"{_short(bound)}; off unless --hysteresis is stated"
+        facts["hysteresis_bound"] = (bound.value, "rad", text)
+        printed["hysteresis_loss"] = Printed(0.0, "user", f"default choice: none; {bound.source}")
+    play = printed.pop("lost_motion", None)
+    text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
+    printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
+    printed |= brakes
+    file = lines.made(name, printed)
+    spring = HarmonicDriveSpring.of(file.values)
+    angle = float(spring.curve.inverse(rated))
+    facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
+    text = f"of this drive, between +-{LOST_MOTION:g} times the rated torque"
+    text += f"; below {play.value:.4g} rad: {_short(play)}" if play else ""
+    facts["lost_motion"] = (lost_motion(spring), "rad", text)
+    if brakes:
+        facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
+    kinds = {name: number.kind for name, number in printed.items() if name in file.flat}
+    guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
+    return NewJoint(file, facts, [f"estimates, not of the catalogue's row: {guessed}"])
+
+
+def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
+    """The drive with the law of Hu 2023 fitted to the row."""
+    from dataclasses import replace
+
+    from .fit import catalogue
+
+    kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
+    found = catalogue.fit(_row(printed), None, None, kind, ratio, name)
+    file = replace(found.parameters, name=name)
+    loss = printed.get("hysteresis_loss")
+    if loss is not None and loss.kind != "estimate":
+        brakes = {"hysteresis_loss": loss, **brakes}
+    for label, stated in brakes.items():
+        file = file.with_values({label: stated.value}, stated.kind, stated.source)
+    return NewJoint(file, found.facts, found.warnings())
+
+
+def _short(number: Printed) -> str:
+    """Where a number comes from, without the place where it is printed."""
+    return number.source.split(" (", 1)[0]
+
+
+def _row(printed: Mapping[str, Printed]) -> "Row":
+    """The row, checked."""
+    from .fit.row import Row
+
+    return Row(**{name: printed[name].value for name in _ROW}, rated=printed["rated_torque"].value)
+
+
+NEW = Drawing(
+    text="a harmonic drive by its name in the catalogue, or by the row that is printed there",
+    example="--catalogue CSG-17-100",
+    options=(
+        Option(name="catalogue", text="its name, see jointfmu catalogue", metavar="NAME"),
+        Option(name="ratio", text="speed ratio [1]", metavar="R"),
+        Option(name="K1", text="stiffness below T1 [N.m/rad]", metavar="K"),
+        Option(name="K2", text="stiffness between T1 and T2 [N.m/rad]", metavar="K"),
+        Option(name="K3", text="stiffness above T2 [N.m/rad]", metavar="K"),
+        Option(name="T1", text="torque at the first corner [N.m]", metavar="T"),
+        Option(name="T2", text="torque at the second corner [N.m]", metavar="T"),
+        Option(
+            name="stiffness_unit",
+            text="of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+            metavar="UNIT",
+        ),
+        Option(name="rated_torque", text="rated torque [N.m] (default: the catalogue's, or T2)", metavar="T"),
+        Option(
+            name="hysteresis",
+            text="hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
+            metavar="H",
+        ),
+        Option(
+            name="starting_torque",
+            text="at the wave generator without load [N.m] (the catalogue's, else no friction)",
+            metavar="T",
+        ),
+        Option(
+            name="running_torque",
+            text="the same in motion, at 2000 rev/min [N.m] (as starting torque)",
+            metavar="T",
+        ),
+        Option(
+            name="back_driving_torque",
+            text="at the output, that turns the drive without motor [N.m]",
+            metavar="T",
+        ),
+        Option(name="efficiency", text="at rated torque and 2000 rev/min [1]", metavar="E"),
+        Option(name="source", text="where the row is printed", metavar="TEXT"),
+        Option(
+            name="law",
+            text="catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",
+            choices=("catalogue", "hu2023"),
+        ),
+    ),
+    run=_drive,
+)

@@ -1,0 +1,27 @@
+"""What catalogues quote of a drive's loop, as the exported drive has it: hysteresis loss, lost motion."""
+
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+
+LOST_MOTION = 0.04
+"""Torque over rated torque [1] between which catalogues state lost motion."""
+
+
+def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
+    """Angle [rad] between the branches at zero torque, of the loop through rated torque."""
+    rated = float(spring.joint.rated_torque)
+    there, back = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
+    return there - back
+
+
+def lost_motion(spring: HarmonicDriveSpring) -> float:
+    """Angle [rad] between the ends of a loop of LOST_MOTION times the rated torque."""
+    least = LOST_MOTION * float(spring.joint.rated_torque)
+    return _wind_up(spring, (least, -least, least)) - _wind_up(spring, (least, -least))
+
+
+def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
+    """Wind-up [rad] at the last of the torques [N.m] that follow one another from rest."""
+    memory = spring.rest()
+    for torque in torques:
+        out, memory = spring.loaded(torque, memory)
+    return float(out["phi_rel"])

@@ -1,0 +1,189 @@
+"""What the page knows of a module: its variables, parameter sets, curves, points; JSON in the end."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from jointfmu_fmu_src.joints import part as builders_part
+from jointfmu_fmu_src.native.page import Panel
+from jointfmu_fmu_src.xml_parts import Listed, listed
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, dump
+from jointfmu.published.reference import ROLES, points
+from jointfmu.quantity import units
+
+from ..parts import part
+from ..shown import shown_unit
+from .modules import Module
+from .part import Bench
+
+_NOMINALS = 2.0
+"""Half the span of an input's slider over its nominal value."""
+_DECADE = 10.0
+"""Span of a slider to both sides of a start value that has no better interval."""
+
+
+def described(module: Module) -> dict[str, Any]:
+    """All of a module but its binary form."""
+    model, first = module.model, module.files[0]
+    kind, bench = KINDS[model.joint], _bench(model)
+    bound = set(_bound(first))
+    rows = [_row(v, model, bench) | {"bound": v.name in bound} for v in listed(model, first)]
+    return {
+        "name": model.name,
+        "joint": kind.name,
+        "title": kind.title,
+        "law": first.law,
+        "doc": model.doc,
+        "variables": rows,
+        "surfaces": [surface.prefix for surface in kind.surfaces],
+        "sets": [_set(file, model) for file in module.files],
+        "ramp": {"input": model.ramp.input, "end": model.ramp.end},
+        "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in _panels(model, bench)],
+        "pairs": pairs(model),
+        "path": list(bench.path or (model.ramp.input,)),
+        "points": list(_points(model, bench)),
+        "measured": [m._asdict() for m in bench.measured],
+        "map": _map(bench, first),
+        "turn": bench.turn and bench.turn._asdict(),
+        "example": bench.example and bench.example._asdict(),
+    }
+
+
+def pairs(model: Model) -> dict[str, str]:
+    """{input: the output whose product with it is an energy}, of the same suffix, else the first one."""
+    found = {}
+    for i in model.inputs:
+        fitting = [o.name for o in model.outputs if _is_energy(i.unit, o.unit)]
+        same = [name for name in fitting if _ending(name) == _ending(i.name)]
+        if same or (fitting and not _ending(i.name) and i.name == model.ramp.input):
+            found[i.name] = (same or fitting)[0]
+    return found
+
+
+def _ending(name: str) -> str:
+    """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
+    match = re.search(r"(_[xyz]|\d+)$", name)
+    return match[0] if match else ""
+
+
+def _is_energy(one: str, other: str) -> bool:
+    return {one, other} in ({"N", "m"}, {"N.m", "rad"})
+
+
+def _bench(model: Model) -> Bench:
+    """What the joint's folder adds; nothing if it has no part."""
+    module = part(KINDS[model.joint], "laboratory")
+    benches: dict[str, Bench] = module.LABORATORY if module else {}
+    return benches.get(model.name, Bench())
+
+
+def _panels(model: Model, bench: Bench) -> Sequence[Panel]:
+    """The documentation's panels, or its default, and those of the bench."""
+    page = builders_part(KINDS[model.joint], "page")
+    panels = page.PANELS if page else {}
+    usual = (Panel(model.ramp.input, (model.outputs[0].name,)),)
+    return (*panels.get(model.name, usual), *bench.panels)
+
+
+def _row(v: Listed, model: Model, bench: Bench) -> dict[str, Any]:
+    unit = v.attributes.get("unit", "1")
+    row: dict[str, Any] = {
+        "name": v.name,
+        "causality": v.causality,
+        "doc": v.doc,
+        "start": v.start,
+        "boolean": v.boolean,
+    }
+    typical = float(v.attributes.get("nominal", 0.0))
+    if v.causality != "output":
+        row |= {"low": _end(v, "min"), "high": _end(v, "max")}
+        field = model.parameter_fields().get(v.name)
+        row["whole"] = bool(field and field.metadata.get("whole"))
+        row["span"] = span = bench.spans.get(v.name) or _span(v, model, row)
+        row["log"] = v.causality == "parameter" and span[0] > 0.0 and span[1] > 5.0 * span[0]
+        typical = span[1] if v.causality == "input" or not v.start else float(v.start)
+    shown = shown_unit(unit, typical)
+    return row | {"unit": unit, "shown": shown, "factor": units.factor(unit, shown)}
+
+
+def _end(v: Listed, which: str) -> float | None:
+    return float(v.attributes[which]) if which in v.attributes else None
+
+
+def _span(v: Listed, model: Model, row: dict[str, Any]) -> tuple[float, float]:
+    """From where to where a slider goes."""
+    if v.boolean:
+        return 0.0, 1.0
+    start = float(v.start or 0.0)
+    low = -math.inf if row["low"] is None else row["low"]
+    high = math.inf if row["high"] is None else row["high"]
+    if v.causality == "input":
+        driven = {i.name: i.unit for i in model.inputs}[model.ramp.input]
+        unit = v.attributes["unit"]
+        most = model.ramp.end if unit == driven else _NOMINALS * float(v.attributes["nominal"])
+        return max(low, -most), most
+    if start == 0.0:
+        return 0.0, high if math.isfinite(high) else 1.0
+    if abs(low) > 1e-300 and math.isfinite(high - low) and high - low <= 1.0 + abs(low):
+        margin = 0.02 * (high - low)
+        return max(low + margin, 0.0), high - margin
+    if row["whole"]:
+        return low, 4.0 * start
+    return max(start / _DECADE, low), min(start * _DECADE, high)
+
+
+def _bound(file: ParameterFile) -> Iterator[str]:
+    """Parameters that cannot be others without contradicting what is baked in."""
+    kind = KINDS[file.joint]
+    for name, value in file.flat.items():
+        if isinstance(value, float):
+            try:
+                changed = file.with_values({name: value + 1.0}, "user", "").values
+            except ValueError:
+                continue
+            if any(line.startswith(name) for line in kind.contradictions(changed)):
+                yield name
+
+
+def _set(file: ParameterFile, model: Model) -> dict[str, Any]:
+    """A parameter file: values of what can be set, and its text."""
+    names = model.parameter_fields()
+    values = {name: value for name, value in file.flat.items() if name in names}
+    inputs = {v.name: file.start(v.name) for v in model.inputs}
+    return {"name": file.name, "values": values, "inputs": inputs, "toml": dump(file)}
+
+
+def _points(model: Model, bench: Bench) -> Iterator[dict[str, Any]]:
+    outputs = {v.name: v for v in model.outputs}
+    known = {v.name for v in model.inputs} | set(model.parameter_fields())
+    for paper in KINDS[model.joint].papers:
+        for point in points(paper):
+            shown = bench.points.get(point.quantity)
+            if shown is None or not set(point.where) <= set(shown.arguments):
+                continue
+            at = {shown.arguments[name]: value for name, value in point.where.items()}
+            if not set(at) <= known:  # a law without this parameter
+                continue
+            factor = units.factor(point.unit, outputs[shown.output].unit)
+            yield {
+                "id": f"{paper}: {point.id}",
+                "place": point.place,
+                "role": point.role,
+                "doc": ROLES[point.role],
+                "output": shown.output,
+                "value": factor * float(point.value),
+                "at": at,
+            }
+
+
+def _map(bench: Bench, file: ParameterFile) -> dict[str, Any] | None:
+    picture = bench.picture
+    if picture is None:
+        return None
+    marks, what = picture.marks(file.values)
+    row = {"name": picture.name, "doc": picture.doc, "shown": picture.shown, "marks": marks, "what": what}
+    return row | {"factor": units.factor(picture.unit, picture.shown)}

@@ -1,0 +1,85 @@
+"""The WebAssembly modules of the page: one for each model and what is baked into its C."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from jointfmu_fmu_src.native.compiler import webassembly
+from jointfmu_fmu_src.native.generate import sources, token
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import Kind
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, load
+
+from ..parts import folder
+
+_OWN = "laboratory.c"
+_MAP = "map.c"
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """A model with the parameter files that share its C; the first one gives its start values."""
+
+    model: Model
+    files: Sequence[ParameterFile]
+
+    @property
+    def map(self) -> Path:
+        """C that shows the contact; need not be there."""
+        return folder(KINDS[self.model.joint]) / "laboratory" / _MAP
+
+    def sources(self) -> dict[str, str]:
+        """{file name: text} of all C sources: those of the FMU, and what the page calls."""
+        files = sources(self.model.name, self.files[0])
+        added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
+        if self.map.is_file():
+            added[_MAP] = self.map.read_text(encoding="utf-8")
+        return files | added | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+
+    def compiled(self, given: Mapping[str, str] | None = None) -> bytes:
+        """The module, a reactor without imports; its functions are those of laboratory.c.
+
+        given : its sources, where they are known
+
+        Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
+        """
+        files = self.sources() if given is None else given
+        units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
+        return webassembly(self.model.name, files, units)
+
+
+def modules() -> list[Module]:
+    """Those of all joints and shipped parameter files, in the order in which they are shown."""
+    return [module for kind in KINDS.values() for model in kind.models for module in _of(kind, model)]
+
+
+def compiled(some: Sequence[Module]) -> list[bytes]:
+    """The modules in binary form. Sources are made one after the other: casadi knows no threads."""
+    given = [module.sources() for module in some]
+    with ThreadPoolExecutor() as pool:
+        return list(pool.map(Module.compiled, some, given))
+
+
+def _of(kind: Kind, model: Model) -> Iterator[Module]:
+    groups: dict[tuple[object, ...], list[ParameterFile]] = {}
+    for file in _files(kind):
+        groups.setdefault(_baked(model.of(kind.name, file.values), file), []).append(file)
+    for files in groups.values():
+        yield Module(model.of(kind.name, files[0].values), files)
+
+
+def _files(kind: Kind) -> list[ParameterFile]:
+    """The shipped files of a joint, the default one first."""
+    default = kind.default_file()
+    return [
+        load(path, kind.name) for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
+    ]
+
+
+def _baked(model: Model, file: ParameterFile) -> tuple[object, ...]:
+    """What the C of a model has of a parameter file that cannot be set: two files with the same share it."""
+    exposed = model.parameter_fields()
+    return file.law, tuple((name, value) for name, value in file.flat.items() if name not in exposed)

@@ -1,0 +1,152 @@
+"""What the packages Interfaces and Wrappers show of an FMU: its variables, and how they meet flanges."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from jointfmu_fmu_src.native.terminals import Terminal, terminals
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model, Variable
+from jointfmu.quantity.units import UNITS
+
+from .text import number, text
+
+_ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
+_ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor
+    (True, True): f"{_ROTATIONAL}.Components.GeneralTorqueToAngleAdaptor",
+    (True, False): f"{_ROTATIONAL}.Components.GeneralAngleToTorqueAdaptor",
+    (False, True): f"{_TRANSLATIONAL}.Components.GeneralForceToPositionAdaptor",
+    (False, False): f"{_TRANSLATIONAL}.Components.GeneralPositionToForceAdaptor",
+}
+_TAKES_FORCE = (
+    "The flange follows the FMU's displacement, so give it a force that does not depend on an inertia "
+    "right at the flange: an inertia there would need the inverse of the FMU. "
+    'Between inertias take a component of <a href=\\"modelica://JointStiffness.Components\\">Components</a>'
+    "{between_inertias}."
+)
+_TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
+
+
+def interface(model: Model) -> dict[str, Any]:
+    """Content of the partial block with an FMU's inputs and outputs."""
+
+    def column(variables: Sequence[Variable]) -> list[dict[str, Any]]:
+        return [
+            {
+                "name": v.name,
+                "unit": v.unit,
+                "doc": text(v.doc),
+                "low": f", min={number(v.low)}" if v.low > -np.inf else "",
+                "y": y,
+            }
+            for v, y in zip(variables, _heights(variables), strict=True)
+        ]
+
+    inputs, outputs = column(model.inputs), column(model.outputs)
+    return {"name": model.name, "doc": text(model.doc), "inputs": inputs, "outputs": outputs}
+
+
+def wrapper(model: Model) -> dict[str, Any]:
+    """Content of the model that puts an FMU between flanges."""
+    flanges = terminals(model)
+    members = {variable for t in flanges for variable, _ in t.members.values()}
+    note = (
+        _TAKES_MOTION
+        if _takes_motion(model)
+        else _TAKES_FORCE.format(between_inertias=_between_inertias(model))
+    )
+    parameters = [
+        {
+            "name": v.name,
+            "type": f"Modelica.Units.SI.{UNITS[v.unit].quantity}",
+            "modifier": f"(min={number(v.low)}, start=0)" if v.low > -np.inf else "=0",
+            "doc": text(v.doc),
+        }
+        for v in model.inputs
+        if v.name not in members
+    ]
+    return {
+        "name": model.name,
+        "doc": text(f"{model.name} as an imported FMU, between flanges"),
+        "note": note,
+        "parameters": parameters,
+        "terminals": [_flange(t, _ports(model)) for t in flanges],
+    }
+
+
+def _takes_motion(model: Model) -> bool:
+    return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
+
+
+def _between_inertias(model: Model) -> str:
+    """The FMU of the same joint that belongs between inertias, if there is one."""
+    names = [sibling.name for sibling in KINDS[model.joint].models if _takes_motion(sibling)]
+    return f" or the FMU {names[0]}" if names else ""
+
+
+def _ports(model: Model) -> dict[str, tuple[float, float]]:
+    """Places of the FMU's inputs and outputs in a wrapper's diagram."""
+    sides = zip((-24.0, 22.0), (model.inputs, model.outputs), strict=True)
+    return {
+        v.name: (x, round(0.2 * y, 1)) for x, side in sides for v, y in zip(side, _heights(side), strict=True)
+    }
+
+
+def _heights(variables: Sequence[Variable]) -> list[int]:
+    """Heights of the connectors of a block's side, from 90 down to -90."""
+    return [round(90 - (i + 0.5) * 180 / len(variables)) for i in range(len(variables))]
+
+
+def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    """A flange with its adaptor; potential, rate and force of the terminal go to p, pder and f."""
+    rotational = ".Rotational." in terminal.kind
+    potential, rate, force = (
+        next((terminal.members[m][0] for m in names if m in terminal.members), None)
+        for names in (("phi", "s"), ("w", "v"), ("tau", "f"))
+    )
+    flow = next(v for _, v in terminal.members.values() if v.endswith("flow"))
+    takes_motion = flow == "outflow"
+    left = terminal.side == "a"
+    flip, y = (1 if left else -1), round(terminal.y)
+    adaptor, gain = f"adaptor_{terminal.name}", f"reaction_{terminal.name}"
+    places = {
+        f"{adaptor}.flange": (flip * -82.0, y),
+        f"{adaptor}.p": (flip * -77.0, y + 8.0),
+        f"{adaptor}.pder": (flip * -77.0, y + 5.0),
+        f"{adaptor}.f": (flip * -77.0, y - 8.0),
+        f"{gain}.u": (flip * (-39.0 if takes_motion else -51.0), y - 25.0),
+        f"{gain}.y": (flip * (-50.5 if takes_motion else -39.5), y - 25.0),
+        terminal.name: (flip * -100.0, y),
+        **{f"fmu.{name}": place for name, place in ports.items()},
+    }
+    wires = [(f"{adaptor}.p", f"fmu.{potential}")]
+    wires += [(f"{adaptor}.pder", f"fmu.{rate}")] if rate else []
+    wires += [(f"fmu.{force}", f"{gain}.u"), (f"{gain}.y", f"{adaptor}.f")]
+    if not takes_motion:
+        wires = [(b, a) for a, b in reversed(wires)]
+    shaft = "{0,0,0}" if rotational else "{0,127,0}"
+    return {
+        "name": terminal.name,
+        "doc": text(terminal.doc),
+        "connector": terminal.kind + terminal.side,
+        "adaptor": _ADAPTORS[rotational, takes_motion],
+        "use_rate": str(rate is not None).lower(),
+        "connections": [
+            (start, end, _line(places[start], places[end], shaft if start == terminal.name else "{0,0,127}"))
+            for start, end in [(terminal.name, f"{adaptor}.flange"), *wires]
+        ],
+        "x": flip * -100,
+        "y": y,
+        "flip": flip,
+        "from": -40 if takes_motion else -50,
+        "to": -50 if takes_motion else -40,
+    }
+
+
+def _line(start: tuple[float, float], end: tuple[float, float], color: str) -> str:
+    """A connection's line: across, up or down halfway, across."""
+    middle = 0.5 * (start[0] + end[0])
+    corners = [start, (middle, start[1]), (middle, end[1]), end] if start[1] != end[1] else [start, end]
+    points = ",".join(f"{{{x:g},{y:g}}}" for x, y in corners)
+    return f"Line(points={{{points}}}, color={color})"

@@ -1,0 +1,197 @@
+"""All files of the Modelica library: templates filled with tables, variables, terminals and numbers."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import comb
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment
+from jointfmu_fmu_src.folders import asset
+from jointfmu_fmu_src.partners.laws import POINTS
+from jointfmu_fmu_src.templates import FRAME, law_terms, template
+
+from jointfmu import __version__
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.kind import Kind
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, default, write_text
+from jointfmu.quantity import flat_fields
+
+from ..parts import folder as joint_folder
+from ..parts import part
+from ..systems.system import System, systems
+from .blocks import interface, wrapper
+from .records import Component, Record, WorkingPoint
+from .systems import model_name, system_model
+from .tables import TOLERANCE
+from .text import environment, text
+
+NAME = "JointStiffness"
+_PARTNERS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")
+"""Components that the systems need beside joints."""
+_FUNCTIONS = (
+    "load",
+    "stiffness",
+    "bend",
+    "linear",
+    "segment",
+    "smoothStep",
+    "loadDerivative",
+    "stiffnessDerivative",
+)
+Points = Mapping[str, Sequence[WorkingPoint]]
+"""{joint: working points of its records}."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Joint:
+    """A joint in the library: its parameters, its form, its records by working point, and its templates."""
+
+    kind: Kind
+    file: ParameterFile
+    component: Component
+    records: Mapping[WorkingPoint, Record]
+    templates: Environment
+
+    @property
+    def record(self) -> Record:
+        """The one that the component shows."""
+        return next(iter(self.records.values()))
+
+
+def write(folder: Path, file: ParameterFile | None = None, points: Points | None = None) -> list[Path]:
+    """Write the library into a folder; returns its files.
+
+    file   : parameters of one joint, in place of its default
+    points : of some joints, in place of their own
+    """
+    written = []
+    for name, content in library(file, points).items():
+        write_text(folder / NAME / name, content)
+        written.append(folder / NAME / name)
+    return written
+
+
+def library(file: ParameterFile | None = None, points: Points | None = None) -> dict[str, str]:
+    """{path in the library: text} of every file."""
+    joints = [
+        _joint(kind, module.COMPONENT, file, (points or {}).get(kind.name))
+        for kind in KINDS.values()
+        if (module := part(kind, "modelica"))
+    ]
+    shared = environment()
+    block, model = (shared.get_template(name) for name in ("Interfaces/block.mo", "Wrappers/wrapper.mo"))
+    packages = {
+        "Examples": _examples(joints, shared),
+        "Components": _components(joints) | _plain(shared, "Components", _PARTNERS, points=POINTS, comb=comb),
+        "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
+        "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
+        "Data": _data(joints),
+        "Functions": _plain(shared, "Functions", _FUNCTIONS),
+    }
+    notes = [text(joint.component.note) for joint in joints if joint.component.note]
+    common = {"version": __version__, "notes": notes, "example": next(iter(MODELS))}
+    out = {
+        "package.mo": shared.get_template("package.mo").render(common, tolerance=f"{TOLERANCE:g}"),
+        "package.order": _order(packages),
+    }
+    for package, classes in packages.items():
+        out[f"{package}/package.mo"] = shared.get_template(f"{package}/package.mo").render(common)
+        out[f"{package}/package.order"] = _order(classes)
+        out |= {f"{package}/{name}.mo": content for name, content in classes.items()}
+    return dict(sorted(out.items()))
+
+
+def _joint(
+    kind: Kind, component: Component, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
+) -> _Joint:
+    own = file if file and file.joint == kind.name else default(kind.name)
+    wanted = points or component.points
+    records = dict(zip(wanted, component.records(own, wanted), strict=True))
+    return _Joint(kind, own, component, records, environment(joint_folder(kind) / "modelica"))
+
+
+def _order(names: Mapping[str, Any]) -> str:
+    """The file package.order."""
+    return "\n".join(names) + "\n"
+
+
+def _plain(shared: Environment, package: str, names: Sequence[str], **terms: Any) -> dict[str, str]:
+    """{class: text} of classes that nothing of a joint is filled in."""
+    return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
+
+
+def _components(joints: Sequence[_Joint]) -> dict[str, str]:
+    classes = {}
+    for joint in joints:
+        name, model = joint.component.name, MODELS[joint.component.name]
+        classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
+            joint.component.texts(joint.record),
+            meta=_meanings(joint.kind),
+            docs={v.name: v.doc for v in model.outputs},
+            html=_documentation(model, joint.file),
+            record=joint.record.name,
+        )
+    return classes
+
+
+def _data(joints: Sequence[_Joint]) -> dict[str, str]:
+    """The records that others extend, then those with tables."""
+    bases, tables = {}, {}
+    for joint in joints:
+        base = joint.component.base
+        extended = joint.templates.get_template(f"Data/{base}.mo")
+        bases[base] = extended.render(meta=_meanings(joint.kind))
+        filled = joint.templates.get_template("Data/record.mo")
+        for record in joint.records.values():
+            tables[record.name] = filled.render(record.content(base), version=__version__)
+    return bases | tables
+
+
+def _examples(joints: Sequence[_Joint], shared: Environment) -> dict[str, str]:
+    """The systems that are shipped."""
+    by_kind = {joint.kind.name: joint for joint in joints}
+    classes = {}
+    for system in systems().values():
+        for joint in joints:
+            system = system.with_joint(joint.file)
+        classes[model_name(system)] = system_model(
+            system, shared, partial(_known, by_kind), f"{NAME}.Examples"
+        )
+    return classes
+
+
+def system_text(system: System) -> str:
+    """A system as a model of its own, with the library's components."""
+    return system_model(system, environment(), lambda kind, file, point: None)
+
+
+def _known(
+    joints: Mapping[str, _Joint], kind: str, file: ParameterFile, point: WorkingPoint
+) -> Record | None:
+    """The record of the library for a joint's parameters, if they are those of the library."""
+    joint = joints[kind]
+    special = joint.component.special
+    same = all(joint.file.flat.get(name) == value for name, value in file.flat.items() if name not in special)
+    return joint.records.get(point, joint.record if not point else None) if same else None
+
+
+def _meanings(kind: Kind) -> dict[str, str]:
+    """Meanings of the parameters of all its laws."""
+    return {
+        name: text(item.metadata["doc"])
+        for parameters in kind.laws.values()
+        for name, item in flat_fields(parameters)
+        if "doc" in item.metadata
+    }
+
+
+def _documentation(model: Model, file: ParameterFile) -> dict[str, str]:
+    """Parts of the FMU's documentation page, as text of a Modelica annotation."""
+    here = Path(__file__).parent
+    page = template(asset(model, "page.html"), here, FRAME)
+    names = ("what", "law", "trust", "paper")
+    terms = {"model": model, "fmu": False, **law_terms(file)}
+    return {name: text(page.render(terms, part=name).strip()) for name in names}

@@ -1,0 +1,223 @@
+"""Systems as Modelica models, of the library's components and those of the Modelica Standard Library."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from jinja2 import Environment
+from jointfmu_fmu_src.native.terminals import ROTATIONAL
+from jointfmu_fmu_src.partners.laws import POINTS
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+
+from ..parts import part as joint_part
+from ..systems.system import Component as Part
+from ..systems.system import System
+from ..systems.wiring import End, ends
+from .records import Component, Record
+from .text import number, text
+
+_MSL = "Modelica.Mechanics"
+_LIBRARY = "JointStiffness.Components"
+_NOMINAL = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
+_APART, _ROW = 30, 30
+"""Between components and between chains on a diagram."""
+
+Records = Callable[[str, ParameterFile, tuple[float, ...]], Record | None]
+"""(kind, parameters, working point) -> the library's record of these parameters, if it has one."""
+
+
+class Declared(NamedTuple):
+    """A declaration: type, name, modifications, and its place on the diagram."""
+
+    type: str
+    name: str
+    values: str
+    x: int
+    y: int
+
+
+def system_model(system: System, shared: Environment, library: Records, within: str = "") -> str:
+    """The text of a model.
+
+    library : records that are there; others stand inside the model
+
+    Raises ValueError for a joint without a component in the library, and as `wiring.ends`.
+    """
+    connected = ends(system)
+    places = _places(system, connected)
+    records: list[dict[str, Any]] = []
+    parts: list[Declared] = []
+    lines: list[tuple[str, str, str]] = []
+
+    def declare(kind: str, name: str, values: Iterable[str], of: str = "") -> None:
+        """Declare a component; one `of` another stands beside it, below those that do already."""
+        x, y = places[of or name]
+        if of:
+            x, y = x + _APART, y - _ROW * sum((part.x, part.y) == (x + _APART, y) for part in parts)
+        parts.append(Declared(kind, name, ", ".join(values), x, y))
+        places[name] = (x, y)
+
+    def connect(one: str, other: str) -> None:
+        points = (places[end.partition(".")[0]] for end in (one, other))
+        lines.append((one, other, ",".join(f"{{{x},{y}}}" for x, y in points)))
+
+    for name, part in system.components.items():
+        if part.file:
+            data, own = _record(part, library, records)
+            declare(f"{_LIBRARY}.{part.model}", name, [*data, *own])
+        else:
+            _PARTNERS[part.model](part, declare, connect)
+    for one, other in connected:
+        assert one.component
+        here, there = _flange(one), _flange(other) if other.component else None
+        if here is None:
+            continue
+        if there is None:
+            held = f"{here.replace('.', '_')}_held"
+            domain = "Rotational" if one.flange and one.flange.kind == ROTATIONAL else "Translational"
+            declare(f"{_MSL}.{domain}.Components.Fixed", held, [], one.component.name)
+            there = f"{held}.flange"
+        connect(here, there)
+    return shared.get_template("Examples/system.mo").render(
+        within=within,
+        name=model_name(system),
+        title=text(system.title),
+        records=records,
+        parts=parts,
+        lines=lines,
+        stop=number(system.stop_time),
+        interval=number(system.interval),
+        about=text(f"{system.description}."),
+        sources=_sources(system),
+    )
+
+
+def model_name(system: System) -> str:
+    """Of a system, as Modelica names models."""
+    return system.name.title().replace("_", "")
+
+
+def _flange(end: End) -> str | None:
+    """What a connection names in Modelica; None if the component there has no such flange."""
+    assert end.component
+    name = end.component.name
+    if end.load:
+        (first, *_) = end.members
+        return f"{name}.flange" if end.component.model == "AngleProfile" else f"{name}_{first}.flange"
+    assert end.flange
+    shaft = end.flange.name.removeprefix("flange")
+    flange = f"flange_{end.flange.side}" if shaft.isdigit() else end.flange.name
+    return f"{name}.{flange}" if end.body or flange in _component(end.component).flanges else None
+
+
+def _component(part: Part) -> Component:
+    module = joint_part(KINDS[part.kind], "modelica")
+    if module is None or module.COMPONENT.name != part.model:
+        raise ValueError(f"{part.name}: the Modelica library has no component of a {part.model}")
+    component: Component = module.COMPONENT
+    return component
+
+
+def _record(
+    part: Part, library: Records, records: list[dict[str, Any]]
+) -> tuple[Sequence[str], Sequence[str]]:
+    """Modifications of a joint: its record, and what it changes of it."""
+    assert part.file
+    component = _component(part)
+    file = part.file
+    point = tuple(part.state.get(name, 0.0) for name in KINDS[part.kind].working_point)
+    own = [f"{key}={value}" for key, value in component.of_system(file).items()]
+    shown = library(part.kind, file, point)
+    if shown:
+        return [f"data=JointStiffness.Data.{shown.name}()"], own
+    (record,) = component.records(file, [point])
+    name = f"{part.name[0].upper()}{part.name[1:]}Data"
+    title = text(f"{file.name}, of {part.name}")
+    records.append(record.content(component.base) | {"name": name, "title": title})
+    return [f"data={name}()"], own
+
+
+def _numbers(values: Mapping[str, Any], names: Iterable[str] | None = None) -> list[str]:
+    return [f"{key}={number(value)}" for key, value in values.items() if names is None or key in names]
+
+
+def _states(*names: str) -> list[str]:
+    return [f"{name}(fixed=true, start=0, nominal={_NOMINAL[name]})" for name in names]
+
+
+Declare = Callable[..., None]
+Connect = Callable[[str, str], None]
+
+
+def _inertia(part: Part, declare: Declare, connect: Connect) -> None:
+    declare(
+        f"{_MSL}.Rotational.Components.Inertia",
+        part.name,
+        [*_numbers(part.values, ("J",)), *_states("phi", "w")],
+    )
+    weight = {key: part.values.get(key, 0.0) for key in ("m", "l")}
+    if all(weight.values()):
+        name = f"{part.name}_weight"
+        declare(f"{_LIBRARY}.LinkWeight", name, _numbers(weight), part.name)
+        connect(f"{part.name}.flange_b", f"{name}.flange")
+
+
+def _mass(part: Part, declare: Declare, connect: Connect) -> None:
+    values = [*_numbers(part.values, ("m",)), *_states("s", "v")]
+    declare(f"{_MSL}.Translational.Components.Mass", part.name, values)
+
+
+def _source(block: str, domain: str, kind: str, signal: str) -> Callable[[Part, Declare, Connect], None]:
+    def add(part: Part, declare: Declare, connect: Connect) -> None:
+        values = part.values
+        points = [number(values[f"p{k}"]) for k in range(1, POINTS + 1) if f"p{k}" in values]
+        given = _numbers({key: value for key, value in values.items() if not key[1:].isdigit()})
+        if points:
+            given.append(f"p={{{', '.join(points)}}}")
+        declare(f"{_LIBRARY}.{block}", part.name, given)
+        acting = f"{part.name}_{signal}"
+        declare(f"{_MSL}.{domain}.Sources.{kind}", acting, [], part.name)
+        connect(f"{part.name}.y", f"{acting}.{signal}")
+
+    return add
+
+
+def _angle(part: Part, declare: Declare, connect: Connect) -> None:
+    declare(f"{_LIBRARY}.AngleProfile", part.name, _numbers(part.values))
+
+
+_PARTNERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
+    "RotationalInertia": _inertia,
+    "TranslationalMass": _mass,
+    "TorqueProfile": _source("Load", "Rotational", "Torque", "tau"),
+    "ForceProfile": _source("Load", "Translational", "Force", "f"),
+    "TorqueCurve": _source("TorqueCurve", "Rotational", "Torque", "tau"),
+    "AngleProfile": _angle,
+}
+
+
+def _places(system: System, connected: Sequence[tuple[End, End]]) -> dict[str, tuple[int, int]]:
+    """Places of the components: a row for each chain, in the order of the file."""
+    chains: list[set[str]] = []
+    for pair in connected:
+        names = {end.component.name for end in pair if end.component}
+        joined = [chain for chain in chains if chain & names]
+        chains = [chain for chain in chains if not chain & names] + [names.union(*joined)]
+    order = list(system.components)
+    chains.sort(key=lambda chain: min(map(order.index, chain)))
+    return {
+        name: (_APART * column * 2 - 80, 80 - _ROW * row)
+        for row, chain in enumerate(chains)
+        for column, name in enumerate(sorted(chain, key=order.index))
+    }
+
+
+def _sources(system: System) -> str:
+    rows = "".join(
+        f"<tr><td><code>{part.name}.{name}</code></td><td>{number(value)} "
+        f"{part.units[name].replace('.', ' ')}</td><td>{text(part.sources[name])}</td></tr>\n"
+        for part in system.components.values()
+        for name, value in part.values.items()
+    )
+    return f"<table>\n<tr><th>number</th><th>value</th><th>source</th></tr>\n{rows}</table>"

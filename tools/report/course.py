@@ -1,0 +1,130 @@
+"""A joint of a parameter file over its load and to and fro, by the Python package: nothing is compiled."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from jointfmu_fmu_src.native.page import evaluated
+from numpy.typing import NDArray
+
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.run.loops import Loops, Swing, conjugate, of
+from jointfmu.run.ramp import RampResult
+
+Array = NDArray[np.float64]
+
+_POINTS = 101
+_SWING = Swing(points=80)
+PARTS = (0.25, 0.5, 1.0)
+"""Amplitudes of the loops over the largest [1]."""
+_FAR, _SURE = 10, 12
+"""Doublings of the load ramp in which the end of the law is sought, and halvings to find it."""
+_SETTLED = 0.95
+"""Part of the force of gross slip at which a joint counts as slipping [1]."""
+
+
+class Course:
+    """What a joint does; all other inputs stay at the start values of the file.
+
+    rest  : {input: start value}
+    limit : (value of the ramped input, warning) where the law ends; None if far from the ramp
+    end   : of the ramp: the model's, longer or shorter as the law reaches farther or less far than that of
+            the default parameters
+    """
+
+    def __init__(self, model: Model, file: ParameterFile) -> None:
+        self.model, self.file = model.of(file.joint, file.values), file
+        self.spring = model.spring(file.values)
+        self.rest = {v.name: file.start(v.name) for v in model.inputs}
+        self.limit = _limit(self.model, self.spring, self.rest)
+        self.stretch = 1.0
+        usual = default(file.joint)
+        if self.limit and usual.values != file.values:
+            own = usual.start
+            found = _limit(model, model.spring(usual.values), {name: own(name) for name in self.rest})
+            self.stretch = float(f"{self.limit[0] / found[0]:.2g}") if found else 1.0
+        self.end = max(self.stretch * model.ramp.end, self.rest[model.ramp.input])
+
+    def ramp(self) -> dict[str, Array]:
+        """Inputs and outputs (n) along the load ramp, dense where curves bend."""
+        ramped = self.model.ramp.input
+        points = [{**self.rest, ramped: float(x)} for x in self.end * np.linspace(0.0, 1.0, _POINTS) ** 2]
+        rows = [point | evaluated(self.model, self.spring, point) for point in points]
+        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+    @property
+    def about(self) -> dict[str, float]:
+        """Inputs at which the loops are run: start values, and the model's where they are zero."""
+        assert self.model.loop
+        given = self.model.loop.settings
+        return {name: value or float(given.get(name, 0.0)) for name, value in self.rest.items()}
+
+    def loops(self) -> Loops:
+        """Loops of growing amplitude, each from rest, of a joint with memory."""
+        loop, driven = self.model.loop, {v.name: v.unit for v in self.model.inputs}
+        assert loop
+        outputs = {v.name: v.unit for v in self.model.outputs}
+        output = conjugate(driven, outputs, loop.input, None, self.model.name)
+        swing = Swing(about=self.about[loop.input], points=_SWING.points)
+        amplitudes = [part * self._amplitude(output) for part in PARTS]
+        results = [self._driven(loop.input, swing.along(a), driven | outputs) for a in amplitudes]
+        return of(results, loop.input, output, swing)
+
+    def _amplitude(self, output: str) -> float:
+        """Of the largest loop: the model's, or twice the way on which the output settles if that is less."""
+        loop = self.model.loop
+        assert loop
+        largest = loop.amplitude * (self.stretch if loop.input == self.model.ramp.input else 1.0)
+
+        def reached(amplitude: float) -> float:
+            points = self.about[loop.input] + np.array([0.0, amplitude])
+            return float(np.ptp(self._driven(loop.input, points, {}).columns[output]))
+
+        end = reached(largest)
+        if _SETTLED * reached(2.0 * largest) > end:
+            return largest
+        low, high = 0.0, largest
+        for _ in range(_SURE):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if reached(middle) > _SETTLED * end else (middle, high)
+        return min(largest, float(f"{2.0 * high:.2g}"))
+
+    def _driven(self, name: str, points: Array, units: dict[str, str]) -> RampResult:
+        evolve, rest = self.model.evolve, self.model.rest
+        assert evolve
+        assert rest
+        memory, rows = rest(self.spring), []
+        for x in points:
+            outputs, memory = evolve(self.spring, {**self.about, name: float(x)}, memory)
+            rows.append({name: float(x)} | {output: float(value) for output, value in outputs.items()})
+        return RampResult({key: np.array([row[key] for row in rows]) for key in rows[0]}, units, ())
+
+
+def _limit(model: Model, spring: Any, rest: Mapping[str, float]) -> tuple[float, str] | None:
+    """Where the ramped input first makes a warning that it does not make at zero, and the warning."""
+
+    def said(x: float) -> dict[int, str]:
+        inputs = {**rest, model.ramp.input: x}
+        return model.warnings(spring, inputs | evaluated(model, spring, inputs))
+
+    before = said(0.0)
+
+    def beyond(x: float) -> list[str]:
+        return [text for number, text in said(x).items() if number not in before]
+
+    low, high = 0.0, 2.0**-_FAR * model.ramp.end
+    while not beyond(high):
+        low, high = high, 2.0 * high
+        if high > 2.0**_FAR * model.ramp.end:
+            return None
+    for _ in range(_SURE):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if beyond(middle) else (middle, high)
+    return high, beyond(high)[0]
+
+
+def kinds_of(file: ParameterFile) -> dict[str, Model]:
+    """{FMU: its model} of the joint of a parameter file."""
+    return {model.name: model for model in KINDS[file.joint].models}

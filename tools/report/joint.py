@@ -1,0 +1,231 @@
+"""The page of one joint: curves, loops, friction, where each number comes from, how far to trust it."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from jointfmu_fmu_src.folders import asset
+from jointfmu_fmu_src.native.page import drawings, panels
+from jointfmu_fmu_src.templates import FRAME, law_terms, template
+
+from jointfmu import __version__
+from jointfmu.contact.roughness import DECLARED
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Model
+from jointfmu.parameters import ORIGINS, ParameterFile, write_text
+from jointfmu.quantity import flat_fields
+from jointfmu.quantity.units import factor
+from jointfmu.run.loops import Loops
+
+from ..judgement import judge_file
+from ..parts import part
+from ..shown import shown_unit, spelled
+from .beside import Beside
+from .course import Course, kinds_of
+from .figure import Figure, Panel, Series, as_json
+from .looks import script, style
+
+MEANT = {
+    "published": "printed in the paper",
+    "derived": "computed from printed values or from a drawing",
+    "catalogue": "a maker's catalogue",
+    "estimate": "an engineering estimate",
+    "calibration": "fitted to published or measured points",
+    "user": "set by you",
+}
+"""What each of ORIGINS means."""
+TOPICS = (
+    "In short",
+    "The laws on their own surfaces",
+    "Measured joints",
+    "Tangential stiffness",
+    "Damping",
+    "What this does not show",
+)
+"""Headings of docs/validity.md for those who want to know more."""
+
+
+class _Row(NamedTuple):
+    """A number of the file, as text: shown in a display unit, and in SI where that is another."""
+
+    name: str
+    shown: str
+    unit: str
+    stated: str
+    doc: str
+    kind: str
+    source: str
+
+
+def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) -> None:
+    """Write the self-contained page of a parameter file, for one of the joint's FMUs (default: the first).
+
+    Raises ValueError if the joint has no such FMU, or the file cannot be written.
+    """
+    models = kinds_of(file)
+    if fmu is not None and fmu not in models:
+        raise ValueError(f"fmu = {fmu!r} is none of a {file.joint}, allowed are {', '.join(models)}")
+    write_text(path, _page(models[fmu or next(iter(models))], file))
+
+
+def _page(model: Model, file: ParameterFile) -> str:
+    course = Course(model, file)
+    here, rows = Path(__file__).parent, _rows(file)
+    own = part(KINDS[model.joint], "report")
+    loops = course.loops() if model.loop else None
+    figures = [_curves(course), *([_looped(course, loops)] if loops else [])]
+    if own and model.name in own.FIGURES:
+        figures += own.FIGURES[model.name](model, file)
+    return template(asset(model, "page.html"), here, FRAME).render(
+        model=course.model,
+        spring=course.spring,
+        fmu=True,
+        **law_terms(file),
+        file=file,
+        version=__version__,
+        figures=[(figure, as_json(figure)) for figure in figures],
+        loops=_loop_rows(loops) if loops else [],
+        beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
+        drawings={
+            name: f'<div class="wide">{svg}</div>' for name, svg in drawings(model, course.spring).items()
+        },
+        rows=rows,
+        origins=[(kind, MEANT[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
+        judgement=judge_file(file),
+        range=_range(course),
+        topics=TOPICS,
+        style=style(),
+        script=script("figures.js") + "drawAll();",
+    )
+
+
+def _rows(file: ParameterFile) -> list[_Row]:
+    """Every number of the file: parameters, start values of inputs, roughnesses."""
+    fields = {name: item.metadata for name, item in flat_fields(type(file.values))}
+    variables = {v.name: v for model in kinds_of(file).values() for v in model.inputs}
+    found = [
+        (name, value, fields[name].get("unit"), fields[name]["doc"]) for name, value in file.flat.items()
+    ]
+    for name, value in file.inputs.items():
+        found.append((f"inputs.{name}", value, variables[name].unit, variables[name].doc))
+    for name, value in file.roughness.items():
+        meta = DECLARED[name].metadata
+        found.append((f"roughness.{name}", value, meta["unit"], meta["doc"]))
+    return [
+        _Row(
+            name,
+            *_shown(value, unit),
+            doc,
+            file.origins.get(name, "user"),
+            file.sources.get(name, "default choice"),
+        )
+        for name, value, unit, doc in found
+    ]
+
+
+def _shown(value: Any, unit: str | None) -> tuple[str, str, str]:
+    """A value in its display unit, that unit, and the value in SI where that is another."""
+    if isinstance(value, bool | str):
+        return str(value).lower(), "", ""
+    if isinstance(value, tuple):
+        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1"), ""
+    if unit is None:
+        return f"{value:g}", "", ""
+    shown = shown_unit(unit, value)
+    exact = "" if shown == unit else f"{value:.12g} {spelled(unit)}"
+    return f"{factor(unit, shown) * value:.6g}", spelled(shown), exact
+
+
+def _scale(values: Any, unit: str) -> tuple[Any, str]:
+    """Values in the display unit in which the largest of them reads best, and that unit."""
+    largest = float(np.max(np.abs(values), initial=0.0))
+    shown = shown_unit(unit, largest)
+    return factor(unit, shown) * np.asarray(values), spelled(shown)
+
+
+def _curves(course: Course) -> Figure:
+    """The load ramp: what the joint's folder says of its page."""
+    columns = course.ramp()
+    variables = {v.name: v for v in (*course.model.inputs, *course.model.outputs)}
+    drawn, named = [], dict[str, str]()
+    for over, names in panels(course.model):
+        x, x_unit = _scale(columns[over], variables[over].unit)
+        unit = shown_unit(variables[names[0]].unit, float(np.max(np.abs(columns[names[0]]))))
+        times = factor(variables[names[0]].unit, unit)
+        series = [Series(name, x, times * columns[name]) for name in names]
+        title = f"{', '.join(names)} over {over}"
+        drawn.append(Panel(title, f"{over} [{x_unit}]", f"{', '.join(names)} [{unit}]", series))
+        named |= {name: variables[name].doc for name in (over, *names)}
+    ramped = variables[course.model.ramp.input]
+    end, unit = _scale(course.end, ramped.unit)
+    meaning = "; ".join(f"{name}: {doc}" for name, doc in named.items() if name != ramped.name)
+    text = (
+        f"{ramped.name} ({ramped.doc}) from 0 to {float(end):.4g} {unit}, all else at its start value. "
+        f"Drawn are {meaning}."
+    )
+    return Figure("Curves over the load", text, drawn)
+
+
+def _looped(course: Course, loops: Loops) -> Figure:
+    """The loops of a joint with memory."""
+    units = loops.units
+    x_unit, y_unit = (
+        shown_unit(unit, max(float(np.max(np.abs(values))) for values in series))
+        for unit, series in zip(
+            units, ([p.motion for p in loops.loops], [p.force for p in loops.loops]), strict=True
+        )
+    )
+    x, y = factor(units[0], x_unit), factor(units[1], y_unit)
+    series = [
+        Series(f"amplitude {x * loop.amplitudes[0]:.4g} {spelled(x_unit)}", x * loop.motion, y * loop.force)
+        for loop in reversed(loops.loops)
+    ]
+    inputs = {v.name: v.unit for v in course.model.inputs}
+    set_ = [f"{name} = {value:g} {spelled(inputs[name])}" for name, value in course.about.items() if value]
+    text = "To and fro from rest at no speed, two cycles each" + (
+        f", at {', '.join(set_)}. " if set_ else ". "
+    )
+    if not any(loop.loss for loop in loops.loops):
+        text += "With these parameters the joint remembers nothing: way there and way back are one curve."
+    force = f"{'-' if loops.sign < 0.0 else ''}{loops.force}"
+    panel = Panel(f"{force} over {loops.motion}", f"{loops.motion} [{x_unit}]", f"{force} [{y_unit}]", series)
+    return Figure("Loops", text, [panel])
+
+
+def _loop_rows(loops: Loops) -> list[dict[str, str]]:
+    """The table of the loops, in display units."""
+    stiffness = "N/m" if loops.units[0] == "m" else "N.m/rad"
+    units = {"motion": loops.units[0], "force": loops.units[1], "secant_stiffness": stiffness, "loss": "J"}
+
+    def shown(row: dict[str, float], name: str) -> str:
+        value, unit = _scale(row[name], units[name])
+        return f"{float(value):.4g} {unit}"
+
+    return [
+        {name: shown(row, name) for name in units} | {"loss_factor": f"{row['loss_factor']:.3g}"}
+        for row in loops.rows()
+    ]
+
+
+def _beside_rows(rows: list[Beside]) -> list[dict[str, str]]:
+    """The table of what is published of this joint, in the display units of the published numbers."""
+    shown = []
+    for row in rows:
+        unit = shown_unit(row.unit, row.published)
+        times, ending = factor(row.unit, unit), f" {spelled(unit)}".rstrip()
+        numbers = (f"{times * value:.4g}{ending}" for value in (row.published, row.computed))
+        names = ("name", "published", "computed", "role", "source")
+        texts = (row.name.replace("_", " "), *numbers, row.role, row.source)
+        shown.append(dict(zip(names, texts, strict=True)) | {"limit": "< " if row.bound else ""})
+    return shown
+
+
+def _range(course: Course) -> str:
+    """Where the law ends."""
+    ramped = next(v for v in course.model.inputs if v.name == course.model.ramp.input)
+    if course.limit is None:
+        return f"No end of the law is met by {ramped.name}, far beyond the load ramp."
+    value, unit = _scale(course.limit[0], ramped.unit)
+    return (
+        f"The law ends at {ramped.name} = {float(value):.3g} {unit}; beyond, an FMU warns: {course.limit[1]}."
+    )

@@ -1,0 +1,61 @@
+"""The page: a tab per joint with figures, the table of published against computed, the checks."""
+
+import platform
+from pathlib import Path
+from typing import Any
+
+from jointfmu_fmu_src.templates import template
+
+from jointfmu import __version__
+from jointfmu.files.stamp import build_time
+from jointfmu.joints import KINDS
+from jointfmu.joints.kind import Kind
+from jointfmu.parameters import write_text
+from jointfmu.published.reference import ROLES
+from jointfmu.published.validation import shown_claim, shown_error, shown_tolerance, summary
+
+from ..parts import part
+from ..systems.system import systems
+from .figure import as_json
+from .looks import script, style
+from .motion import motions
+from .systems import resonances, ring_downs
+
+
+def write_report(path: Path, outcome: Any) -> None:
+    """Write the self-contained page of an outcome of the main job."""
+    page = template(Path(__file__).with_name("page.html")).render(
+        version=__version__,
+        python=platform.python_version(),
+        when=build_time().strftime("%Y-%m-%d %H:%M UTC"),
+        outcome=outcome,
+        roles=ROLES,
+        sentence=summary(outcome.rows),
+        shown_error=shown_error,
+        shown_tolerance=shown_tolerance,
+        shown_claim=shown_claim,
+        fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
+        tabs=[_tab(kind, outcome) for kind in KINDS.values()],
+        style=style(),
+        script=script("figures.js", "tabs.js"),
+    )
+    write_text(path, page)
+
+
+def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
+    """What the page shows of a joint."""
+    module = part(kind, "figures")
+    figures = module.figures(outcome) if module else []
+    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
+    figures += motions(outcome.arms, kind.name)
+    names = [model.name for model in kind.models]
+    kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
+    names += [name for name, found in kinds.items() if kind.name in found]
+    return {
+        "name": kind.name,
+        "title": kind.title,
+        "figures": [(figure, as_json(figure)) for figure in figures],
+        "rows": [row for row in outcome.rows if row.point.joint == kind.name],
+        "checks": [check for check in outcome.checks if check.fmu in names],
+        "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],
+    }

@@ -1,0 +1,138 @@
+"""Form removal and repair, each repair named and counted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .heights import FORMS, Array, Heights
+
+Mask = NDArray[np.bool_]
+SPIKE = 8.0
+"""A spike deviates from the median of its neighbours by that many standard deviations."""
+SWEEPS = 50
+"""Sweeps of the harmonic filling: holes up to about ten points wide become smooth."""
+MOST_MISSING = 0.2
+"""Largest share of points that may be repaired."""
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """What was repaired, how often, of how many points."""
+
+    name: str
+    count: int
+    points: int
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.count} of {self.points} points ({100.0 * self.count / self.points:.3g} %)"
+
+
+def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
+    """Spikes become missing points: |z - median of neighbours| > SPIKE standard deviations of that.
+
+    The median is over 5 points along a profile and 5 x 5 on a map; the standard deviation is a robust one,
+    the 0.9 quantile of the deviation over that of a normal distribution.
+    """
+    from scipy.ndimage import median_filter
+
+    z = heights.z
+    valid = np.isfinite(z)
+    deviation = np.abs(z - median_filter(_nearest(z, valid), size=5, mode="nearest"))
+    scale = float(np.quantile(deviation[valid], 0.9)) / 1.645
+    if scale == 0.0:
+        return heights, []
+    spikes = valid & (deviation > SPIKE * scale)
+    if not spikes.any():
+        return heights, []
+    repair = Repair("spikes taken as missing", int(spikes.sum()), z.size)
+    return heights.with_heights(np.where(spikes, np.nan, z)), [repair]
+
+
+def without_form(heights: Heights, form: str = "tilt") -> Heights:
+    """Subtract the least-squares polynomial of the valid points: order 0, 1 or 2 in x (and y)."""
+    if form not in FORMS:
+        raise ValueError(f"form = {form!r} is not one of {', '.join(FORMS)}")
+    order = {"mean": 0, "tilt": 1, "curvature": 2}[form]
+    axes = [np.linspace(-1.0, 1.0, n) for n in heights.z.shape]
+    grids = np.meshgrid(*axes, indexing="ij", sparse=True)
+    valid = np.isfinite(heights.z)
+    terms = _polynomial([np.broadcast_to(g, heights.z.shape) for g in grids], order)
+    weights = [np.where(valid, t, 0.0).ravel() for t in terms]
+    normal, left = np.array([[a @ b for b in weights] for a in weights]), heights.z
+    for _ in range(2):  # what rounding leaves of a large form goes the second time
+        known = np.where(valid, left, 0.0).ravel()
+        coefficients = np.linalg.solve(normal, np.array([w @ known for w in weights]))
+        left = left - sum(c * t for c, t in zip(coefficients, terms, strict=True))
+    return heights.with_heights(left)
+
+
+def _polynomial(axes: list[Array], order: int) -> list[Array]:
+    terms = [np.ones_like(axes[0])]
+    if order >= 1:
+        terms += axes
+    if order >= 2:
+        terms += [a * b for i, a in enumerate(axes) for b in axes[i:]]
+    return terms
+
+
+def filled(heights: Heights) -> tuple[Heights, list[Repair]]:
+    """Missing points filled, for the spectrum: linearly along a profile, on a map harmonically.
+
+    Raises ValueError if more than MOST_MISSING of the points are missing.
+    """
+    z = heights.z
+    valid = np.isfinite(z)
+    count = int(z.size - valid.sum())
+    if count == 0:
+        return heights, []
+    if count > MOST_MISSING * z.size:
+        raise ValueError(
+            f"{heights.name}: {count} of {z.size} points are missing or spikes, "
+            f"at most {100.0 * MOST_MISSING:g} % can be filled"
+        )
+    if z.ndim == 1:
+        at = np.arange(z.size)
+        whole = np.interp(at, at[valid], z[valid])
+    else:
+        whole = _harmonic(_nearest(z, valid), ~valid)
+    how = "linearly" if z.ndim == 1 else "harmonically"
+    return heights.with_heights(whole), [Repair(f"missing points filled {how}", count, z.size)]
+
+
+def _harmonic(z: Array, missing: Mask) -> Array:
+    """Every missing point nears the mean of its four neighbours, from a first guess."""
+    row, column = np.nonzero(missing)
+    low, high = np.maximum(row - 1, 0), np.minimum(row + 1, z.shape[0] - 1)
+    left, right = np.maximum(column - 1, 0), np.minimum(column + 1, z.shape[1] - 1)
+    whole = z.copy()
+    for _ in range(SWEEPS):
+        around = whole[low, column] + whole[high, column] + whole[row, left] + whole[row, right]
+        whole[row, column] = 0.25 * around
+    return whole
+
+
+def _nearest(z: Array, valid: Mask) -> Array:
+    if valid.all():
+        return z
+    from scipy.ndimage import distance_transform_edt
+
+    index = distance_transform_edt(~valid, return_distances=False, return_indices=True)
+    return np.asarray(z[tuple(index)])
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A surface without form: with gaps for the structure function, filled for the spectrum."""
+
+    gappy: Heights
+    whole: Heights
+    repairs: tuple[Repair, ...]
+
+
+def prepare(heights: Heights, form: str = FORMS[0]) -> Prepared:
+    """Take spikes as missing, remove the form, fill."""
+    clean, spikes = without_spikes(heights)
+    gappy = without_form(clean, form)
+    whole, gaps = filled(gappy)
+    return Prepared(gappy, whole, (*spikes, *gaps))

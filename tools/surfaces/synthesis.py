@@ -1,0 +1,136 @@
+"""Seeded surfaces of given D and G.
+
+Weierstrass-Mandelbrot: isotropic (Hu 2023, Eq. 1), textured (Yu 2022, Eq. 3), profiles. Periodic: every wave
+of a band.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointfmu.contact.fractal import wave_power
+from jointfmu.quantity import Interval, Limit, check, quantity
+
+from .heights import Areal, Array, Profile
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Waves:
+    """Waves of a Weierstrass-Mandelbrot function over a length.
+
+    size : longest wavelength and length of the sample; points : along that length. The shortest wavelength
+    is at least twice the spacing.
+    """
+
+    size: float = quantity("m", "side length of the surface, and its longest wave", gt=0.0)
+    points: int = quantity("1", "points along a side", ge=2.0, whole=True)
+    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def positions(self) -> Array:
+        """(points,) [m] along one side."""
+        return np.asarray(np.arange(self.points) * (self.size / self.points), dtype=np.float64)
+
+    @property
+    def frequencies(self) -> Array:
+        """(n_max + 1,) [1/m], gamma^n/L; n_max = int(ln(L/L_s)/ln gamma), L_s = 2 L/points."""
+        count = int(np.log(0.5 * self.points) / np.log(self.gamma) * (1.0 + 1e-12)) + 1
+        return np.asarray(self.gamma ** np.arange(count) / self.size, dtype=np.float64)
+
+    def amplitudes(self, H: float, G: float) -> Array:
+        """[m] G^(1-H) sqrt(ln gamma) l^H of every wave, l = 1/frequency."""
+        return np.asarray(G ** (1.0 - H) * np.sqrt(np.log(self.gamma)) * self.frequencies**-H)
+
+
+def isotropic(waves: Waves, D: float, G: float, ridges: int, seed: int) -> Areal:
+    """Isotropic surface of Hu 2023, Eq. 1.
+
+    D      : 1    fractal dimension of the surface, 2 < D < 3
+    G      : [m]  fractal roughness
+    ridges : M, number of directions pi m/M, m = 1 ... M
+    seed   : of the phases, uniform in [0, 2 pi)
+
+    cos(a x + b y + c) = Re(exp(i a x) exp(i (b y + c))): the double sum over M (n_max + 1) waves is one
+    product of two matrices, so that its cost is hardly more than that of the cosines along the sides.
+    """
+    _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
+    phases = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, (ridges, waves.frequencies.size))
+    angle = np.pi * np.arange(1, ridges + 1)[:, None] / ridges
+    wave = 2.0 * np.pi * waves.frequencies
+    amplitude = np.broadcast_to(waves.amplitudes(3.0 - D, G) / np.sqrt(ridges), phases.shape).ravel()
+    along_x = np.multiply.outer(waves.positions, (wave * np.cos(angle)).ravel())
+    along_y = np.multiply.outer(waves.positions, (wave * np.sin(angle)).ravel()) + phases.ravel()
+    z = (amplitude * np.sin(along_y)) @ np.sin(along_x).T - (amplitude * np.cos(along_y)) @ np.cos(along_x).T
+    z += float(np.sum(amplitude * np.cos(phases.ravel())))
+    spacing = waves.size / waves.points
+    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic surface")
+
+
+def line(waves: Waves, D: float, G: float, rng: np.random.Generator) -> Array:
+    """Heights (points,) [m] of the profile function, Hu 2023, Eq. 2, and Yu 2022, Eq. 2 (with x and L).
+
+    D : fractal dimension of the profile, 1 < D < 2; G : fractal roughness [m].
+    """
+    _interval("D", D, 1.0, 2.0, "fractal dimension of the profile")
+    z = np.zeros(waves.points)
+    x, amplitudes = waves.positions, waves.amplitudes(2.0 - D, G)
+    for f, a, phase in zip(
+        waves.frequencies, amplitudes, rng.uniform(0.0, 2.0 * np.pi, amplitudes.size), strict=True
+    ):
+        z += a * (np.cos(phase) - np.cos(2.0 * np.pi * f * x - phase))
+    return z
+
+
+def profile(waves: Waves, D: float, G: float, seed: int) -> Profile:
+    """One seeded profile."""
+    z = line(waves, D, G, np.random.default_rng(seed))
+    return Profile(z=z, dx=waves.size / waves.points, name="synthetic profile")
+
+
+def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed: int) -> Areal:
+    """Surface with two directions, Yu 2022, Eq. 3 (corrected): z(x, y) = z_1(x) + z_2(y).
+
+    D, G : of the profiles along x and y
+    """
+    rng = np.random.default_rng(seed)
+    along_x, along_y = (line(waves, d, g, rng) for d, g in zip(D, G, strict=True))
+    spacing = waves.size / waves.points
+    z = along_x[None, :] + along_y[:, None]
+    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
+
+
+def periodic(size: float, points: int, D: float, G: float, band: tuple[float, float], seed: int) -> Areal:
+    """Isotropic surface with all the waves of a band that fit a periodic square, and no others.
+
+    size   : [m]  side of the square; points : along a side
+    D      : 1    fractal dimension of the surface, 2 < D < 3
+    G      : [m]  fractal roughness in the sense of `isotropic`
+    band   : [m]  longest and shortest wave, size >= longest > shortest >= 2 spacings
+    seed   : of the phases; the amplitudes are those of `fractal.wave_power` without scatter
+
+    Raises ValueError if D is outside its interval or the band does not fit the square and its grid.
+    """
+    _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
+    longest, shortest = band
+    spacing = size / points
+    if not size >= longest > shortest >= 2.0 * spacing * (1.0 - 1e-9):
+        raise ValueError(
+            f"band = {longest:g} to {shortest:g} m is not allowed: the longest wave is at most the side "
+            f"{size:g} m, the shortest below it and at least two spacings, {2.0 * spacing:g} m"
+        )
+    f = np.hypot(np.fft.fftfreq(points, spacing)[:, None], np.fft.rfftfreq(points, spacing))
+    inside = (f >= (1.0 - 1e-9) / longest) & (f <= (1.0 + 1e-9) / shortest)
+    f[~inside] = np.inf
+    cell = 1.0 / (2.0 * np.pi * f**2 * size**2)  # share of ln f of one mode
+    noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((points, points)))
+    waves = noise / np.abs(noise) * np.sqrt(wave_power(f, 3.0 - D, G) * cell)
+    z = np.fft.irfft2(waves, s=(points, points)) * points**2
+    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")
+
+
+def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:
+    if text := Limit(name, Interval(low, high), doc).problem(value, "1"):
+        raise ValueError(text)

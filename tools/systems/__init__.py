@@ -1,0 +1,1 @@
+"""Systems of joints: their files, archives, simulation and ringing."""

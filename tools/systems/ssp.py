@@ -1,0 +1,130 @@
+"""Systems as SSP archives: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with FMUs of FMI 3.0."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.ssv import Value, parameter_set
+from jointfmu_fmu_src.xml_parts import VARIABILITIES
+
+from jointfmu.parameters import ParameterFile
+from jointfmu.progress import track
+
+from .structure import MASTERS, Master, metadata, structure
+from .system import Component, System, systems
+from .wiring import lags, model_of, wires
+
+FOLDERS = {"1.0": ("ssp", "fmi2"), "2.0": ("ssp2", "fmi3")}
+"""{version of SSP: (folder of the archives, folder of their FMUs)}."""
+
+
+def build_systems(
+    out: Path,
+    wanted: Sequence[System] | None = None,
+    parameters: ParameterFile | None = None,
+    joints: bool = True,
+    variability: str = VARIABILITIES[0],
+) -> list[Path]:
+    """Write the archives of systems, and their components as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
+
+    wanted      : None: all that are shipped
+    parameters  : of a joint, instead of that of the systems: then only systems with the joint are packed
+    joints      : build the systems' joints beside the partners; else they are there
+    variability : of the parameters, one of VARIABILITIES
+
+    Raises what `native.build.build` and `pack_system` raise, and ValueError if no system has the joint, or
+    two joints of one FMU differ in what is baked into it.
+    """
+    chosen = list(systems().values()) if wanted is None else list(wanted)
+    if parameters:
+        kinds = {kind for system in chosen for kind in system.kinds}
+        if parameters.joint not in kinds:
+            allowed = ", ".join(sorted(kinds))
+            raise ValueError(f"no system has a joint {parameters.joint!r}, allowed are {allowed}")
+        chosen = [system.with_joint(parameters) for system in chosen if parameters.joint in system.kinds]
+    used: dict[str, Component] = {}
+    for system in chosen:
+        wires(system)
+        for name, fmu in fmu_names(system).items():
+            used.setdefault(fmu, system.components[name])
+    wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
+    jobs = [(fmu, one, version) for version in "23" for fmu, one in wanted_fmus.items()]
+    built = []
+    for fmu, one, version in track(jobs, "build FMUs of systems", len(jobs)):
+        file = (one.file if one.own else one.base) or partner_parameters(one.model)
+        alias = "" if fmu == one.model else fmu
+        built.append(build(one.model, file, out / f"fmi{version}", version, variability, alias))
+    return built + [path for system in chosen for path in pack_system(system, out)]
+
+
+def pack_system(system: System, out: Path) -> list[Path]:
+    """Write `out/ssp/NAME.ssp` (SSP 1.0) and `out/ssp2/NAME.ssp` (SSP 2.0) for every one of MASTERS.
+
+    They hold FMUs of `out/fmi2` and `out/fmi3`, and the system's numbers.
+
+    Raises ValueError for flanges that do not fit, see `wiring.ends`, and folders that cannot be written.
+    """
+    return [_pack(system, out, version, master) for version in FOLDERS for master in MASTERS]
+
+
+def _pack(system: System, out: Path, version: str, master: Master) -> Path:
+    folder, fmus = FOLDERS[version]
+    late, names = lags(system), fmu_names(system)
+    members = {"SystemStructure.ssd": structure(system, names, version, master)}
+    every: dict[str, Value] = {}
+    for name, component in system.components.items():
+        own = values(component) | {lag: Value(master.lag, "1", master.doc) for lag in late.get(name, ())}
+        every |= {f"{name}.{variable}": value for variable, value in own.items()}
+        members[f"resources/{names[name]}.fmu"] = (out / fmus / f"{names[name]}.fmu").read_bytes()
+        members[f"parameters/{name}.ssv"] = parameter_set(system.name, own, version, metadata())
+    members[f"parameters/{system.name}.ssv"] = parameter_set(system.name, every, version, metadata())
+    target = out / folder / f"{system.name}{master.suffix}.ssp"
+    with workshop(target) as work:
+        pack(members, work / target.name)
+    return target
+
+
+def values(component: Component) -> dict[str, Value]:
+    """{variable: value} of a component: of the joint's file, and of the system's.
+
+    Booleans of the joint's file are the start values of its FMU: fmpy takes every Boolean of a parameter set
+    for true.
+    """
+    found: dict[str, Value] = {}
+    if component.file:
+        for name, item in model_of(component).parameter_fields().items():
+            value = component.file.flat[name]
+            if not isinstance(value, bool):
+                found[name] = Value(
+                    value, item.metadata.get("unit", ""), component.file.sources.get(name, "")
+                )
+    return found | {
+        name: Value(value, component.units[name], component.sources[name])
+        for name, value in component.values.items()
+        if name in component.parameters or name in component.state
+    }
+
+
+def fmu_names(system: System) -> dict[str, str]:
+    """{component: its FMU}: the model's name; where it is another, SYSTEM_COMPONENT of the first one with the
+    same baked values."""
+    found: dict[str, str] = {}
+    variants: list[tuple[str, Mapping[str, Any], str]] = []
+    for name, component in system.components.items():
+        if not (component.file and component.own):
+            found[name] = component.model
+            continue
+        exposed = model_of(component).parameter_fields()
+        baked = {
+            key: value
+            for key, value in component.file.flat.items()
+            if key not in exposed or isinstance(value, bool)
+        } | {"law": component.file.law}
+        same = [fmu for model, values, fmu in variants if (model, values) == (component.model, baked)]
+        found[name] = same[0] if same else f"{system.name}_{name}"
+        if not same:
+            variants.append((component.model, baked, found[name]))
+    return found

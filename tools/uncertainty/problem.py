@@ -1,0 +1,118 @@
+"""What a user wants to know, as a problem: parameters, distributions and a ramp of load, all checked."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Interval, flat_fields, problem
+from jointfmu.quantity.refusal import Refusal
+
+from .distributions import Uncertain, is_relative
+from .reduced import Reduced, reduced
+from .study import samples_of, split
+
+Array = NDArray[np.float64]
+
+LOAD_END = "up to the end of the tabulated law"
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is propagated.
+
+    parameters : class of the parameter set
+    values    : the parameter file's, with the plain settings
+    uncertain : parameters with a distribution, the load's last if it has one
+    loads     : (m) ramp of the load, ascending; one point if the load itself was set
+    relative  : whether the load's distribution is a factor on the ramp; None if it has none
+    """
+
+    joint: str
+    parameters: type[Any]
+    values: Mapping[str, Any]
+    uncertain: tuple[Uncertain, ...]
+    loads: Array
+    relative: bool | None = None
+
+    @property
+    def reduced(self) -> Reduced:
+        """How the joint's curves are computed."""
+        return reduced(KINDS[self.joint])
+
+    def sampled(self, points: Array) -> tuple[dict[str, Any], Array]:
+        """Values with samples (n) among them, and factors (n) on the load, from points of the unit cube."""
+        drawn = samples_of(self.uncertain, points)
+        load = drawn.pop(self.reduced.load.name, None)
+        factor = np.ones(len(points)) if load is None else load if self.relative else load / self.loads[-1]
+        return {**self.values, **drawn}, factor
+
+
+def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points: int) -> Problem:
+    """The problem of a parameter file and settings (values and distributions by name).
+
+    Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
+    """
+    kind = KINDS[file.joint]
+    curves, declared = reduced(kind), dict(flat_fields(type(file.values)))
+    base = dict(file.flat)
+    lists = {name for name, item in declared.items() if "series" in item.metadata}
+    known = [*(base.keys() - lists), curves.load.name]
+    if unknown := [name for name in given if name not in known]:
+        allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+    load_text = given.get(curves.load.name)
+    relative = isinstance(load_text, str) and is_relative(load_text)
+    plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
+    fixed = plain.pop(curves.load.name, None)
+    stated = file.with_values(plain, "user", "set for the study")
+    for parameter in uncertain:
+        if parameter.name != curves.load.name:
+            _check(parameter, declared[parameter.name])
+    order = tuple(sorted(uncertain, key=lambda parameter: parameter.name == curves.load.name))
+    if not order:
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+    load = next((parameter for parameter in order if parameter.name == curves.load.name), None)
+    at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
+    loads = _ramp(curves, stated.values, at, to, points, load)
+    return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
+
+
+def _check(parameter: Uncertain, item: Any) -> None:
+    """Raise ValueError if a parameter cannot be uncertain or its distribution leaves the interval."""
+    if "allowed" in item.metadata:
+        raise ValueError(f"{parameter.name} = {parameter.text}: is a named choice and cannot be uncertain")
+    if item.metadata["whole"]:
+        raise ValueError(f"{parameter.name} = {parameter.text}: is a whole number and cannot be uncertain")
+    for value in (*(end for end in parameter.support if np.isfinite(end)), float(parameter.law.median())):
+        tolerated = value == 0.0 and parameter.support[0] == 0.0 and item.metadata["interval"].low == 0.0
+        if not tolerated and (text := problem(parameter.name, value, item)):
+            raise ValueError(f"{parameter.name} = {parameter.text}: {text}")
+
+
+def _ramp(
+    curves: Reduced, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None
+) -> Array:
+    """The loads: a ramp from 0 to `to`, or the one load that was set."""
+    allowed = Interval.of(gt=0.0, le=curves.most(values))
+    if at is not None:
+        if to is not None:
+            raise ValueError(f"{curves.load.name} is set and cannot be ramped as well; drop to = {to:g}")
+        if not isinstance(at, int | float) or isinstance(at, bool):
+            raise ValueError(f"{curves.load.name} = {at!r} is not a number in {curves.load.unit}")
+        ends = [end for end in load.support if np.isfinite(end) and end != 0.0] if load else []
+        for value in (float(at), *ends):
+            if not allowed.contains(value):
+                given = f"{curves.load.name} = {value:g} {curves.load.unit}"
+                raise ValueError(f"{given} is outside {allowed}: {LOAD_END}")
+        return np.array([float(at)])
+    end = curves.to(values) if to is None else to
+    if not allowed.contains(end):
+        raise ValueError(f"to = {end:g} {curves.load.unit} is outside {allowed}: {LOAD_END}")
+    if not 2 <= points <= 10_000:
+        raise ValueError(f"points = {points} is outside [2, 10000]: points of the ramp")
+    return np.linspace(0.0, end, points)

@@ -1,0 +1,186 @@
+"""Samples of the parameters through the joint to bands of its outputs along a ramp of load."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.progress import track
+from jointfmu.quantity import Interval, build
+
+from ..batch.samples import columns, inside
+from .problem import LOAD_END, Problem
+from .study import Refused, samples_of, unit_design
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Singles = NDArray[np.float32]
+
+QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
+BLOCK = 512
+"""Samples that are evaluated at once: what fits the cache."""
+CHECKED = 4
+"""Samples that are compared with the exported spring."""
+ACCURACY = 1e-2
+"""Largest relative difference between the reduced evaluation and the spring that is let pass [1]."""
+
+
+@dataclass(frozen=True, slots=True)
+class SampledOutputs:
+    """Outputs (m, n) in single precision by name at accepted samples, NaN elsewhere."""
+
+    outputs: Mapping[str, Singles]
+    good: Mask
+
+
+def run(task: Problem, points: Array, loads: Array, text: str) -> SampledOutputs:
+    """All outputs at loads (m) for points (n, d) of the unit cube."""
+    values, factor = task.sampled(points)
+    n = len(points)
+    joint = columns(task.parameters, values)
+    good = inside(joint, n) & (factor > 0.0) & (factor * task.loads[-1] <= task.reduced.most(joint))
+    outputs: dict[str, Singles] = {
+        name: np.full((loads.size, n), np.nan, np.float32) for name in task.reduced.units
+    }
+    index = np.flatnonzero(good)
+    blocks = [index[i : i + BLOCK] for i in range(0, index.size, BLOCK)]
+    for block in track(blocks, text, len(blocks)):
+        for part, results in _evaluated(task, values, factor, block, loads):
+            for name, value in results.items():
+                outputs[name][:, part] = value.T
+    for column in outputs.values():
+        good &= np.all(np.isfinite(column), axis=0)
+    return SampledOutputs(outputs, good)
+
+
+def _evaluated(
+    task: Problem, values: Mapping[str, Any], factor: Array, block: Any, loads: Array
+) -> Iterator[tuple[Any, dict[str, Array]]]:
+    """Outputs of a block of samples; one that the law refuses is halved until it stands alone."""
+    some = {k: v[block] if isinstance(v, np.ndarray) else v for k, v in values.items()}
+    try:
+        with np.errstate(all="ignore"):
+            results = task.reduced.evaluate(task.parameters, some, loads, factor[block][:, None])
+    except (ValueError, RuntimeError):
+        halves = (block[: block.size // 2], block[block.size // 2 :]) if block.size > 1 else ()
+        for half in halves:
+            yield from _evaluated(task, values, factor, half, loads)
+    else:
+        yield block, results
+
+
+@dataclass(frozen=True, slots=True)
+class Bands:
+    """Distribution of every output along the ramp.
+
+    loads     : (m) nominal load
+    quantiles : {output: (len(QUANTILES), m)}
+    mean, sd, nominal : {output: (m)}; nominal is of the parameter file
+    samples   : how many were drawn
+    error     : largest relative difference between reduced evaluation and spring at CHECKED samples
+    """
+
+    loads: Array
+    quantiles: Mapping[str, Array]
+    mean: Mapping[str, Array]
+    sd: Mapping[str, Array]
+    nominal: Mapping[str, Array]
+    samples: int
+    refused: Refused
+    error: float
+    units: Mapping[str, str] = field(default_factory=dict)
+
+
+def bands(task: Problem, points: Array) -> Bands:
+    """Bands of all outputs from points (n, d) of the unit cube.
+
+    Raises RuntimeError if the law refuses every sample, or if the reduced evaluation misses the exported
+    spring by more than ACCURACY.
+    """
+    outcome = run(task, points, task.loads, "samples")
+    refused = refusals(task, points, outcome.good)
+    if not np.any(outcome.good):
+        raise RuntimeError(f"all {len(points)} samples are refused, the first: {refused.reason}")
+    error = check(task, points, outcome)
+    nominal = task.reduced.evaluate(task.parameters, task.values, task.loads, np.ones((1, 1)))
+    spread = {
+        name: np.stack([_spread(row, outcome.good) for row in value], axis=1)
+        for name, value in outcome.outputs.items()
+    }
+    return Bands(
+        loads=task.loads,
+        quantiles={name: value[2:] for name, value in spread.items()},
+        mean={name: value[0] for name, value in spread.items()},
+        sd={name: value[1] for name, value in spread.items()},
+        nominal={name: value[0] for name, value in nominal.items()},
+        samples=len(points),
+        refused=refused,
+        error=error,
+        units=task.reduced.units,
+    )
+
+
+def _spread(row: Singles, good: Mask) -> Array:
+    """Mean, standard deviation and QUANTILES (linear between samples) of the accepted values of a row."""
+    kept = np.sort(row[good]).astype(np.float64)
+    places = np.array(QUANTILES) * (kept.size - 1)
+    return np.array([kept.mean(), kept.std(), *np.interp(places, np.arange(kept.size), kept)])
+
+
+def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, Any], float, dict[str, float]]:
+    """Values, factor on the load, and the drawn numbers by name, of sample i."""
+    values, factor = task.sampled(points[i : i + 1])
+    single = {k: float(v[0]) if isinstance(v, np.ndarray) else v for k, v in values.items()}
+    drawn = {name: float(v[0]) for name, v in samples_of(task.uncertain, points[i : i + 1]).items()}
+    return single, float(factor[0]), drawn
+
+
+def refusals(task: Problem, points: Array, good: Mask) -> Refused:
+    """How many samples are refused, and the first with the law's own words."""
+    bad = np.flatnonzero(~good)
+    if not bad.size:
+        return Refused(0, {}, "")
+    values, factor, drawn = one_sample(task, points, int(bad[0]))
+    reason = "the law gives no finite value"
+    load, ramped = factor * float(task.loads[-1]), task.reduced.load
+    allowed = Interval.of(gt=0.0, le=task.reduced.most(columns(task.parameters, values)))
+    if not allowed.contains(load):
+        reason = f"{ramped.name} = {load:g} {ramped.unit} is outside {allowed}: {LOAD_END}"
+    try:
+        task.reduced.exact(build(task.parameters, values), load * np.ones(1))
+    except (ValueError, RuntimeError) as error:
+        reason = str(error)
+    return Refused(int(bad.size), drawn, reason)
+
+
+def check(task: Problem, points: Array, outcome: SampledOutputs) -> float:
+    """Largest relative difference to the exported spring over CHECKED samples and a few loads.
+
+    Raises RuntimeError beyond ACCURACY, naming the output and the sample.
+    """
+    few = np.unique(np.linspace(0, task.loads.size - 1, 6).astype(int))
+    few = few[task.loads[few] > 0.0]
+    worst = 0.0
+    for i in np.flatnonzero(outcome.good)[:CHECKED]:
+        values, factor, drawn = one_sample(task, points, int(i))
+        exact = task.reduced.exact(build(task.parameters, values), factor * task.loads[few])
+        for name, value in exact.items():
+            scale = np.where(value == 0.0, 1.0, np.abs(value))
+            miss = float(np.max(np.abs(outcome.outputs[name][few, i] - value) / scale))
+            if not miss <= ACCURACY:
+                sample = ", ".join(f"{k} = {v:g}" for k, v in drawn.items())
+                raise RuntimeError(
+                    f"{name} of the reduced evaluation misses the joint's own by {miss:.2g} at {sample}, "
+                    f"allowed is {ACCURACY:g}: take `jointfmu sweep` for such a study"
+                )
+            worst = max(worst, miss)
+    return worst
+
+
+def design(task: Problem, count: int, seed: int) -> tuple[Array, Array]:
+    """Points (count, d) for the bands, and as many independent ones for the indices."""
+    d = len(task.uncertain)
+    both = unit_design(count, 2 * d, seed)
+    return both[:, :d], both[:, d:]

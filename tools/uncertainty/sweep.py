@@ -1,0 +1,177 @@
+"""A study over an FMU: one ramp per sample, many in parallel through dask.distributed."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.files import columns
+from jointfmu.parameters import write_text
+from jointfmu.progress import track
+from jointfmu.quantity.refusal import Refusal
+from jointfmu.run import ramp
+
+from . import journal
+from .cluster import client
+from .journal import Journal
+from .propagate import QUANTILES
+from .study import samples_of, split, unit_design
+from .worker import Drive, one_run
+
+Array = NDArray[np.float64]
+
+AHEAD = 4
+"""Runs that wait at each worker [1]: enough to keep it busy."""
+MOST_LOST = 3
+"""How often a run is started again [1] whose result was lost with its worker."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What a sweep did: runs in all, done by this call, failed in all, and the first failure."""
+
+    runs: int
+    now: int
+    failed: int
+    first_failure: Mapping[str, Any] | None
+
+
+def plan(
+    fmu: Path, drive: Drive, given: Mapping[str, Any], count: int, seed: int
+) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The study as a record for its folder, and the settings of each of `count` runs.
+
+    Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
+    """
+    ramp.steps(drive.to, drive.step)
+    with ramp.unpacked(fmu) as (_, description):
+        variables = {v.name: v for v in description.modelVariables}
+    inputs = [v.name for v in variables.values() if v.causality == "input"]
+    settable = [v.name for v in variables.values() if v.causality in ("input", "parameter")]
+    if drive.input not in inputs:
+        raise ValueError(f"{fmu}: unknown input {drive.input!r}, allowed are {', '.join(inputs)}")
+    for name in given:
+        if name not in settable:
+            raise ValueError(f"{fmu}: unknown name {name!r}, allowed are {', '.join(settable)}")
+        if name == drive.input:
+            raise ValueError(f"{fmu}: {name} is driven by the ramp and cannot be set as well")
+    real = [name for name in settable if variables[name].type in ("Real", "Float64")]
+    plain, uncertain = split(given, {name: float(variables[name].start or 0.0) for name in real})
+    if not uncertain:
+        raise Refusal("no parameter has a distribution; expected NAME=LOW..HIGH or a study file", "settings")
+    if wrong := [parameter for parameter in uncertain if parameter.name not in real]:
+        raise ValueError(
+            f"{fmu}: {wrong[0].name} = {wrong[0].text}: is no real number and cannot be uncertain"
+        )
+    drawn = samples_of(uncertain, unit_design(count, len(uncertain), seed))
+    runs = [plain | {name: float(column[i]) for name, column in drawn.items()} for i in range(count)]
+    record = {
+        "fmu": fmu.name,
+        "fmu_sha256": journal.digest(fmu.read_bytes()),
+        **asdict(drive),
+        "samples": count,
+        "seed": seed,
+        "parameters": {parameter.name: parameter.text for parameter in uncertain} | plain,
+    }
+    return record, runs
+
+
+def sweep(
+    fmu: Path,
+    drive: Drive,
+    runs: Sequence[Mapping[str, Any]],
+    out: Path,
+    scheduler: str | None = None,
+    workers: int | None = None,
+) -> Summary:
+    """Do the runs that a claimed folder does not have yet, each written when it is finished.
+
+    Raises RuntimeError if the workers cannot run at all (the package missing there, none left).
+    """
+    with Journal(out) as held:
+        before = len(held.finished)
+        todo = [i for i in range(len(runs)) if i not in held.finished]
+        if todo:
+            with client(scheduler, workers) as dask_client:
+                finished = _finished(dask_client, fmu, drive, runs, todo)
+                for entry in track(finished, "sweep", len(todo)):
+                    held.add(entry)
+        summary = Summary(len(runs), len(held.finished) - before, held.failed, held.first_failure)
+    if summary.failed < summary.runs:
+        write_text(out / journal.BANDS, bands_csv(out, ramp.units(fmu)))
+    return summary
+
+
+def _finished(
+    dask_client: Any, fmu: Path, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+) -> Iterator[dict[str, Any]]:
+    """Finished runs as they come; never more than AHEAD per worker are under way."""
+    from .plugin import Bring
+
+    try:
+        dask_client.wait_for_workers(1, timeout=60)
+    except TimeoutError:
+        raise RuntimeError(f"{dask_client.scheduler.address}: has had no worker for 60 s") from None
+    key = f"jointfmu-{uuid4()}"
+    dask_client.register_plugin(Bring(key, fmu.name, fmu.read_bytes()), name=key)
+    try:
+        yield from _as_completed(dask_client, key, drive, runs, todo)
+    finally:
+        with suppress(Exception):  # the scheduler may be gone
+            dask_client.unregister_worker_plugin(key)
+
+
+def _as_completed(
+    dask_client: Any, key: str, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+) -> Iterator[dict[str, Any]]:
+    from distributed import KilledWorker, as_completed
+
+    waiting, indices, lost = iter(todo), {}, Counter[int]()
+
+    def submit(index: int) -> Any:
+        future = dask_client.submit(one_run, key, drive, index, runs[index], pure=False)
+        indices[future.key] = index
+        return future
+
+    ahead = AHEAD * max(sum(dask_client.nthreads().values()), 1)
+    queue = as_completed([submit(i) for i in islice(waiting, ahead)])
+    for future in queue:
+        index = indices.pop(future.key)
+        try:
+            yield future.result()
+        except KilledWorker:
+            reason = "the process of the run died"
+            yield {"run": index, "parameters": dict(runs[index]), "error": reason}
+        except Exception as error:
+            lost[index] += 1
+            if not isinstance(error, CancelledError) or lost[index] > MOST_LOST:
+                text = " ".join(str(error).split())[:200]
+                error_name = type(error).__name__
+                raise RuntimeError(f"run {index}: the worker failed: {error_name}: {text}") from None
+            queue.add(submit(index))  # its result went down with another run's process
+            continue
+        for following in islice(waiting, 1):
+            queue.add(submit(following))
+
+
+def bands_csv(folder: Path, units: Mapping[str, str]) -> str:
+    """Quantiles of every output at every point of the ramp over the runs that did not fail, as CSV."""
+    runs: dict[str, list[Array]] = {}
+    for entry in journal.entries(folder):
+        for name, values in entry.get("columns", {}).items():
+            runs.setdefault(name, []).append(np.asarray(values, dtype=np.float64))
+    driven, *outputs = runs
+    heads: list[columns.Head] = [(driven, units[driven])]
+    table = [runs[driven][0]]
+    for name in outputs:
+        heads += [(f"{name} {100 * q:g} %", units[name]) for q in QUANTILES]
+        table += list(np.quantile(np.stack(runs[name]), QUANTILES, axis=0))
+    return columns.text(heads, table)
