@@ -108,9 +108,15 @@ def _joint(
     kind: Kind, component: Component, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
     own = file if file and file.joint == kind.name else default(kind.name)
-    wanted = points or component.points
+    wanted = points or (*_start(own), *component.points)
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
     return _Joint(kind, own, component, records, environment(joint_folder(kind) / "modelica"))
+
+
+def _start(file: ParameterFile) -> list[WorkingPoint]:
+    """The working point that the file states as the start of its inputs, if it does."""
+    point = tuple(file.start(name) for name in KINDS[file.joint].working_point)
+    return [point] if point and point[0] > 0.0 else []
 
 
 def _order(names: Mapping[str, Any]) -> str:
