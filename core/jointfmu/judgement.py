@@ -106,7 +106,8 @@ def judge(
     if h is not None and p.size:
         found = Level(h, p, factor * stiffness_curve(law, p)[0])
     greatest = float(np.max(p, initial=peak))
-    warnings = beyond(law, greatest) if limits and greatest > 0.0 else []
+    least = float(np.min(p, initial=greatest))
+    warnings = beyond(law, greatest, least) if limits and greatest > 0.0 else []
     if found is not None and found.doubtful:
         warnings.append(
             f"the law's K is {_span(found.ratio)} times that of the roughness, K/A_0 = p/({GAMMA:g} h) with "

@@ -170,7 +170,7 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
     Raises ValueError with one line if the file cannot be read, is no TOML or of another schema.
     """
     try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
+        document = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {expected}") from None
     except UnicodeDecodeError:

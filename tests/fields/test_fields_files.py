@@ -143,6 +143,11 @@ def test_missing_column_and_units_are_refused(tmp_path):
         Reading().field(write_csv(tmp_path / "b.csv", ROWS, "x [mm],y [mm],area [mm2],pressure"))
     with pytest.raises(ValueError, match=r"states no unit of length; expected one of m, mm, um"):
         Reading().field(DATA / "blocks.frd")
+    (tmp_path / "rnd.bin").write_bytes(bytes(range(256)))
+    with pytest.raises(
+        ValueError, match=r"suffix '.bin' is of no format known here; state the format, one of"
+    ):
+        Reading().field(tmp_path / "rnd.bin")
     with pytest.raises(ValueError, match=r"length = 'mm': a CSV file states units"):
         Reading(length="mm").field(write_csv(tmp_path / "c.csv", ROWS))
 

@@ -227,6 +227,25 @@ def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pyt
     assert "JointStiffness.Data.My_drive_50_1()" in component.read_text(encoding="utf-8")
 
 
+def test_command_takes_the_preload_of_the_file(tmp_path: Path):
+    """Its own record comes first, so the component shows it; the shipped systems find theirs as before."""
+    text = dump(default("bolted_joint")).replace("preload = { value = 0.0", "preload = { value = 43.1e3")
+    params = tmp_path / "plate.toml"
+    params.write_text(text, encoding="utf-8")
+    assert main(["modelica", "--params", str(params), "--out", str(tmp_path)]) == 0
+    names = {p.stem for p in (tmp_path / "JointStiffness/Data").glob("Box*")}
+    own = "Box_specimen_of_Zhao_2018_43_1_kN"
+    assert names == {own, *(f"Box_specimen_of_Zhao_2018_{at}" for at in ("9_kN", "15_kN", "15_kN_4500_Nm"))}
+    component = (tmp_path / "JointStiffness/Components/BoltedJoint.mo").read_text(encoding="utf-8")
+    assert f"data = JointStiffness.Data.{own}()" in component
+
+
+def test_a_held_drive_leaves_its_states_to_the_tool():
+    """`prefer` sends a tool that has no state to take into a set of states whose Jacobian divides by zero."""
+    text = (COMMITTED / "Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
+    assert "stateSelect=if use_damping then StateSelect.prefer else StateSelect.default" in text
+
+
 def test_command_takes_another_preload(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["modelica", "--preload", "20e3", "--moment", "100", "--out", str(tmp_path)]) == 0
     assert "files" in capsys.readouterr().out

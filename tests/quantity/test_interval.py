@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.quantity import Interval
+from jointfmu.quantity import Interval, Limit
 
 NUMBERS = st.floats(-1e300, 1e300, allow_nan=False)
 ENDS = st.one_of(NUMBERS, st.sampled_from([0.0, 1.0, math.inf, -math.inf]))
@@ -97,3 +97,25 @@ def test_infinite_ends_are_open(flags):
     interval = Interval(-math.inf, np.float64(np.inf), *flags)
     assert (interval.low_open, interval.high_open) == (True, True)
     assert interval == Interval()
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "empty"),
+    [
+        (math.nan, math.inf, True),
+        (0.0, math.nan, True),
+        (2.1e-4, 2.1e-4 * (1.0 + 1e-9), True),
+        (0.0, -1.0, True),
+        (-math.inf, math.inf, False),
+        (0.0, 1e-300, False),
+        (-math.inf, 1.0, False),
+        (1.0, 1.001, False),
+    ],
+)
+def test_an_interval_that_shows_no_number_is_empty(low, high, empty):
+    limit = Limit("w", Interval(low, high), "why")
+    assert Interval(low, high).empty == empty
+    assert not Interval(0.0, 0.0, low_open=False, high_open=False).empty
+    text = limit.problem(math.nan, "m")
+    assert ("leave no value for it: why" in text) == empty
+    assert ("is outside" in text) != empty

@@ -114,6 +114,7 @@ def second(model: str) -> str:
             [("[link]", "[motor2]"), ('"link.flange_b"', '"motor2.flange_b"')],
             "component 'motor2' begins like 'motor', which fmpy mixes up",
         ),
+        ([("[experiment]", "[experiments]")], "has no section [experiment], expected a system's file"),
         ([("value = 2.0, unit", "value = -2.0, unit")], "experiment.stop_time = -2 s is outside (0, inf)"),
         ([("value = 0.05", "value = -0.05")], "link.J = -0.05 kg.m2 is outside (0, inf)"),
         ([("connect = [", "connect = [ 3,")], "connect = 3, expected pairs of ends"),

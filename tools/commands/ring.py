@@ -60,6 +60,9 @@ def _ring(args: argparse.Namespace) -> int:
         raise without_package(error, "run a system") from None
     example = ringing.rung(system(args.system), args.joint)
     _check(args, example.inertia_unit)
+    for name in (example.body.fmu, example.body.partner):
+        if not (args.fmus / f"{name}.fmu").is_file():
+            raise ValueError(f"--fmus {args.fmus}: has no {name}.fmu; `jointfmu build --systems` writes it")
     if args.amplitude is not None:
         return _decays(args, example)
     if args.settings:

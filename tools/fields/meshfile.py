@@ -44,6 +44,15 @@ def read(path: Path, length: float, pressure: float, data: str | None) -> NodalR
     )
 
 
+def known(path: Path) -> bool:
+    """Whether meshio has a reader for files of this suffix; True where it is missing, which `read` says."""
+    try:
+        from meshio import extension_to_filetypes
+    except ImportError:
+        return True
+    return path.suffix.lower() in extension_to_filetypes
+
+
 def _read(path: Path) -> Any:
     try:
         import meshio

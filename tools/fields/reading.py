@@ -79,6 +79,9 @@ class Reading:
 
     def _result(self, path: Path, beside: Sequence[Path]) -> NodalResult:
         format = self.format or SUFFIXES.get(path.suffix.lower(), "mesh")
+        if format == "mesh" and not self.format and not meshfile.known(path):
+            text = f"suffix {path.suffix!r} is of no format known here"
+            raise Refusal(f"{path}: {text}; state the format, one of {', '.join(FORMATS)}", "format")
         for given, what, name, only in (
             (self.data, "point data are", "data", ("mesh",)),
             (beside, "further listings are", "beside", tuple(LISTINGS)),

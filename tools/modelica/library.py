@@ -109,9 +109,15 @@ def _joint(
 ) -> _Joint:
     own = file if file and file.joint == kind.name else default(kind.name)
     component: Component = module.COMPONENT
-    wanted = points or component.points
+    wanted = points or (*_start(own), *component.points)
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
     return _Joint(kind, own, component, records, environment(Path(str(module.__file__)).parent))
+
+
+def _start(file: ParameterFile) -> list[WorkingPoint]:
+    """The working point that the file states as the start of its inputs, if it does."""
+    point = tuple(file.start(name) for name in KINDS[file.joint].working_point)
+    return [point] if point and point[0] > 0.0 else []
 
 
 def _order(names: Mapping[str, Any]) -> str:

@@ -166,7 +166,10 @@ def read(path: Path) -> System:
 
 
 def _system(path: Path, document: Mapping[str, Any]) -> System:
-    experiment, _, times = entries(path, _EXPERIMENT, document.get("experiment", {}))
+    if "experiment" not in document:
+        own = f"; it is of a {document['joint']}" if "joint" in document else ""
+        raise ValueError(f"has no section [experiment], expected a system's file{own}")
+    experiment, _, times = entries(path, _EXPERIMENT, document["experiment"])
     for name, item in _EXPERIMENT.items():
         if text := problem(name, experiment.get(name), item):
             raise ValueError(f"experiment.{text}")

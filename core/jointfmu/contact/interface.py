@@ -1,6 +1,6 @@
 """From nominal pressure to the largest spot to stiffness, damping and real area of an interface."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,6 +49,14 @@ class Law(Protocol):
 
     def state(self, u: Number) -> dict[str, Number]:
         """Quantities for a largest spot of log-area u."""
+
+
+@runtime_checkable
+class Bounded(Protocol):
+    """A law whose range of pressures was set by a proof."""
+
+    def unproven(self, least: float, most: float) -> list[str]:
+        """What pressures [Pa] from the least to the most leave of the range, one line each."""
 
 
 def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Number, Number, Number]:
@@ -199,8 +207,10 @@ def stiffness_curve(law: Law, pressure: ArrayLike, name: str = "normal") -> tupl
     return k, spots.slope(name, u) / spots.slope("load", u)
 
 
-def beyond(law: Law, pressure: float) -> list[str]:
+def beyond(law: Law, pressure: float, least: float | None = None) -> list[str]:
     """What a law no longer means at a nominal pressure [Pa], one line each with its limit; mostly nothing.
+
+    least : [Pa] where a law is not proven for too small a load; None: as the pressure
 
     Above the hardness of the softer body the contact yields as a whole; a real area beyond the nominal one
     says that the spots have run into each other. The numbers there are extrapolations.
@@ -218,6 +228,8 @@ def beyond(law: Law, pressure: float) -> list[str]:
             f"a pressure of {pressure:.4g} Pa gives a real area beyond the nominal one, {law.A_0:.4g} m2, "
             f"which the interface law reaches at {limit:.3g} Pa"
         )
+    if isinstance(law, Bounded):
+        found += law.unproven(pressure if least is None else least, pressure)
     return found
 
 

@@ -61,6 +61,14 @@ class Interval:
         below = value < self.high if self.high_open else value <= self.high
         return above & below
 
+    @property
+    def empty(self) -> bool:
+        """Whether its ends are NaN, crossed, or differ by less than the six digits that a message shows."""
+        if self.low == self.high:
+            return self.low_open or self.high_open
+        shown = 1e-6 * min(abs(self.low), abs(self.high))
+        return not self.low < self.high or bool(self.high - self.low <= shown < inf)
+
     def intersection(self, other: "Interval") -> "Interval":
         """Numbers inside both; an end that both share is open if one of them is."""
         low, low_open = max((self.low, self.low_open), (other.low, other.low_open))

@@ -30,6 +30,8 @@ class Limit:
         if self.interval.contains(value):
             return None
         unit = "" if unit == "1" else f" {unit}"
+        if self.interval.empty:
+            return f"{self.name} = {value:g}{unit}: the other parameters leave no value for it: {self.doc}"
         return f"{self.name} = {value:g}{unit} is outside {self.interval}: {self.doc}"
 
 

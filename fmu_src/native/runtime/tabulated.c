@@ -27,6 +27,15 @@ static void text_interval(Text *text, double low, double high, bool low_open, bo
     text_add(text, high_open ? ")" : "]");
 }
 
+/* Whether the ends are NaN, crossed, or differ by less than the digits that a message shows. */
+static bool empty(double low, double high, bool open)
+{
+    if (low == high)
+        return open;
+    const double shown = 1e-6 * fmin(fabs(low), fabs(high));
+    return !(low < high) || (high - low <= shown && shown < INFINITY);
+}
+
 static bool check_limits(const Joint *joint, Text *why)
 {
     double ends[2 * N_LIMITS + 1];
@@ -43,8 +52,12 @@ static bool check_limits(const Joint *joint, Text *why)
         text_add(why, " = ");
         text_number(why, value, 6);
         text_unit(why, variable->unit);
-        text_add(why, " is outside ");
-        text_interval(why, low, high, limit->low_open, limit->high_open);
+        if (empty(low, high, limit->low_open || limit->high_open)) {
+            text_add(why, ": the other parameters leave no value for it");
+        } else {
+            text_add(why, " is outside ");
+            text_interval(why, low, high, limit->low_open, limit->high_open);
+        }
         text_add(why, ": ");
         text_add(why, limit->doc);
         return false;

@@ -21,6 +21,7 @@ SETS: dict[str, dict[str, Any]] = {
     "default": {},
     "soft teeth": {"K_tooth": 1e4, "backlash": 0.0, "contact_ratio": 2.3},
     "stiff teeth": {"K_tooth": 1e11, "engagement": 1.0, "contact_ratio": 1.1},
+    "helical": {"overlap_ratio": 0.4, "contact_ratio": 1.55},
     "whole ratio": {"contact_ratio": 2.0, "teeth1": 17.0, "d": 0.0},
     "two bodies": {"surface1.D": 1.6, "rigid_flat": False, "r_b2": 0.05, "A_0": 2e-5, "e": 0.5},
 }

@@ -26,7 +26,7 @@ def test_mean_over_a_cycle_is_the_contact_ratio(ratio, engagement):
     ends = np.sort([0.0, *(0.5 * part + width * np.array([-0.5, 0.5])), 0.5])
     x, weights = np.polynomial.legendre.leggauss(5)
     mean = sum(
-        (b - a) * weights @ pairs(ratio, engagement, a + (b - a) * 0.5 * (1.0 + x))[0]
+        (b - a) * weights @ pairs(ratio, engagement, 0.0, a + (b - a) * 0.5 * (1.0 + x))[0]
         for a, b in pairwise(ends)
     )
     # three intervals of half a cycle, weights of sum two
@@ -38,12 +38,12 @@ def test_mean_over_a_cycle_is_the_contact_ratio(ratio, engagement):
     [(1.6, 0.0, 2.0), (1.6, 0.5, 1.0), (1.6, 0.3, 1.5), (1.6, 7.3, 1.5), (2.25, 0.0, 3.0), (2.25, -3.5, 2.0)],
 )
 def test_one_pair_more_around_whole_phases(ratio, phase, count):
-    assert pairs(ratio, 0.4, phase)[0] == pytest.approx(count, abs=1e-12)  # 7.3 - 7 has lost a digit
+    assert pairs(ratio, 0.4, 0.0, phase)[0] == pytest.approx(count, abs=1e-12)  # 7.3 - 7 has lost a digit
 
 
 def test_time_with_one_pair_more():
     """The rest of the contact ratio is the part of the cycle with more than half a pair more."""
-    count, _ = pairs(1.69, 0.3, CYCLE)
+    count, _ = pairs(1.69, 0.3, 0.0, CYCLE)
     assert np.mean(count > 1.5) == pytest.approx(0.69, abs=1.0 / CYCLE.size)
     full = np.mean(count == 2.0)
     none = np.mean(count == 1.0)
@@ -54,13 +54,13 @@ def test_time_with_one_pair_more():
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 @given(engagement=engagements, phase=phases)
 def test_a_whole_contact_ratio_is_constant(ratio, engagement, phase):
-    assert pairs(ratio, engagement, phase) == (ratio, 0.0)
+    assert pairs(ratio, engagement, 0.0, phase) == (ratio, 0.0)
 
 
 @given(ratio=ratios, engagement=engagements, phase=phases)
 def test_even_and_between_its_neighbours(ratio, engagement, phase):
-    count, slope = pairs(ratio, engagement, phase)
-    back, falling = pairs(ratio, engagement, -phase)
+    count, slope = pairs(ratio, engagement, 0.0, phase)
+    back, falling = pairs(ratio, engagement, 0.0, -phase)
     assert (back, falling) == (count, -slope)
     assert np.floor(ratio) <= count <= np.floor(ratio) + 1.0
 
@@ -73,8 +73,8 @@ def test_slope(ratio, engagement):
     if width < 1e-3:
         return
     h = 1e-4 * width
-    _, slope = pairs(ratio, engagement, CYCLE[::40])
-    ends = [pairs(ratio, engagement, CYCLE[::40] + step)[0] for step in (-h, h)]
+    _, slope = pairs(ratio, engagement, 0.0, CYCLE[::40])
+    ends = [pairs(ratio, engagement, 0.0, CYCLE[::40] + step)[0] for step in (-h, h)]
     # and round-off of the two counts over 2 h
     allowed = 10.0 * h**2 / width**3 + 4.0 * EPS * 3.0 / h
     np.testing.assert_allclose((ends[1] - ends[0]) / (2.0 * h), slope, rtol=0.0, atol=allowed)
@@ -92,8 +92,40 @@ def test_rise_is_twice_continuously_differentiable():
 def test_arrays_of_ratios():
     """As in studies of many samples: every row as alone, whole ratios among them."""
     ratio, engagement = np.array([[1.0], [1.5], [2.0], [2.9]]), np.array([[0.5], [1.0], [0.1], [0.3]])
-    together = pairs(ratio, engagement, CYCLE)
+    together = pairs(ratio, engagement, 0.0, CYCLE)
     for i in range(4):
-        alone = pairs(float(ratio[i, 0]), float(engagement[i, 0]), CYCLE)
+        alone = pairs(float(ratio[i, 0]), float(engagement[i, 0]), 0.0, CYCLE)
         for both, single in zip(together, alone, strict=True):
             np.testing.assert_array_equal(both[i], np.broadcast_to(single, CYCLE.shape))
+
+
+@given(ratio=ratios, engagement=engagements, overlap=st.floats(0.05, 4.0), phase=st.floats(-3.0, 3.0))
+def test_a_helical_mesh_is_the_mean_of_its_sections(ratio, engagement, overlap, phase):
+    """By quadrature; the midpoint rule's error is h^2/24 overlap times the curvature, at most 6/width^2."""
+    part = ratio - np.floor(ratio)
+    width = engagement * min(part, 1.0 - part)
+    if 0.0 < width < 0.02:
+        return
+    h = 1.0 / 4000
+    at = phase + overlap * ((np.arange(4000) + 0.5) * h - 0.5)
+    count, slope = pairs(ratio, engagement, overlap, phase)
+    sections, slopes = pairs(ratio, engagement, 0.0, at)
+    allowed = (h * overlap) ** 2 / 24.0 * (6.0 / width**2 if width else 0.0) + 1e-12
+    assert count == pytest.approx(np.mean(sections), abs=allowed)
+    assert slope == pytest.approx(np.mean(slopes), abs=20.0 * allowed / (width or 1.0))
+
+
+@pytest.mark.parametrize("overlap", [1.0, 2.0])
+def test_a_whole_overlap_ratio_has_no_mesh_cycle(overlap):
+    count, slope = pairs(1.69, 0.3, overlap, CYCLE)
+    np.testing.assert_allclose(count, 1.69, rtol=4.0 * EPS)
+    np.testing.assert_allclose(slope, 0.0, atol=1e-11)  # round-off of the phase over the width of 0.09
+
+
+def test_a_vanishing_overlap_is_a_spur_mesh():
+    spur, slope = pairs(1.69, 0.3, 0.0, CYCLE)
+    for overlap in (0.5e-6, 2e-6):
+        count, change = pairs(1.69, 0.3, overlap, CYCLE)
+        np.testing.assert_allclose(count, spur, atol=1e-9)
+        # overlap^2/24 times the slope's curvature of 60/width^3, width 0.093
+        np.testing.assert_allclose(change, slope, atol=2e-8)

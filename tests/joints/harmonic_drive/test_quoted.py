@@ -165,6 +165,7 @@ def test_estimates_of_friction_stay_off():
     ("words", "text"),
     [
         (["--efficiency", "0.7"], "--efficiency needs --starting-torque"),
+        (["--efficiency", "1.5"], "--efficiency = '1.5' is outside (0, 1)"),
         (["--starting-torque", "0.03", "--efficiency", "70"], "--efficiency = '70' is outside (0, 1)"),
         (
             ["--starting-torque", "0.03", "--efficiency", "0.7", "--back-driving-torque", "2"],

@@ -36,7 +36,8 @@ def figures(outcome: Any) -> list[Figure]:
 def cycle(spring: GearMeshSpring) -> list[Panel]:
     """Stiffness and deflection over two mesh cycles at constant forces."""
     phase = np.linspace(0.0, 2.0, 401)
-    count, _ = pairs(spring.joint.contact_ratio, spring.joint.engagement, phase)
+    mesh = spring.joint
+    count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase)
     stiffness, deflection = [], []
     for force in _FORCES:
         s = spring.curve.inverse(force / count)

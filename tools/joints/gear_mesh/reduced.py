@@ -33,7 +33,8 @@ def evaluate(
     """
     mesh = columns(parameters, values, 1)
     angle = factor * loads
-    count, _ = pairs(mesh.contact_ratio, mesh.engagement, phase(mesh, (angle, 0.0, held(mesh), 0.0)))
+    cycle = phase(mesh, (angle, 0.0, held(mesh), 0.0))
+    count, _ = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, cycle)
     turned = loads > 0.0
     way = mesh.r_b1 * factor
     most = mesh.K_tooth * way * loads[-1] / mesh.A_0  # more than the pressure there

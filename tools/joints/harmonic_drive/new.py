@@ -44,6 +44,8 @@ def _drive(given: Given) -> NewJoint:
 def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
     """Friction parameters: of what is stated, else of a drive whose starting torque is printed."""
     stated = [name for name in QUOTED if given[name] is not None]
+    if "efficiency" in stated and not printed["efficiency"].value < 1.0:
+        raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
     start = printed.get("starting_torque")
     if start is None or start.kind == "estimate":
         if stated:
@@ -51,8 +53,6 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
                 f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts"
             )
         return {}
-    if "efficiency" in stated and not printed["efficiency"].value < 1.0:
-        raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
     if {"efficiency", "back_driving_torque"} <= set(stated):
         raise ValueError("--efficiency and --back-driving-torque both fix load_loss; expected one of them")
     dropped = {"efficiency"} if "back_driving_torque" in stated else set()

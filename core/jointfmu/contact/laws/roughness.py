@@ -19,6 +19,12 @@ FEW_SPOTS = 0.3
 """C [1] of the stiffness of few spots, see `spots`: from boundary elements (benchmarks/roughness_law.py)."""
 FIRST_TOUCH = 1e-6
 """Load [1] over E* h longest_wave where the stiffness begins: far less than one hill carries."""
+FEWEST = 0.3
+"""Load x [1] over E* h longest_wave from which the law was compared with boundary elements: below, one hill
+carries (docs/validity.md).
+"""
+FLATTEST = 1.5
+"""Pressure y [1] over E* h/longest_wave up to which it was: above, the longest wave is pressed flat."""
 _SIZE = 0.25
 """Exponent m [1] of the sums, below that of every quantity; it cancels."""
 
@@ -61,6 +67,23 @@ class Roughness(RoughSurfaces):
         """Real area [m2] and its elastic part [1] at pressures (...) [Pa] (Persson 2001)."""
         elastic, plastic = contact_shares(self, pressure)
         return self.A_0 * (elastic + plastic), elastic / (elastic + plastic)
+
+    def unproven(self, least: float, most: float) -> list[str]:
+        """As `interface.Bounded.unproven`."""
+        scale = contact_modulus(self.side1, self.side2) * self.h
+        few, flat = FEWEST * scale * self.longest_wave / self.A_0, FLATTEST * scale / self.longest_wave
+        found = []
+        if least < few:
+            found.append(
+                f"a pressure of {least:.4g} Pa is below {few:.3g} Pa, where the law roughness ends: one hill "
+                "carries, and surfaces of the same roughness differ by half and more (docs/validity.md)"
+            )
+        if most > flat:
+            found.append(
+                f"a pressure of {most:.4g} Pa is above {flat:.3g} Pa, where the law roughness ends: the "
+                "longest wave is pressed flat (docs/validity.md)"
+            )
+        return found
 
     def shear_ratio(self) -> Number:
         """K_T/K_N [1]."""

@@ -4,6 +4,11 @@ import numpy as np
 
 from ...quantity import Number
 
+_NARROW = 1e-6
+"""Overlap ratio [1] below which the mean over it differs from the middle by less than the round-off of
+a difference over it: 1/24 of its square times the curvature, at most 6/width^2.
+"""
+
 
 def rise(x: Number) -> tuple[Number, Number]:
     """From 0 at x <= 0 to 1 at x >= 1, twice continuously differentiable, and its slope."""
@@ -11,8 +16,27 @@ def rise(x: Number) -> tuple[Number, Number]:
     return r * r * r * (10.0 + r * (6.0 * r - 15.0)), 30.0 * (r * (1.0 - r)) ** 2
 
 
-def pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number]:
+def pairs(
+    contact_ratio: Number, engagement: Number, overlap_ratio: Number, phase: Number
+) -> tuple[Number, Number]:
     """Tooth pairs in contact [1] at a phase (...) [1] of the mesh cycle, and their slope in the phase.
+
+    The pairs of a helical mesh are counted in lines of contact over the full width. Each of its
+    transverse sections is a spur mesh, see `_section`, and the sections are spread evenly over
+    `overlap_ratio` cycles. So the number is the mean of a section's over that length, which keeps its
+    mean over a cycle, the contact ratio, and takes from its fluctuation.
+    """
+    helical = overlap_ratio > _NARROW
+    length = np.where(helical, overlap_ratio, 1.0)
+    here, slope, _ = _section(contact_ratio, engagement, phase)
+    after, _, to = _section(contact_ratio, engagement, phase + 0.5 * length)
+    before, _, since = _section(contact_ratio, engagement, phase - 0.5 * length)
+    mean = contact_ratio + (to - since) / length
+    return np.where(helical, mean, here), np.where(helical, (after - before) / length, slope)
+
+
+def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Number, Number, Number]:
+    """Tooth pairs in a transverse section [1], their slope, and their integral less that of the mean.
 
     Of the contact ratio the whole part is always in contact, and one pair more during the rest of the
     cycle, centred at whole phases. It comes and goes by `rise`, centred at the ends of that time, over
@@ -25,5 +49,18 @@ def pairs(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[Num
     changing = width > 0.0
     length = np.where(changing, width, 1.0)
     away = phase - np.floor(phase + 0.5)
-    share, slope = rise(0.5 + (0.5 * part - np.abs(away)) / length)
-    return least + np.where(changing, share, 0.0), np.where(changing, -np.sign(away) * slope / length, 0.0)
+    first = 0.5 + 0.5 * part / length
+    share, slope = rise(first - np.abs(away) / length)
+    left = _area(first - np.abs(away) / length)
+    passed = length * (first - 0.5 - left) - part * np.abs(away)
+    return (
+        least + np.where(changing, share, 0.0),
+        np.where(changing, -np.sign(away) * slope / length, 0.0),
+        np.where(changing, np.sign(away) * passed, 0.0),
+    )
+
+
+def _area(x: Number) -> Number:
+    """Integral of `rise` from 0 to x."""
+    r = np.minimum(np.maximum(x, 0.0), 1.0)
+    return r * r * r * r * (2.5 + r * (r - 3.0)) + np.maximum(x - 1.0, 0.0)

@@ -37,6 +37,9 @@ class Wheels:
         le=1.0,
     )
     d: float = quantity("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
+    overlap_ratio: float = quantity(
+        "1", "face width over the axial pitch of a helical mesh, 0 of a spur one", ge=0.0, default=0.0
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,7 +169,7 @@ def torques(
     """
     _, w1, _, w2 = motion
     s = deflection(mesh, motion)
-    count, slope = pairs(mesh.contact_ratio, mesh.engagement, phase(mesh, motion))
+    count, slope = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase(mesh, motion))
     touching, _ = rise(np.abs(s) / closing)
     force = count * load * np.sign(s) + mesh.d * touching * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
     change = 0.5 * slope * energy / base_pitch(mesh)  # -dU along the rolling, per way of one base circle

@@ -9,6 +9,7 @@ model GearMesh "Mesh of two gear wheels with rough flanks, bending teeth and bac
   parameter Real contact_ratio(min=1) = data.contact_ratio "mean number of tooth pairs in contact";
   parameter Real engagement(min=Modelica.Constants.small, max=1) = data.engagement "time in which a pair takes up its load, over the shorter of the times with and without it";
   parameter Modelica.Units.SI.TranslationalDampingConstant d(min=0) = data.d "damping along the line of action while the flanks touch";
+  parameter Real overlap_ratio(min=0) = data.overlap_ratio "face width over the axial pitch of a helical mesh, 0 of a spur one";
   Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Wheel 1"
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Wheel 2"
@@ -103,20 +104,47 @@ protected
     annotation (smoothOrder=1);
   end extraPairSlope;
 
+  function extraPairIntegral "Integral of extraPair less its mean from the middle of the part with the pair, odd in the phase"
+    extends Modelica.Icons.Function;
+    input Real phase "Place in the mesh cycle";
+    input Real part "Part of the cycle with the pair";
+    input Real width "Part of the cycle in which it takes up its load";
+    output Real passed "Integral";
+  protected
+    Real away "From the middle of the part with the pair, -0.5 to 0.5";
+    Real first "Place in the smooth step at the middle, at least 1";
+    Real x "Place in the smooth step";
+    Real r "The same, 0 to 1";
+  algorithm
+    away := phase - floor(phase + 0.5);
+    first := if width <= 0 then 1 else 0.5 + 0.5*part/width;
+    x := if width <= 0 then 1 else first - abs(away)/width;
+    r := min(max(x, 0), 1);
+    passed := if width <= 0 then 0 else (if away < 0 then -1 else 1)*(width*(first - 0.5 - r^4*(2.5 + r*(r - 3))
+      - max(x - 1, 0)) - part*abs(away));
+    annotation (smoothOrder=2);
+  end extraPairIntegral;
+
   parameter Real least = floor(contact_ratio) "Pairs that are always in contact";
   parameter Real part = contact_ratio - least "Part of the cycle with one pair more";
   parameter Real width = engagement*min(part, 1 - part) "Part of the cycle in which it takes up its load";
+  parameter Boolean helical = overlap_ratio > 1e-6 "Sections of the wheels are spread over the mesh cycle";
+  parameter Real spread = if helical then overlap_ratio else 1 "Their length in the mesh cycle";
+  Real slope "Derivative of pairs with respect to the phase";
 equation
   along = r_b1*flange_a.phi + r_b2*flange_b.phi;
   v = der(along);
   s_rel = noEvent(if along > 0.5*backlash then along - 0.5*backlash elseif along < -0.5*backlash then along + 0.5*backlash else 0);
   size = noEvent(if s_rel < 0 then -s_rel else s_rel);
   phase = 0.5*(r_b1*flange_a.phi - r_b2*flange_b.phi)/pitch;
-  pairs = least + extraPair(phase, part, width);
+  pairs = least + (if helical then part + (extraPairIntegral(phase + 0.5*spread, part, width)
+    - extraPairIntegral(phase - 0.5*spread, part, width))/spread else extraPair(phase, part, width));
+  slope = if helical then (extraPair(phase + 0.5*spread, part, width) - extraPair(phase - 0.5*spread, part, width))/spread
+    else extraPairSlope(phase, part, width);
   pairEnergy = energy(size, data.table, data.energy);
   damping = JointStiffness.Functions.smoothStep(size/data.closing);
   f = pairs*noEvent(if s_rel < 0 then -1 else 1)*JointStiffness.Functions.load(size, data.table) + d*damping*v;
-  rolling = 0.5*extraPairSlope(phase, part, width)*pairEnergy/pitch;
+  rolling = 0.5*slope*pairEnergy/pitch;
   K = pairs*JointStiffness.Functions.stiffness(size, data.table);
   E = pairs*pairEnergy;
   flange_a.tau = r_b1*(f + rolling);
@@ -143,7 +171,7 @@ equation
 <p>s = δ(F) + F / K<sub>tooth</sub>, &emsp; V(s) = ∫<sub>0</sub><sup>s</sup> F(s′) ds′</p>
 <p>δ(F) = ∫<sub>0</sub><sup>F</sup> dF′ / k(F′)</p>
 <p>F = ∫ F(a) n da, &emsp; k = ∫ k(a) n da (Yu 2022, Eqs. 42-79, corrected)</p>
-<p>N(ξ) pairs have this deflection. Of the <code>contact_ratio</code> the whole part is always in contact, one pair more during the rest of every cycle; it comes and goes by a smooth step, the faster the smaller <code>engagement</code>. The torques are the gradient of one potential, so that no cycle creates or destroys energy:</p>
+<p>N(ξ) pairs have this deflection. Of the <code>contact_ratio</code> the whole part is always in contact, one pair more during the rest of every cycle; it comes and goes by a smooth step, the faster the smaller <code>engagement</code>. Of a helical mesh the number is the mean over a length of <code>overlap_ratio</code> in ξ, that of its transverse sections. The torques are the gradient of one potential, so that no cycle creates or destroys energy:</p>
 <p>U = N(ξ) V(|s<sub>rel</sub>|), &emsp; τ<sub>1</sub> = −∂U/∂φ<sub>1</sub> − r<sub>b1</sub> f<sub>d</sub>, &emsp; τ<sub>2</sub> = −∂U/∂φ<sub>2</sub> − r<sub>b2</sub> f<sub>d</sub> (after Oh, Grosh, Barber 2005)</p>
 <p>f = N F(|s<sub>rel</sub>|) sign(s<sub>rel</sub>) + f<sub>d</sub>, &emsp; f<sub>d</sub> = d g(|s<sub>rel</sub>|) (r<sub>b1</sub> w<sub>1</sub> + r<sub>b2</sub> w<sub>2</sub>), &emsp; K = N dF/ds</p>
 <p>with g a smooth step from 0 at first touch to 1 where the closing of the contact ends. No force jumps when flanks meet, none acts inside the backlash.</p>

@@ -36,7 +36,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Kinematic error"));
   parameter Boolean use_damping = true "false: the wind-up follows the torque at once, for a drive without inertia, damping, hysteresis and friction"
     annotation (Evaluate=true, Dialog(tab="Advanced"));
-  parameter StateSelect stateSelect=StateSelect.prefer "Priority to use phi_rel and w_rel as states"
+  parameter StateSelect stateSelect=if use_damping then StateSelect.prefer else StateSelect.default "Priority to use phi_rel and w_rel as states"
     annotation (HideResult=true, Dialog(tab="Advanced"));
   Modelica.Mechanics.Rotational.Interfaces.Flange_a flange_a "Wave generator (motor)"
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
@@ -49,7 +49,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.Torque tau_c(nominal=5) "Torque of the spring";
   Modelica.Units.SI.Torque tau_h(nominal=0.1) "Torque of the hysteresis";
   Modelica.Units.SI.Torque tau(nominal=5) "Torque at the output (= flange_b.tau)";
-  Modelica.Units.SI.AngularVelocity w1(nominal=100) "Speed of the wave generator; 0 with use_damping=false";
+  Modelica.Units.SI.AngularVelocity w1 "Speed of the wave generator; 0 with use_damping=false";
   Modelica.Units.SI.Torque tau_friction(nominal=0.01) "friction of the wave generator, positive where it turns so";
   Modelica.Units.SI.RotationalSpringConstant K_WTS(nominal=5e3) "tangent stiffness dT/dphi of the midline at the present wind-up";
   Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "its part of the contact pair: 1/K_WTS = 1/K_FTS + 1/K_TS";

@@ -8,6 +8,7 @@ record Gear_pair_of_Yu_2022_as_spur_wheels "gear pair of Yu 2022 as spur wheels"
     final contact_ratio=1.69,
     final engagement=0.3,
     final d=1000,
+    final overlap_ratio=0,
     final closing=8.551428812e-07,
     final energy={
       0,

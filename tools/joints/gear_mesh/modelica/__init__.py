@@ -22,7 +22,7 @@ def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record
 
 
 def _wheels(mesh: Mesh) -> dict[str, float]:
-    names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d")
+    names = ("r_b1", "r_b2", "teeth1", "backlash", "contact_ratio", "engagement", "d", "overlap_ratio")
     return {name: getattr(mesh, name) for name in names}
 
 

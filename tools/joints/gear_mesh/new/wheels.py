@@ -18,6 +18,8 @@ E_STEEL = 206e9
 """Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""
 CORRECTION = 0.8
 """C_M of ISO 6336-1: measured over theoretical single stiffness [1]."""
+LOADED = 100e3
+"""Tangential load over face width [N/m] below which ISO 6336-1 takes teeth for softer."""
 DAMPING = 0.06
 """Damping ratio of the mesh on its two wheels as solid discs [1]."""
 
@@ -54,13 +56,19 @@ class Wheels:
 
     @property
     def contact_ratio(self) -> float:
-        """epsilon_gamma [1], of the transverse section and of the overlap (ISO 21771)."""
+        """epsilon_alpha [1] of the transverse section (ISO 21771): the mean length of the lines of contact
+        is epsilon_alpha width/cos(beta_b), whatever the overlap.
+        """
         (r1, r2), base = self.radii, self.base_radii
         path = sum(np.sqrt((r + self.module) ** 2 - b**2) for r, b in zip((r1, r2), base, strict=True)) - (
             r1 + r2
         ) * np.sin(self.transverse_angle)
-        overlap = self.width * np.sin(self.helix_angle) / (np.pi * self.module)
-        return float(path / (2.0 * np.pi * base[0] / self.z[0]) + overlap)
+        return float(path / (2.0 * np.pi * base[0] / self.z[0]))
+
+    @property
+    def overlap_ratio(self) -> float:
+        """epsilon_beta [1] (ISO 21771): cycles over which the transverse sections are spread."""
+        return float(self.width * np.sin(self.helix_angle) / (np.pi * self.module))
 
     @property
     def curvature(self) -> float:
@@ -69,12 +77,23 @@ class Wheels:
         bulge = (np.cos(base) / (r * np.sin(self.transverse_angle)) for r in self.radii)
         return float(sum(bulge))
 
-    def tooth_stiffness(self, moduli: tuple[float, float]) -> float:
-        """c' width [N/m] of one pair (ISO 6336-1, method B, solid wheels, no profile shift), moduli [Pa]."""
+    def tooth_stiffness(self, moduli: tuple[float, float], torque: float) -> float:
+        """c' width [N/m] of one pair with contact over the full width, moduli [Pa].
+
+        ISO 6336-1, method B: solid wheels, no profile shift, basic rack with a dedendum of 1.2 modules
+        (C_B is 1 at 20 degrees), K_A = 1; softer where the torque of wheel 1 [N.m] loads less than LOADED.
+        """
         virtual = [z / np.cos(self.helix_angle) ** 3 for z in self.z]
         q = 0.04723 + 0.15551 / virtual[0] + 0.25791 / virtual[1]  # mm um/N
         material = 2.0 / (1.0 / moduli[0] + 1.0 / moduli[1]) / E_STEEL
-        return float(CORRECTION / q * 1e9 * np.cos(self.helix_angle) * material * self.width)
+        rack = 1.0 - 0.02 * (20.0 - np.degrees(self.pressure_angle))  # C_B
+        loaded = min(torque / self.radii[0] / self.width / LOADED, 1.0) ** 0.25
+        theory = 1e9 / q * np.cos(self.helix_angle) * material * self.width
+        return float(CORRECTION * rack * loaded * theory)
+
+    def mesh_stiffness(self, tooth: float) -> float:
+        """c_gamma width [N/m] of ISO 6336-1 with the stiffness of one pair [N/m]."""
+        return tooth * (0.75 * self.contact_ratio + 0.25)
 
     def damping(self, stiffness: float, density: tuple[float, float]) -> float:
         """2 DAMPING sqrt(stiffness mass) [N.s/m], of the two wheels as solid discs on the line of action."""
@@ -94,7 +113,7 @@ def mesh(given: Given) -> NewJoint:
     load = torque / wheels.base_radii[0]
     sides = [Elastic(E=E, nu=sheet.value(f"side{i + 1}.nu")) for i, E in enumerate(moduli)]
     found = patch(load, wheels.width, wheels.curvature, contact_modulus(*sides))
-    _put(sheet, wheels, given, moduli)
+    _put(sheet, wheels, given, wheels.tooth_stiffness(moduli, torque))
     text = f"Hertz's line contact at the pitch point, one pair under {torque:g} N.m of wheel 1"
     sheet.put("A_0", float(found.area), "derived", text)
     file = sheet.file(f"wheels of module {given['module']}, {wheels.z[0]:g} to {wheels.z[1]:g} teeth")
@@ -104,10 +123,12 @@ def mesh(given: Given) -> NewJoint:
     facts = {
         "load": (load, "N", "normal force of the mesh at the torque"),
         "p_hertz": (float(found.pressure), "Pa", "greatest pressure of smooth flanks, one pair in contact"),
-        "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact"),
+        "contact_ratio": (wheels.contact_ratio, "1", "mean number of pairs in contact over the full width"),
+        "overlap_ratio": (wheels.overlap_ratio, "1", "mesh cycles over which a helix spreads the contact"),
         "K_tooth": (file.flat["K_tooth"], "N/m", "bending of one pair (ISO 6336-1)"),
         "h": (file.flat["h"], "m", "rms height of both flanks together"),
         "K": (stiffness, "N/m", "mean stiffness of the mesh at this load"),
+        "c_gamma": (wheels.mesh_stiffness(file.flat["K_tooth"]), "N/m", "the same by ISO 6336-1, to compare"),
         "deflection": (deflection, "m", "of a pair at this load"),
     }
     return NewJoint(file, facts, faces.beyond(float(found.pressure), file.flat["H"]))
@@ -130,8 +151,8 @@ def _wheels(given: Given) -> Wheels:
     return Wheels(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
 
 
-def _put(sheet: Sheet, wheels: Wheels, given: Given, moduli: tuple[float, float]) -> None:
-    """Put what the wheels decide."""
+def _put(sheet: Sheet, wheels: Wheels, given: Given, K: float) -> None:
+    """Put what the wheels decide; K: of one pair [N/m]."""
     for i, radius in enumerate(wheels.base_radii):
         sheet.put(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")
     sheet.stated("teeth1", wheels.z[0])
@@ -142,11 +163,10 @@ def _put(sheet: Sheet, wheels: Wheels, given: Given, moduli: tuple[float, float]
         sheet.put("backlash", least, "estimate", text)
     else:
         sheet.stated("backlash", number("backlash", given["backlash"], "um", "m"))
-    K = wheels.tooth_stiffness(moduli)
     sheet.put("K_tooth", K, "derived", "single stiffness c' of ISO 6336-1, method B, times the width")
-    sheet.put(
-        "contact_ratio", wheels.contact_ratio, "derived", "ISO 21771, addendum of one module, with overlap"
-    )
+    text = "ISO 21771, addendum of one module, transverse"
+    sheet.put("contact_ratio", wheels.contact_ratio, "derived", text)
+    sheet.put("overlap_ratio", wheels.overlap_ratio, "derived", "b sin(beta)/(pi m_n) of ISO 21771")
     sheet.put("engagement", 0.3, "estimate", "docs/gear_mesh.md says what it does")
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
     d = wheels.damping(K * wheels.contact_ratio, (density[0], density[1]))

@@ -8,6 +8,7 @@ record GearMesh "A pair of gear wheels"
   parameter Real contact_ratio(min=1) "<< meta.contact_ratio >>";
   parameter Real engagement(min=Modelica.Constants.small, max=1) "<< meta.engagement >>";
   parameter Modelica.Units.SI.TranslationalDampingConstant d(min=0) "<< meta.d >>";
+  parameter Real overlap_ratio(min=0) = 0 "<< meta.overlap_ratio >>";
   parameter Modelica.Units.SI.Length closing "Deflection of a tooth pair at which the closing of its contact ends";
   parameter Real energy[:] "Energy of a tooth pair at each node of the table [J]";
   parameter Real table[:, 5]
