@@ -1,30 +1,30 @@
-"""The folder of what is an FMU's own: that of its joint, or of the joints' partners."""
+"""The parts and the folder of what is an FMU's own: those of its joint, or of the joints' partners."""
 
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 
-from . import joints
+from . import joints, partners
+from .joint_parts import Parts
 
-_PARTNERS = "partners"
 
+def parts_of(model: Model) -> Parts:
+    """What the builders know of a model.
 
-def part(model: Model, builder: str) -> ModuleType | None:
-    """What a builder finds in the folder, the module of the builder's name; None if there is none."""
-    if model.joint in KINDS:
-        return joints.part(KINDS[model.joint], builder)
-    name = f"{__package__}.{_PARTNERS}.{builder}"
-    return import_module(name) if find_spec(name) else None
+    Raises ValueError if they know nothing of its joint.
+    """
+    if model.joint not in KINDS:
+        return partners.PARTS
+    if model.joint not in joints.PARTS:
+        known = ", ".join(joints.PARTS)
+        raise ValueError(f"joint {model.joint!r} has no parts of its FMU; they are known of {known}")
+    return joints.PARTS[model.joint]
 
 
 def own_folder(model: Model) -> Path:
     """The folder."""
-    own = model.joint in KINDS
-    return joints.folder(KINDS[model.joint]) if own else Path(__file__).with_name(_PARTNERS)
+    return parts_of(model).folder
 
 
 def asset(model: Model, name: str) -> Path:

@@ -1,1 +1,5 @@
 """What surrounds a joint: drawings, surfaces, fits, fields, finite elements, exports, systems, pages."""
+
+from .joints import PARTS
+
+__all__ = ["PARTS"]

@@ -16,7 +16,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     name = "jointfmu"
     try:
-        from .commands.parser import parser
+        from .parser import parser
 
         words = list(sys.argv[1:] if argv is None else argv)
         args = parser(words).parse_args(words)

@@ -1,12 +1,15 @@
-"""What a joint's file `pressing.py` gives: how its load presses on its interface."""
+"""What a joint's file `pressing.py` gives: how its load presses on its interface; its judgement at a load."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
+from jointfmu.judgement import Judgement, judge, known_height
+from jointfmu.parameters import ParameterFile
 
-from .parts import part
+from .joint_parts import part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,3 +36,37 @@ def pressing(kind: Kind) -> Pressing | None:
     """What the joint's folder says; None if it says nothing."""
     found = part(kind, "pressing")
     return found.PRESSING if found else None
+
+
+def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Judgement:
+    """The judgement of a joint under loads (`Pressing.load`, SI).
+
+    loads : without them the start value of the file; if that is zero the usual load, at which the level alone
+            is judged
+    """
+    kind = KINDS[file.joint]
+    how = pressing(kind)
+    if how is None or kind.law_of(file.values) is None:
+        return Judgement(None, ())
+    if loads is None and file.start(how.load) > 0.0:
+        loads = [file.start(how.load)]
+    law, h, limits = kind.law_of(file.values), known_height(file), loads is not None
+    if loads is None:
+        loads = [how.usual(file.values)]
+    loads = [load for load in loads if load > 0.0]
+    found = judge(
+        law,
+        [how.mean(file.values, load) for load in loads],
+        h,
+        max((how.peak(file.values, load) for load in loads), default=0.0),
+        [how.scale(file.values, load) for load in loads],
+        limits,
+    )
+    return found.with_warnings(overload(how.load, max(loads, default=0.0), how.borne(file.values)))
+
+
+def overload(name: str, load: float, borne: tuple[float, str] | None) -> list[str]:
+    """The warning if a load [N] is more than what carries it bears: (most [N], what that is)."""
+    if borne is None or load <= borne[0]:
+        return []
+    return [f"{name} = {load:g} N is above {borne[0]:.4g} N, {borne[1]}"]

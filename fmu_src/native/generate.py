@@ -9,13 +9,14 @@ from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
-from ..folders import own_folder, part
+from ..folders import own_folder, parts_of
+from ..joint_parts.data import Split
+from ..joint_parts.graph import graph
+from ..joint_parts.native import NativePart
 from ..partners import PARTNERS
-from .data import GENERATED, Split, data_of, placeholder, split
+from .data import GENERATED, data_of, placeholder, split
 from .elementary import tables
-from .graph import graph
 from .law_c import law_c
-from .part import NativePart
 from .variables_c import variables_c
 
 RUNTIME = Path(__file__).parent / "runtime"
@@ -61,11 +62,10 @@ def native_part(model: Model) -> NativePart:
 
     Raises ValueError if its joint's folder does not say so.
     """
-    module = part(model, "native")
-    if module is None:
+    load = parts_of(model).native
+    if load is None:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
-    native: NativePart = module.PART
-    return native
+    return load()
 
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:

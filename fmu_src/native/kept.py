@@ -25,9 +25,10 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ..folders import own_folder
+from ..joint_parts.data import Split
 from .compiler import exported, libraries
 from .component import module
-from .data import PLACEHOLDER, Split, placeholder
+from .data import PLACEHOLDER, placeholder
 from .interrupt import interrupt_after
 
 SHIPPED = Path(__file__).with_name("parts")
@@ -143,7 +144,8 @@ def _sources_of(model: Model) -> str:
     own = KINDS.get(model.joint)
     packages = {"jointfmu", own.package if own else "jointfmu"}
     roots = [Path(str(files(package))) for package in sorted(packages)]
-    return _digest((*roots, Path(__file__).parent, own_folder(model)))
+    here = Path(__file__).parent
+    return _digest((*roots, here, here.with_name("joint_parts"), own_folder(model)))
 
 
 @cache

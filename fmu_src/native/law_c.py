@@ -4,10 +4,10 @@ import casadi as ca
 
 from jointfmu.joints.model import Model
 
-from .c_text import array, number, string
+from ..joint_parts.c_text import array, number, string
+from ..joint_parts.graph import Graph
+from ..joint_parts.native import NativePart, shared_definitions
 from .emit import HELPERS, function
-from .graph import Graph
-from .part import NativePart, shared_definitions
 
 _SHORT = 60
 """Lines of a function that is worth to be inline: what a step evaluates is short."""

@@ -14,24 +14,15 @@ from jointfmu.plots import BLUE, GREEN, RED
 from jointfmu.quantity import flat_fields, problem
 from jointfmu.quantity.units import UNITS, display_unit
 
-from ..folders import asset, part
+from ..folders import asset, parts_of
+from ..joint_parts.page import Panel
+from ..joint_parts.plot import Plot, svg
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
-from .plot import Plot, svg
 from .terminals import terminals
 
 _POINTS = 41
-
-
-class Panel(NamedTuple):
-    """One panel of the plot of the ramp: quantities of one unit over an input or output.
-
-    PANELS, {FMU: panels}, stands in page.py of the joint's folder.
-    """
-
-    over: str
-    quantities: tuple[str, ...]
 
 
 class _Row(NamedTuple):
@@ -157,9 +148,8 @@ def evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[st
 
 def panels(model: Model) -> tuple[Panel, ...]:
     """What the plot shows; of a joint that does not say it, the first output over the driven input."""
-    own = part(model, "page")
-    panels = own.PANELS.get(model.name) if own else None
-    return panels or (Panel(model.ramp.input, (model.outputs[0].name,)),)
+    own = parts_of(model).panels.get(model.name)
+    return own or (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
 
 def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
@@ -184,7 +174,6 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
 
 
 def drawings(model: Model, spring: Any) -> dict[str, str]:
-    """Further ones: DRAWINGS, {FMU: {name: (spring, end of the ramp) -> plots in a row}}, of the joint."""
-    own = part(model, "page")
-    named = getattr(own, "DRAWINGS", {}).get(model.name, {})
+    """Further ones, as SVG by name."""
+    named = parts_of(model).drawings.get(model.name, {})
     return {name: svg(plots(spring, model.ramp.end)) for name, plots in named.items()}

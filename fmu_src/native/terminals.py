@@ -6,72 +6,23 @@ inflow one that is applied to the element.
 """
 
 from pathlib import Path
-from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu.joints.model import Model
 
-from ..folders import asset, part
+from ..folders import asset, parts_of
+from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
 from ..xml_parts import serialized
 
-ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
-TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
 _COLORS = {ROTATIONAL: "0 0 0", TRANSLATIONAL: "0 127 0"}
 _HALF_SIZE = 10.0
 _FLANGES = Path(__file__).with_name("flanges")
 """Their icons, 32 x 32 pixels: circle or square as in Modelica, filled for side a, open for side b."""
 
 
-class Terminal(NamedTuple):
-    """One flange.
-
-    kind, side : of Modelica's connector, side "a" left and "b" right
-    members    : {member: (variable, variableKind)}
-    y          : height on the icon's edge, from -100 to 100
-    """
-
-    name: str
-    kind: str
-    side: str
-    doc: str
-    members: dict[str, tuple[str, str]]
-    y: float = 0.0
-
-
-def axis(axis: str, y: float) -> Terminal:
-    """Flange of a joint that takes the relative motion of its two sides along an axis."""
-    members = {
-        "s": (f"s_rel_{axis}", "signal"),
-        "v": (f"v_rel_{axis}", "signal"),
-        "f": (f"f_{axis}", "outflow"),
-    }
-    return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
-
-
-def turn(axis: str, y: float) -> Terminal:
-    """Flange of a joint that takes the small turn of its two sides against each other about an axis."""
-    members = {
-        "phi": (f"theta_{axis}", "signal"),
-        "w": (f"omega_{axis}", "signal"),
-        "tau": (f"m_{axis}", "outflow"),
-    }
-    return Terminal(f"flange_turn_{axis}", ROTATIONAL, "b", f"side 2 about {axis}, side 1 fixed", members, y)
-
-
-def shaft(number: int, side: str, doc: str) -> Terminal:
-    """Flange of a joint that takes the motion of each of its shafts."""
-    members = {
-        "phi": (f"phi{number}", "signal"),
-        "w": (f"w{number}", "signal"),
-        "tau": (f"tau{number}", "outflow"),
-    }
-    return Terminal(f"flange{number}", ROTATIONAL, side, doc, members)
-
-
 def terminals(model: Model) -> tuple[Terminal, ...]:
-    """The flanges of an FMU: TERMINALS, {FMU: flanges}, of terminals.py in its folder; there may be none."""
-    own = part(model, "terminals")
-    return own.TERMINALS.get(model.name, ()) if own else ()
+    """The flanges of an FMU; there may be none."""
+    return parts_of(model).terminals.get(model.name, ())
 
 
 def terminals_and_icons(model: Model) -> dict[str, bytes]:

@@ -3,7 +3,7 @@
 from jointfmu.joints.model import Model
 from jointfmu.quantity import Interval
 
-from .c_text import array, number, string
+from ..joint_parts.c_text import array, number, string
 
 
 def variables_c(model: Model) -> str:

@@ -1,6 +1,6 @@
 """Flanges of the partners that move; a load over time has no motion and so no flange."""
 
-from ..native.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
+from ..joint_parts.terminals import ROTATIONAL, TRANSLATIONAL, Terminal
 
 
 def _body(motion: str, rate: str, flow: str, terminal_kind: str, body: str) -> tuple[Terminal, Terminal]:

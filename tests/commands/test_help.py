@@ -12,7 +12,7 @@ import pytest
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
-from jointfmu_tools.commands.parser import parser
+from jointfmu_tools.parser import parser
 
 from jointfmu.commands.examples import EXAMPLES
 from jointfmu.contact.laws import LAWS

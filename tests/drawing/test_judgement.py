@@ -10,13 +10,13 @@ from jointfmu_tools.drawing.tables import threads
 from jointfmu_tools.drawing.vdi2230 import stress_area
 from jointfmu_tools.fem.symmetry import unlike_holes
 from jointfmu_tools.fields.contact import ContactField
-from jointfmu_tools.judgement import FACTOR, judge, judge_file, known_height
-from jointfmu_tools.pressing import pressing
+from jointfmu_tools.pressing import judge_file, pressing
 
 from jointfmu.contact.interface import at_pressure, beyond
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.judgement import FACTOR, judge, known_height
 from jointfmu.parameters import default, dump, load
 
 BOLTED = default("bolted_joint")

@@ -9,7 +9,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing.reading import number, numbers
 from jointfmu_tools.drawing.tables import MATERIAL, classes, row, table, threads
-from jointfmu_tools.parts import part
+from jointfmu_tools.joint_parts import part
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load

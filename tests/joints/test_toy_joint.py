@@ -4,10 +4,14 @@ import json
 from pathlib import Path
 from zipfile import ZipFile
 
+import jointfmu_tools as tools
 import numpy as np
 import pytest
 import toy_joint
+import toy_joint.fmu as toy_fmu
+import toy_joint.tools as toy_tools
 from fmpy.validation import validate_fmu
+from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_tools import cli
 from jointfmu_tools.job.checks import check, default_ramp, same
@@ -24,7 +28,9 @@ C = 1e4
 @pytest.fixture(scope="module", autouse=True)
 def toy():
     joints.register(toy_joint.KIND)
+    builders.PARTS["toy"], tools.PARTS["toy"] = toy_fmu.PARTS, toy_tools.PARTS
     yield
+    del builders.PARTS["toy"], tools.PARTS["toy"]
     joints.unregister(toy_joint.KIND)
 
 

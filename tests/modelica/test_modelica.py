@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.joints import part
 from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
 from jointfmu_tools.cli import main
+from jointfmu_tools.joint_parts import part
 from jointfmu_tools.joints.bolted_joint.modelica import tight
 from jointfmu_tools.modelica import library, tables
 from jointfmu_tools.modelica.text import identifier

@@ -8,11 +8,11 @@ from types import ModuleType
 
 import pytest
 from jointfmu_fmu_src import joints
+from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.generate import RUNTIME, sources
-from jointfmu_fmu_src.native.part import COUNTS, NUMBERS
 
-from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.mechanics import curve
 from jointfmu.parameters import default
@@ -52,7 +52,7 @@ def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 
 def test_runtime_types_none_of_them_again() -> None:
     names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
-    folders = [RUNTIME, *(joints.folder(kind) for kind in KINDS.values())]
+    folders = [RUNTIME, *(parts.folder for parts in joints.PARTS.values())]
     for path in (path for folder in folders for path in folder.glob("*.[ch]")):
         typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
         assert names.isdisjoint(name for pair in typed for name in pair), path.name

@@ -5,12 +5,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import command, without_package
+from jointfmu.commands.common import command, tell, without_package
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 
-from ..judgement import judge_file
-from .telling import tell
+from ..pressing import judge_file
 
 
 def add(commands: Any) -> None:

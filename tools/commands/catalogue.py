@@ -9,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
-from ..parts import part
+from ..joint_parts import part
 
 
 def add(commands: Any) -> None:

@@ -5,17 +5,16 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import command, flag
+from jointfmu.commands.common import command, flag, tell
 from jointfmu.joints import KINDS
+from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, check_writable, default, load, write_text
 
 from ..export import exports
 from ..export.forms import ERROR, FORMS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
-from ..judgement import Judgement, judge, judge_file, known_height
-from ..pressing import pressing
-from .telling import tell
+from ..pressing import judge_file, pressing
 
 if TYPE_CHECKING:
     from ..export.writing import Written

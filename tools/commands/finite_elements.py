@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
+from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
 from ..drawing.proof import proof_load
 from ..fields.clamped import clamped
-from ..judgement import Judgement, judge, known_height, overload
+from ..pressing import overload
 
 if TYPE_CHECKING:
     from ..fem.geometry import Assembly

@@ -9,16 +9,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import Parser, command, flag, written
+from jointfmu.commands.common import Parser, command, flag, tell, written
 from jointfmu.files import columns
 from jointfmu.joints import KINDS
 from jointfmu.parameters import check_writable, dump, load, write_text
 
 from ..drawing.reading import number
 from ..fitting.procedure import Option, Procedure
-from ..judgement import judge_file
-from ..parts import part
-from .telling import tell
+from ..joint_parts import part
+from ..pressing import judge_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,13 +5,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import command, flag, without_package
+from jointfmu.commands.common import command, flag, tell, without_package
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
+from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
-from ..judgement import Judgement, judge_file
-from .telling import tell
+from ..pressing import judge_file
 
 
 def add(commands: Any) -> None:

@@ -7,14 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Parser, command, flag
+from jointfmu.commands.common import Parser, command, flag, tell
 from jointfmu.joints import KINDS
 from jointfmu.parameters import check_writable, dump, write_text
 
 from ..drawing.part import Drawing, Option
-from ..judgement import judge_file
-from ..parts import part
-from .telling import tell
+from ..joint_parts import part
+from ..pressing import judge_file
 
 if TYPE_CHECKING:
     from ..drawing.part import NewJoint

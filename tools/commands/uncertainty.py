@@ -6,13 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import command, settings
+from jointfmu.commands.common import command, settings, tell
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, check_writable, default, load, write_text
 from jointfmu.quantity import build
 
-from ..judgement import judge_file
-from .telling import tell
+from ..pressing import judge_file
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "

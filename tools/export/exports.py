@@ -11,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Variable
 from jointfmu.quantity import flat_fields
 
-from ..parts import part
+from ..joint_parts import part
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve

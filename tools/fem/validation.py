@@ -6,7 +6,7 @@ from jointfmu.published.reference import guesses, points
 from jointfmu.published.validation import Row, compare
 
 from ..fields.clamped import clamping
-from ..parts import part
+from ..joint_parts import part
 from .frequencies import MeasuredFrequencies
 
 

@@ -13,7 +13,7 @@ from jointfmu.mechanics.footprint.bolts import PressureSource
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.quantity import Number
 
-from ..parts import part
+from ..joint_parts import part
 
 Array = NDArray[np.float64]
 Pressures = Callable[[Any, PressureShape, Array, Array], Array]

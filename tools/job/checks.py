@@ -11,7 +11,7 @@ from jointfmu.published.reference import Point, points
 from jointfmu.published.validation import Row, compare
 from jointfmu.run import ramp
 
-from ..parts import part
+from ..joint_parts import part
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
 from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing

@@ -5,8 +5,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from jointfmu_fmu_src.joints import part as builders_part
-from jointfmu_fmu_src.native.page import Panel
+from jointfmu_fmu_src.joint_parts.page import Panel
+from jointfmu_fmu_src.native.page import panels
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
 from jointfmu.joints import KINDS
@@ -15,7 +15,7 @@ from jointfmu.parameters import ParameterFile, dump
 from jointfmu.published.reference import ROLES, points
 from jointfmu.quantity import units
 
-from ..parts import part
+from ..joint_parts import part
 from ..shown import shown_unit
 from .modules import Module
 from .part import Bench
@@ -83,10 +83,7 @@ def _bench(model: Model) -> Bench:
 
 def _panels(model: Model, bench: Bench) -> Sequence[Panel]:
     """The documentation's panels, or its default, and those of the bench."""
-    page = builders_part(KINDS[model.joint], "page")
-    panels = page.PANELS if page else {}
-    usual = (Panel(model.ramp.input, (model.outputs[0].name,)),)
-    return (*panels.get(model.name, usual), *bench.panels)
+    return (*panels(model), *bench.panels)
 
 
 def _row(v: Listed, model: Model, bench: Bench) -> dict[str, Any]:

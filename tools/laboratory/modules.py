@@ -13,7 +13,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load
 
-from ..parts import folder
+from ..joint_parts import part
 
 _OWN = "laboratory.c"
 _MAP = "map.c"
@@ -27,15 +27,16 @@ class Module:
     files: Sequence[ParameterFile]
 
     @property
-    def map(self) -> Path:
-        """C that shows the contact; need not be there."""
-        return folder(KINDS[self.model.joint]) / "laboratory" / _MAP
+    def map(self) -> Path | None:
+        """C that shows the contact, if the part `laboratory` has it; need not be there."""
+        bench = part(KINDS[self.model.joint], "laboratory")
+        return Path(str(bench.__file__)).with_name(_MAP) if bench else None
 
     def sources(self) -> dict[str, str]:
         """{file name: text} of all C sources: those of the FMU, and what the page calls."""
         files = sources(self.model.name, self.files[0])
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
-        if self.map.is_file():
+        if self.map and self.map.is_file():
             added[_MAP] = self.map.read_text(encoding="utf-8")
         return files | added | {"token.h": f'#define TOKEN "{token(files)}"\n'}
 

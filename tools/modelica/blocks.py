@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.native.terminals import Terminal, terminals
+from jointfmu_fmu_src.joint_parts.terminals import Terminal
+from jointfmu_fmu_src.native.terminals import terminals
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable

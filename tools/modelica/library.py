@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from math import comb
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from jinja2 import Environment
@@ -19,8 +20,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, write_text
 from jointfmu.quantity import flat_fields
 
-from ..parts import folder as joint_folder
-from ..parts import part
+from ..joint_parts import part
 from ..systems.system import System, systems
 from .blocks import interface, wrapper
 from .records import Component, Record, WorkingPoint
@@ -77,7 +77,7 @@ def write(folder: Path, file: ParameterFile | None = None, points: Points | None
 def library(file: ParameterFile | None = None, points: Points | None = None) -> dict[str, str]:
     """{path in the library: text} of every file."""
     joints = [
-        _joint(kind, module.COMPONENT, file, (points or {}).get(kind.name))
+        _joint(kind, module, file, (points or {}).get(kind.name))
         for kind in KINDS.values()
         if (module := part(kind, "modelica"))
     ]
@@ -105,12 +105,13 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
 
 
 def _joint(
-    kind: Kind, component: Component, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
+    kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
     own = file if file and file.joint == kind.name else default(kind.name)
+    component: Component = module.COMPONENT
     wanted = points or (*_start(own), *component.points)
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
-    return _Joint(kind, own, component, records, environment(joint_folder(kind) / "modelica"))
+    return _Joint(kind, own, component, records, environment(Path(str(module.__file__)).parent))
 
 
 def _start(file: ParameterFile) -> list[WorkingPoint]:

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from jinja2 import Environment
-from jointfmu_fmu_src.native.terminals import ROTATIONAL
+from jointfmu_fmu_src.joint_parts.terminals import ROTATIONAL
 from jointfmu_fmu_src.partners.laws import POINTS
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
-from ..parts import part as joint_part
+from ..joint_parts import part as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
 from ..systems.wiring import End, ends

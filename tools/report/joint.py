@@ -17,8 +17,8 @@ from jointfmu.quantity import flat_fields
 from jointfmu.quantity.units import factor
 from jointfmu.run.loops import Loops
 
-from ..judgement import judge_file
-from ..parts import part
+from ..joint_parts import part
+from ..pressing import judge_file
 from ..shown import shown_unit, spelled
 from .beside import Beside
 from .course import Course, kinds_of

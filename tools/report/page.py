@@ -14,7 +14,7 @@ from jointfmu.parameters import write_text
 from jointfmu.published.reference import ROLES
 from jointfmu.published.validation import shown_claim, shown_error, shown_tolerance, summary
 
-from ..parts import part
+from ..joint_parts import part
 from ..systems.system import systems
 from .figure import as_json
 from .looks import script, style

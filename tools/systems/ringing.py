@@ -13,7 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.progress import track
 from jointfmu.quantity import flat_fields
 
-from ..parts import part
+from ..joint_parts import part
 from .master import Array, Slave, damping_ratio, motion, peak
 from .system import Component, System, systems
 from .wiring import wires

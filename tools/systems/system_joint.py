@@ -7,7 +7,7 @@ from typing import Any
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, load
 
-from ..parts import part
+from ..joint_parts import part
 
 KEYS = {"parameters", "catalogue"}
 """Entries that name them: a parameter file beside the system's, or the joint's name in its catalogue."""

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from jointfmu_fmu_src.native.terminals import Terminal, terminals
+from jointfmu_fmu_src.joint_parts.terminals import Terminal
+from jointfmu_fmu_src.native.terminals import terminals
 from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Variable
 
-from ..parts import part
+from ..joint_parts import part
 
 Array = NDArray[np.float64]
 Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]

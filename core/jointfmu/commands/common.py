@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
+from ..judgement import Judgement
 from ..parameters import parse_setting
 from .examples import BEFORE, EXAMPLES
 
@@ -48,6 +49,14 @@ def command(commands: Any, name: str, run: Run, text: str) -> Parser:
     sub.set_defaults(run=run)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
+
+
+def tell(found: Judgement, of: str = "") -> None:
+    """Print a judgement: what is found, and the warnings on standard error; `of` is put before."""
+    for line in found.lines():
+        print(f"{of}{line}")
+    for warning in found.warnings:
+        print(f"warning: {of}{warning}", file=sys.stderr)
 
 
 def flag(name: str) -> str:

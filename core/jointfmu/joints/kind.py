@@ -2,11 +2,8 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from .model import Model, Variable
@@ -38,8 +35,6 @@ def none(parameters: Any) -> Iterable[str]:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
     """A joint.
-
-    A tool finds what it needs beyond this in a file of the tool's name in the joint's folder, see `part`.
 
     name          : of its folders, and `joint = NAME` in parameter files
     package       : import name of its folder
@@ -100,8 +95,3 @@ class Kind:
         stem = self.default if law in (None, next(iter(self.laws))) else f"{self.default}_{law}"
         folder = files("jointfmu_models") / self.name if self.own else files(self.package) / "models"
         return Path(str(folder / f"{stem}.toml"))
-
-    def part(self, tool: str) -> ModuleType | None:
-        """What a tool finds in the joint's folder, the module of the tool's name; None if there is none."""
-        name = f"{self.package}.{tool}"
-        return import_module(name) if find_spec(name) else None

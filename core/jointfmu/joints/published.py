@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 
 from .kind import Kind
 
@@ -30,6 +31,8 @@ class Published:
 
 
 def published(kind: Kind) -> Published:
-    """What the joint's folder says; nothing if it has no published numbers."""
-    part = kind.part("published")
-    return Published() if part is None else part.PUBLISHED
+    """What the joint's module `published` says; nothing if no paper is about it."""
+    if not kind.papers:
+        return Published()
+    own: Published = import_module(f"{kind.package}.published").PUBLISHED
+    return own

@@ -11,7 +11,7 @@ from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.mechanics.sliders import offsets
 from jointfmu.quantity import flatten
 
-from ...native.data import DataPart, Table
+from ...joint_parts.data import DataPart, Table
 
 _SECTIONS = ("pattern.", "plate.", "field.")
 _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}

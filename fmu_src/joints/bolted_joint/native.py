@@ -6,8 +6,8 @@ from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import sliders
 
-from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import ENERGY, Definitions, NativePart
+from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
+from ...joint_parts.native import ENERGY, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.contact import loop_sums
 from jointfmu.plots import BLUE, GREY, RED
 
-from ...native.page import Panel
-from ...native.plot import Plot
+from ...joint_parts.page import Panel
+from ...joint_parts.plot import Plot
 
 PANELS = {"BoltedJoint": (Panel("preload", ("K_zz", "K_xx")), Panel("preload", ("C_zz", "C_xx")))}
 

@@ -1,6 +1,6 @@
 """Flanges of the bolted joint."""
 
-from ...native.terminals import axis, turn
+from ...joint_parts.terminals import axis, turn
 
 TERMINALS = {
     "BoltedJoint": (

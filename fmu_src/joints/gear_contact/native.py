@@ -6,8 +6,8 @@ from jointfmu.contact.laws import yu2022
 from jointfmu.joints.gear_contact import spring
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import APPROACH, NativePart
+from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
+from ...joint_parts.native import APPROACH, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:

@@ -1,5 +1,5 @@
 """What the page's plot of the load ramp shows."""
 
-from ...native.page import Panel
+from ...joint_parts.page import Panel
 
 PANELS = {"GearContact": (Panel("f", ("s_rel",)), Panel("f", ("K_N",)))}

@@ -1,6 +1,6 @@
 """Flange of the gear contact."""
 
-from ...native.terminals import TRANSLATIONAL, Terminal
+from ...joint_parts.terminals import TRANSLATIONAL, Terminal
 
 TERMINALS = {
     "GearContact": (

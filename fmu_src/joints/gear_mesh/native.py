@@ -6,8 +6,8 @@ import numpy as np
 from jointfmu.joints.gear_mesh import spring
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, add_closing, law_functions, symbols
-from ...native.part import ENERGY, Definitions, NativePart
+from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
+from ...joint_parts.native import ENERGY, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:

@@ -10,7 +10,7 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import MOST_POINTS, Measured, Node, TableDrive
 from jointfmu.quantity import Number, flatten, quantity
 
-from ...native.data import NO_TABLES, DataPart, Table
+from ...joint_parts.data import NO_TABLES, DataPart, Table
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ from jointfmu.joints.harmonic_drive.given import CatalogueDrive, Measured, Node
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.joints.model import Model
 
-from ...native.graph import Graph, Symbols, symbols
-from ...native.part import CURVE, Definitions, Named, NativePart, column, named, quadrature
+from ...joint_parts.graph import Graph, Symbols, symbols
+from ...joint_parts.native import CURVE, Definitions, Named, NativePart, column, named, quadrature
 
 
 def _functions(g: Graph, model: Model) -> None:

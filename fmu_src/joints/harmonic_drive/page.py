@@ -1,6 +1,6 @@
 """What the page's plot of the load ramp shows."""
 
-from ...native.page import Panel
+from ...joint_parts.page import Panel
 
 _STIFFNESS = Panel("tau", ("K_WTS", "K_TS"))
 PANELS = {

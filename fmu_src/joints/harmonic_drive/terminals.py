@@ -1,6 +1,6 @@
 """Flanges of the harmonic drive."""
 
-from ...native.terminals import ROTATIONAL, Terminal, shaft
+from ...joint_parts.terminals import ROTATIONAL, Terminal, shaft
 
 TERMINALS = {
     "HarmonicDriveSpring": (

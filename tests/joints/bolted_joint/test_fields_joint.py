@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from jointfmu_fmu_src.building import build
-from jointfmu_tools import cli
+from jointfmu_tools import PARTS, cli
 from jointfmu_tools.fields import csvfile
 from jointfmu_tools.fields.contact import ContactField
 from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
@@ -163,10 +163,11 @@ def test_other_joints_have_no_field():
         with_field(default("gear_contact"), FIELD, PRELOAD, "test")
 
 
-def test_a_joint_of_another_name_may_have_a_field():
+def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
     """Whatever joint has the part `field` gets its own parameter set with the field."""
     toy = replace(KIND, name="toy", models=())
     register(toy)
+    monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
     try:
         few = ContactField(*(a[:50] for a in _parts(FIELD)))
         file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")

@@ -1,1 +1,21 @@
 """What the tools know of the bolted joint."""
+
+from ...joint_parts import Parts
+
+PARTS = Parts(
+    __name__,
+    (
+        "checks",
+        "export",
+        "field",
+        "figures",
+        "fit",
+        "frequencies",
+        "laboratory",
+        "modelica",
+        "new",
+        "pressing",
+        "reduced",
+        "ringing",
+    ),
+)

@@ -1,1 +1,10 @@
-"""The spring, for the FMU builder."""
+"""The spring, for the FMU builders: an equation with one flange."""
+
+from pathlib import Path
+
+from jointfmu_fmu_src.joint_parts import Parts, equations
+from jointfmu_fmu_src.joint_parts.terminals import TRANSLATIONAL, Terminal
+
+WIRES = {"s": ("s_rel", "signal"), "f": ("f", "outflow")}
+FLANGES = (Terminal("flange", TRANSLATIONAL, "b", "side 2, side 1 fixed", WIRES),)
+PARTS = Parts(folder=Path(__file__).parent, native=equations, terminals={"ToySpring": FLANGES})

@@ -7,18 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import Parser, command
+from jointfmu.commands.common import Parser, command, tell
 from jointfmu.joints import KINDS
+from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
 
-from ..judgement import judge, known_height
-from . import footprint_compute
-from .finite_elements import joint_file
-from .telling import tell
+from ..finite_elements import joint_file
+from . import compute as footprint_compute
 
 if TYPE_CHECKING:
-    from ..fields.contact import ContactField
-    from ..fields.reduction import Reduction
+    from ...fields.contact import ContactField
+    from ...fields.reduction import Reduction
 
 
 def add(commands: Any) -> None:
@@ -71,8 +70,8 @@ def _bring(args: argparse.Namespace) -> int:
         check_writable(args.out)
     if args.plot:
         plots.check(args.plot)
-    from ..fields import figure
-    from ..fields.joint_parameters import with_field
+    from ...fields import figure
+    from ...fields.joint_parameters import with_field
 
     start = joint_file(args.params)
     field, tilted = _reading(args).field(args.file, args.moment_file)
@@ -99,9 +98,9 @@ def _bring(args: argparse.Namespace) -> int:
 
 def _reading(args: argparse.Namespace) -> Any:
     """How the file is to be read; every choice checked."""
-    from ..fields.contact_surface import AXES, OPEN, SIDES, Plane
-    from ..fields.nodal_result import LENGTHS, PRESSURES
-    from ..fields.reading import FORMATS, Reading
+    from ...fields.contact_surface import AXES, OPEN, SIDES, Plane
+    from ...fields.nodal_result import LENGTHS, PRESSURES
+    from ...fields.reading import FORMATS, Reading
 
     for name, value, allowed in (
         ("--format", args.format, FORMATS),
@@ -148,7 +147,7 @@ def _findings(
 
 
 def _lines(facts: dict[str, Any], before: float) -> list[str]:
-    from ..fields.loads import PRELOADS
+    from ...fields.loads import PRELOADS
 
     low, high = PRELOADS
     part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
-from ..surfaces.heights import Heights
-from ..surfaces.joint_parameters import changes, doubt, meaning
-from ..surfaces.results import Estimate, Identification, Result
-from ..surfaces.roughness import ScanRoughness
+from ...surfaces.heights import Heights
+from ...surfaces.joint_parameters import changes, doubt, meaning
+from ...surfaces.results import Estimate, Identification, Result
+from ...surfaces.roughness import ScanRoughness
 from . import synthesize
-from .surface_json import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
+from .document import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
 
 
 def show(

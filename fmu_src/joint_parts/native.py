@@ -1,4 +1,4 @@
-"""What a joint's file `native.py` gives: its functions, the numbers that its C takes, the C it shares."""
+"""How a joint becomes C: its functions, the numbers that its C takes, the C it shares."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

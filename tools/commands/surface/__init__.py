@@ -10,9 +10,9 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, check_writable, default, dump, load, write_text
 from jointfmu.quantity.refusal import Refusal
 
-from ..surfaces.heights import FORMS
-from ..surfaces.reading import read
-from ..surfaces.series import METHODS, SIDES
+from ...surfaces.heights import FORMS
+from ...surfaces.reading import read
+from ...surfaces.series import METHODS, SIDES
 from . import synthesize
 
 SUBCOMMANDS = IMPLIED["surface"]
@@ -70,9 +70,9 @@ def _identify(args: argparse.Namespace) -> int:
     base = _base(args)
     _check(args)
     heights = [read(path, args.unit, args.force) for path in args.files]
-    from ..surfaces.identify import identify  # scipy: after what is refused at once
-    from ..surfaces.joint_parameters import with_surface
-    from . import surface_results
+    from ...surfaces.identify import identify  # scipy: after what is refused at once
+    from ...surfaces.joint_parameters import with_surface
+    from . import results as surface_results
 
     span = tuple(args.span) if args.span else None
     identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
@@ -80,7 +80,7 @@ def _identify(args: argparse.Namespace) -> int:
     if args.out and file:
         write_text(args.out, dump(file))
     if args.plot:
-        from ..surfaces.figure import draw
+        from ...surfaces.figure import draw
 
         draw(identified, args.plot)
     surface_results.show(identified, heights, file, args)
@@ -111,7 +111,7 @@ def _base(args: argparse.Namespace) -> ParameterFile | None:
     if args.params:
         return load(args.params, args.joint)
     if args.joint:
-        from ..surfaces.joint_parameters import without_roughness
+        from ...surfaces.joint_parameters import without_roughness
 
         return without_roughness(default(args.joint))
     if args.out:

@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import command
+from jointfmu.commands.common import command, tell
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
 
-from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
-from .telling import tell
+from ..finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
 
 if TYPE_CHECKING:
-    from ..fem.bolted_contact import JointSolution
-    from ..fem.convergence import MeshResult
+    from ...fem.bolted_contact import JointSolution
+    from ...fem.convergence import MeshResult
 
 FINEST = 5
 """Most meshes of `--refine`."""
@@ -50,9 +49,9 @@ def add(commands: Any) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
     try:
-        from ..fem import convergence, results
-        from ..fem.assembly import load as read
-        from ..fem.symmetry import unlike_holes
+        from ...fem import convergence, results
+        from ...fem.assembly import load as read
+        from ...fem.symmetry import unlike_holes
     except ImportError as error:
         raise without_fem(error) from None
     assembly, file = read(args.assembly), joint_file(args.params)
@@ -99,7 +98,7 @@ def _check(args: argparse.Namespace) -> None:
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
     """Write what was asked for; returns the paths."""
-    from ..fem import results
+    from ...fem import results
 
     if args.out:
         write_text(args.out, dump(_with_field(args, file, solution)))
@@ -112,7 +111,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """The joint with the field at the preload, and what a moment adds."""
-    from ..fem.joint_file import with_solution
+    from ...fem.joint_file import with_solution
 
     return with_solution(file, solution, args.preload, args.moment or 0.0)
 
@@ -156,7 +155,7 @@ def _table(rows: list["MeshResult"]) -> Iterator[str]:
     """Meshes with the relative change from one to the next and the observed order."""
     if len(rows) < 2:
         return
-    from ..fem.convergence import COLUMNS, changes, orders
+    from ...fem.convergence import COLUMNS, changes, orders
 
     heads = [f"{name} [{unit}]" for name, unit in COLUMNS.items()]
     yield f"{'mesh':>6} {'unknowns':>9} " + " ".join(f"{head:>16}" for head in heads)

@@ -8,17 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.commands.common import command, settings
-from jointfmu.contact import fractal
-from jointfmu.contact.interface import at_largest_spot, at_pressure
-from jointfmu.contact.laws import LAWS
-from jointfmu.contact.roughness import DECLARED, check, height
-from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import build, flat_fields, flatten
-
+from ..contact import fractal
+from ..contact.interface import at_largest_spot, at_pressure
+from ..contact.laws import LAWS
+from ..contact.roughness import DECLARED, check, height
+from ..joints import KINDS
 from ..judgement import judge, known_height, law_height
-from .telling import tell
+from ..parameters import ParameterFile, default, load
+from ..quantity import build, flat_fields, flatten
+from .common import command, settings, tell
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""

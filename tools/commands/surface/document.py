@@ -11,9 +11,9 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
-from ..surfaces.heights import Areal, Heights
-from ..surfaces.joint_parameters import ROUGHNESS_LAW, changes, doubt
-from ..surfaces.results import Estimate, Identification, Result
+from ...surfaces.heights import Areal, Heights
+from ...surfaces.joint_parameters import ROUGHNESS_LAW, changes, doubt
+from ...surfaces.results import Estimate, Identification, Result
 
 UNIT_PRESSURE = 1e6
 """Pressure [Pa] at which the level of the stiffness is stated."""

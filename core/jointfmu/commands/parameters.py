@@ -8,13 +8,12 @@ from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import command
-from jointfmu.contact.laws import LAWS
-from jointfmu.contact.roughness import DECLARED
-from jointfmu.joints import KINDS, MODELS
-from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.quantity import flat_fields, flatten
-
+from ..contact.laws import LAWS
+from ..contact.roughness import DECLARED
+from ..joints import KINDS, MODELS
+from ..parameters import ParameterFile, default, load
+from ..quantity import flat_fields, flatten
+from .common import command
 from .law import law_file, law_parameters
 
 _HEAD = ("name", "default", "unit", "allowed", "meaning")

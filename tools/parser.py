@@ -29,8 +29,8 @@ COMMANDS = (
     "sweep",
     "validate",
 )
-"""Each is declared by the module of its name."""
-KERNEL = ("ramp",)
+"""Each is declared by the module of its name, which `commands` has."""
+KERNEL = ("law", "parameters", "ramp")
 """Those that lie in the kernel, as they need no tool."""
 
 
@@ -56,6 +56,6 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
-        package = "jointfmu.commands" if name in KERNEL else __package__
+        package = "jointfmu.commands" if name in KERNEL else "jointfmu_tools.commands"
         import_module(f"{package}.{name}").add(commands)
     return top

@@ -1,6 +1,7 @@
 """How far to believe a stiffness: its level beside the roughness, and where the interface law ends.
 
-Every command that reports a stiffness says it, by `judge` (at pressures) or `judge_file` (at loads).
+Every command that reports a stiffness says it, by `judge` at pressures; a joint at loads is judged by its
+pressing, in `jointfmu_tools`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,12 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.interface import Law, beyond, stiffness_curve
-from jointfmu.contact.roughness import GAMMA, height, level
-from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile
-
-from .pressing import pressing
+from .contact.interface import Law, beyond, stiffness_curve
+from .contact.roughness import GAMMA, height, level
+from .joints import KINDS
+from .parameters import ParameterFile
 
 Array = NDArray[np.float64]
 
@@ -116,40 +115,6 @@ def judge(
             "one believe the roughness (docs/validity.md)"
         )
     return Judgement(found, tuple(warnings))
-
-
-def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Judgement:
-    """The judgement of a joint under loads (`Pressing.load`, SI).
-
-    loads : without them the start value of the file; if that is zero the usual load, at which the level alone
-            is judged
-    """
-    kind = KINDS[file.joint]
-    how = pressing(kind)
-    if how is None or kind.law_of(file.values) is None:
-        return Judgement(None, ())
-    if loads is None and file.start(how.load) > 0.0:
-        loads = [file.start(how.load)]
-    law, h, limits = kind.law_of(file.values), known_height(file), loads is not None
-    if loads is None:
-        loads = [how.usual(file.values)]
-    loads = [load for load in loads if load > 0.0]
-    found = judge(
-        law,
-        [how.mean(file.values, load) for load in loads],
-        h,
-        max((how.peak(file.values, load) for load in loads), default=0.0),
-        [how.scale(file.values, load) for load in loads],
-        limits,
-    )
-    return found.with_warnings(overload(how.load, max(loads, default=0.0), how.borne(file.values)))
-
-
-def overload(name: str, load: float, borne: tuple[float, str] | None) -> list[str]:
-    """The warning if a load [N] is more than what carries it bears: (most [N], what that is)."""
-    if borne is None or load <= borne[0]:
-        return []
-    return [f"{name} = {load:g} N is above {borne[0]:.4g} N, {borne[1]}"]
 
 
 def law_height(law: Law) -> float | None:

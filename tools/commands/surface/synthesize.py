@@ -8,8 +8,8 @@ from typing import Any
 from jointfmu.commands.common import command
 from jointfmu.parameters import check_writable, write_text
 
-from ..surfaces import csvfile, synthesis
-from ..surfaces.heights import Areal, Heights
+from ...surfaces import csvfile, synthesis
+from ...surfaces.heights import Areal, Heights
 
 MEMORY = 2e9
 """Memory [B] that making a surface and its file may take."""

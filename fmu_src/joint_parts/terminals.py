@@ -1,0 +1,52 @@
+"""Flanges of a joint's FMU, as in the Modelica Standard Library."""
+
+from typing import NamedTuple
+
+ROTATIONAL = "Modelica.Mechanics.Rotational.Interfaces.Flange_"
+TRANSLATIONAL = "Modelica.Mechanics.Translational.Interfaces.Flange_"
+
+
+class Terminal(NamedTuple):
+    """One flange.
+
+    kind, side : of Modelica's connector, side "a" left and "b" right
+    members    : {member: (variable, variableKind)}
+    y          : height on the icon's edge, from -100 to 100
+    """
+
+    name: str
+    kind: str
+    side: str
+    doc: str
+    members: dict[str, tuple[str, str]]
+    y: float = 0.0
+
+
+def axis(axis: str, y: float) -> Terminal:
+    """Flange of a joint that takes the relative motion of its two sides along an axis."""
+    members = {
+        "s": (f"s_rel_{axis}", "signal"),
+        "v": (f"v_rel_{axis}", "signal"),
+        "f": (f"f_{axis}", "outflow"),
+    }
+    return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
+
+
+def turn(axis: str, y: float) -> Terminal:
+    """Flange of a joint that takes the small turn of its two sides against each other about an axis."""
+    members = {
+        "phi": (f"theta_{axis}", "signal"),
+        "w": (f"omega_{axis}", "signal"),
+        "tau": (f"m_{axis}", "outflow"),
+    }
+    return Terminal(f"flange_turn_{axis}", ROTATIONAL, "b", f"side 2 about {axis}, side 1 fixed", members, y)
+
+
+def shaft(number: int, side: str, doc: str) -> Terminal:
+    """Flange of a joint that takes the motion of each of its shafts."""
+    members = {
+        "phi": (f"phi{number}", "signal"),
+        "w": (f"w{number}", "signal"),
+        "tau": (f"tau{number}", "outflow"),
+    }
+    return Terminal(f"flange{number}", ROTATIONAL, side, doc, members)

@@ -1,0 +1,64 @@
+"""What builders and tools know of a joint: named, and a wrong name fails at import."""
+
+import sys
+from pathlib import Path
+
+import jointfmu_fmu_src.joints as builders
+import jointfmu_tools as tools
+import pytest
+from jointfmu_fmu_src.folders import parts_of
+from jointfmu_tools.joint_parts import TOOLS, Parts, part
+
+from jointfmu.joints import KINDS, MODELS
+
+
+def test_all_floors_know_the_same_joints() -> None:
+    assert set(KINDS) == set(builders.PARTS) == set(tools.PARTS)
+
+
+@pytest.mark.parametrize("joint", KINDS)
+def test_every_part_can_be_loaded(joint: str) -> None:
+    loaded = [tool for tool in TOOLS if part(KINDS[joint], tool)]
+    assert loaded == sorted(tools.PARTS[joint].names)
+    load = builders.PARTS[joint].native
+    assert load is not None
+    assert load().shared
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A joint's folder with the part `export`, and a module that is no part."""
+    folder = tmp_path / "joint_of_a_test"
+    folder.mkdir()
+    for name in ("__init__", "export", "helper"):
+        (folder / f"{name}.py").touch()
+    monkeypatch.syspath_prepend(tmp_path)
+    yield folder.name
+    for name in [name for name in sys.modules if name.startswith(folder.name)]:
+        del sys.modules[name]
+
+
+def test_a_part_is_a_module(package: str) -> None:
+    parts = Parts(package, ("export",))
+    assert parts.load("export") is sys.modules[f"{package}.export"]
+    assert parts.load("fit") is None
+
+
+@pytest.mark.parametrize(
+    ("names", "what"),
+    [
+        (("export", "fitt"), "joint_of_a_test.fitt is not there"),
+        (("export", "fit"), "joint_of_a_test.fit is not there"),
+        (("export", "helper"), "joint_of_a_test.helper is of no tool"),
+        ((), "joint_of_a_test.export is a part that its __init__.py must name"),
+    ],
+)
+def test_a_wrong_name_fails_at_import(package: str, names: tuple[str, ...], what: str) -> None:
+    with pytest.raises(ImportError, match=what):
+        Parts(package, names)
+
+
+def test_a_joint_without_parts_cannot_be_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(builders.PARTS, "gear_mesh")
+    with pytest.raises(ValueError, match=r"joint 'gear_mesh' has no parts .* known of harmonic_drive"):
+        parts_of(MODELS["GearMesh"])
