@@ -98,7 +98,22 @@ def test_missing_points_and_spikes_are_repaired_and_counted(folder, area, capsys
         if bad["direction"] == "areal" and bad["method"] == "structure":
             assert bad["surface"]["D_s"]["value"] == pytest.approx(fine["surface"]["D_s"]["value"], abs=0.03)
     text = run(capsys, "surface", "bad.csv").out
-    assert "repaired in bad.csv: spikes taken as missing: 100 of 16384 points (0.61 %)" in text
+    assert (
+        "repaired in bad.csv: spikes taken as missing: 100 of 16384 points (0.61 %); with them Sq is " in text
+    )
+    kept = json.loads(run(capsys, "surface", "bad.csv", "--json", "--keep-spikes").out)
+    assert [repair["repair"] for repair in kept["repairs"]] == ["missing points filled harmonically"]
+
+
+def test_the_effect_of_spikes_on_sq_is_said(area):
+    """Heights of rms s with a share q of spikes of height H: Sq^2 = s^2 + q (1 - q) H^2 nearly."""
+    z = area.z.copy()
+    z.ravel()[:: z.size // 100] += 1e-4
+    (repair,) = without_spikes(replace(area, z=z))[1]
+    said = float(repair.effect.split("Sq is ")[1].split()[0])
+    share = repair.count / repair.points
+    expected = np.hypot(np.std(without_form(area).z), 1e-4 * np.sqrt(share * (1.0 - share)))
+    assert said == pytest.approx(expected / np.std(without_form(area).z), rel=0.02)  # three digits, 0.6 %
 
 
 def test_clean_surfaces_have_no_spikes():
@@ -406,9 +421,9 @@ def test_points_given_twice_are_refused(folder):
         (
             "m",
             0.16,
-            "the field is 163.8 m with lengths in m, scans have 1e-06 to 1 m; were lengths in um meant",
+            "the field is 163.8 m with lengths in m, scans have 1e-07 to 1 m; were lengths in um meant",
         ),
-        ("um", 5e-4, "the field is 5.12e-07 m with lengths in um"),
+        ("um", 5e-5, "the field is 5.12e-08 m with lengths in um"),
     ],
 )
 def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
@@ -419,6 +434,12 @@ def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
     assert says in refused
     assert refused.endswith("that the size is right (--force)\n")
     run(capsys, "surface", "f.txt", "--unit", unit, "--force")
+
+
+def test_a_field_of_an_atomic_force_microscope_is_none_to_ask_about(folder, capsys):
+    x, walk = 5e-4 * np.arange(1024), np.cumsum(np.random.default_rng(0).standard_normal(1024))
+    (folder / "f.txt").write_text("".join(f"{a:.6g} {b:.6g}\n" for a, b in zip(x, walk, strict=True)))
+    run(capsys, "surface", "f.txt", "--unit", "um")
 
 
 def test_units_as_instruments_write_them(folder, monkeypatch):

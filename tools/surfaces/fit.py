@@ -1,9 +1,9 @@
 """Fit of the self-affine law to a series: generalised least squares, range search, test of straightness."""
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.optimize import least_squares
 
 from .heights import Array
@@ -137,11 +137,11 @@ def _fit(series: Series) -> SelfAffineLaw:
     start[1] = np.mean(y - law(start))
     deviation, p = FLOOR, start
     for _ in range(3):
-        root = np.asarray(np.linalg.cholesky(chance + deviation**2 * _hang(x)), dtype=np.float64)
+        whiten = _whitening(chance + deviation**2 * _hang(x))
         known = y + 0.5 * np.diag(chance)
 
-        def residual(p: Array, root: Array = root, known: Array = known) -> Array:
-            white = solve_triangular(root, known - law(p), lower=True)
+        def residual(p: Array, whiten: Array = whiten, known: Array = known) -> Array:
+            white = whiten @ (known - law(p))
             return np.append(white, p[2] / OFFSET) if offset else np.asarray(white)
 
         bounds = ([BOUND, -np.inf, -0.9][: p.size], [1.0 - BOUND, np.inf, np.inf][: p.size])
@@ -165,6 +165,14 @@ def _fit(series: Series) -> SelfAffineLaw:
     )
 
 
+def _whitening(covariance: Array) -> Array:
+    """What makes residuals of this covariance independent, of variance 1.
+
+    An inverse: scipy's triangular solver wakes threads that cost fifty times so small a solution.
+    """
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(covariance)))
+
+
 def _hang(x: Array) -> Array:
     return np.asarray(np.exp(-np.abs(x[:, None] - x) / CORRELATION))
 
@@ -172,21 +180,21 @@ def _hang(x: Array) -> Array:
 def _excess(residual: Array, chance: Array, x: Array, parameters: int) -> float:
     """Standard deviation beyond chance that makes the weighted residual as large as expected."""
     freedom = max(x.size - parameters, 1)
-    hang = _hang(x)
-    for deviation in np.geomspace(FLOOR, 3.0, 60):
-        white = np.linalg.solve(chance + deviation**2 * hang, residual)
-        if residual @ white <= freedom:
-            return float(deviation)
-    return 3.0
+    hang, tried = _hang(x), np.geomspace(FLOOR, 3.0, 60)
+
+    def enough(deviation: float) -> bool:
+        return bool(residual @ np.linalg.solve(chance + deviation**2 * hang, residual) <= freedom)
+
+    return float(tried[min(bisect_left(tried, True, key=enough), tried.size - 1)])
 
 
 def _drift(x: Array, residual: Array, chance: Array) -> tuple[float, float]:
     """Change of D over the range and its standard error, from one further, quadratic term."""
-    root = np.linalg.cholesky(chance + FLOOR**2 * _hang(x))
+    whiten = _whitening(chance + FLOOR**2 * _hang(x))
     t = x - x.mean()
     columns = [np.ones_like(t), t, t**2]
-    white = solve_triangular(root, np.stack(columns, axis=1), lower=True)
+    white = whiten @ np.stack(columns, axis=1)
     inverse = np.linalg.inv(white.T @ white)
-    coefficients = inverse @ white.T @ solve_triangular(root, residual, lower=True)
+    coefficients = inverse @ white.T @ (whiten @ residual)
     length = float(x[-1] - x[0])
     return float(-coefficients[2] * length), float(np.sqrt(inverse[2, 2]) * length)

@@ -23,9 +23,11 @@ class Repair:
     name: str
     count: int
     points: int
+    effect: str = ""
 
     def __str__(self) -> str:
-        return f"{self.name}: {self.count} of {self.points} points ({100.0 * self.count / self.points:.3g} %)"
+        share = 100.0 * self.count / self.points
+        return f"{self.name}: {self.count} of {self.points} points ({share:.3g} %){self.effect}"
 
 
 def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
@@ -45,8 +47,10 @@ def without_spikes(heights: Heights) -> tuple[Heights, list[Repair]]:
     spikes = valid & (deviation > SPIKE * scale)
     if not spikes.any():
         return heights, []
-    repair = Repair("spikes taken as missing", int(spikes.sum()), z.size)
-    return heights.with_heights(np.where(spikes, np.nan, z)), [repair]
+    clean = heights.with_heights(np.where(spikes, np.nan, z))
+    before, after = (float(np.nanstd(without_form(scan).z)) for scan in (heights, clean))
+    effect = f"; with them Sq is {before / after:.3g} times as large" if after > 0.0 else ""
+    return clean, [Repair("spikes taken as missing", int(spikes.sum()), z.size, effect)]
 
 
 def without_form(heights: Heights, form: str = "tilt") -> Heights:
@@ -130,9 +134,9 @@ class Prepared:
     repairs: tuple[Repair, ...]
 
 
-def prepare(heights: Heights, form: str = FORMS[0]) -> Prepared:
-    """Take spikes as missing, remove the form, fill."""
-    clean, spikes = without_spikes(heights)
+def prepare(heights: Heights, form: str = FORMS[0], keep_spikes: bool = False) -> Prepared:
+    """Take spikes as missing, unless they are kept; remove the form, fill."""
+    clean, spikes = (heights, []) if keep_spikes else without_spikes(heights)
     gappy = without_form(clean, form)
     whole, gaps = filled(gappy)
     return Prepared(gappy, whole, (*spikes, *gaps))

@@ -38,6 +38,7 @@ def identify(
     span: tuple[float, float] | None = None,
     longest: float | None = None,
     side: str | None = None,
+    keep_spikes: bool = False,
 ) -> Identification:
     """Identify one surface, or the equivalent surface of two.
 
@@ -48,6 +49,7 @@ def identify(
     longest  : longest wave [m] of the roughness; by default the shortest `default_wave` of the surfaces
     side     : of one surface, the side of the contact that it is, one of SIDES: on a smooth other side, or
                on another one like it; of two surfaces the first is side 1
+    keep_spikes : whether spikes are heights like all others
     """
     if len(surfaces) not in (1, 2):
         raise ValueError(f"{len(surfaces)} files given, allowed are one surface or the two of a pair")
@@ -59,7 +61,7 @@ def identify(
     if longest is not None:
         for surface in surfaces:
             check_wave(surface, longest)
-    prepared = [prepare(surface, form) for surface in surfaces]
+    prepared = [prepare(surface, form, keep_spikes) for surface in surfaces]
     directions = ("areal", "x", "y") if areal == {True} else ("profile",)
     low, high = span or (None, None)
     results = []

@@ -13,7 +13,7 @@ from jointfmu.quantity.refusal import Refusal
 from . import csvfile, sift
 from .heights import Areal, Heights, Profile
 
-USUAL = (1e-6, 1.0)
+USUAL = (1e-7, 1.0)
 """Shortest and longest field [m] that is taken without asking back."""
 LIKELY = ("mm", "um", "nm")
 """Units that may have been meant."""

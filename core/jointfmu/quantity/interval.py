@@ -66,7 +66,7 @@ class Interval:
         """Whether its ends are NaN, crossed, or differ by less than the six digits that a message shows."""
         if self.low == self.high:
             return self.low_open or self.high_open
-        shown = 1e-6 * min(abs(self.low), abs(self.high))
+        shown = 1e-5 * min(abs(self.low), abs(self.high))
         return not self.low < self.high or bool(self.high - self.low <= shown < inf)
 
     def intersection(self, other: "Interval") -> "Interval":

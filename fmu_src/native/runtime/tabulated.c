@@ -32,7 +32,7 @@ static bool empty(double low, double high, bool open)
 {
     if (low == high)
         return open;
-    const double shown = 1e-6 * fmin(fabs(low), fabs(high));
+    const double shown = 1e-5 * fmin(fabs(low), fabs(high));
     return !(low < high) || (high - low <= shown && shown < INFINITY);
 }
 

@@ -30,6 +30,7 @@ def add(commands: Any) -> None:
     find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
     find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
     find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
+    find.add_argument("--keep-spikes", action="store_true", help="take spikes for heights, not as missing")
     find.add_argument(
         "--range",
         dest="span",
@@ -74,7 +75,7 @@ def _identify(args: argparse.Namespace) -> int:
     from . import results as surface_results
 
     span = tuple(args.span) if args.span else None
-    identified = identify(heights, args.form, span, args.longest_wave, args.side)
+    identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
     file = with_surface(base, identified, args.method, args.force) if base else None
     if args.out and file:
         write_text(args.out, dump(file))

@@ -36,7 +36,8 @@ def as_dict(
         "form": args.form,
         "roughness": _roughness_dict(identified, file),
         "repairs": [
-            {"file": n, "repair": r.name, "count": r.count, "points": r.points} for n, r in identified.repairs
+            {"file": n, "repair": r.name, "count": r.count, "points": r.points, "effect": r.effect[2:]}
+            for n, r in identified.repairs
         ],
         "results": [_result_dict(result, args.gamma) for result in identified.results],
         "determined": {joint: doubt(identified, joint) is None for joint in joints},

@@ -104,7 +104,7 @@ MODELS = (
             Outside(
                 "slip",
                 lambda j, end, v: (-math.inf, where(j.memory, 2.0, LINEAR)),
-                "the shear is beyond what friction holds: an open joint holds none, one without memory would slip",
+                "the shear is beyond what friction holds: none if open; without memory the joint would slip",
             ),
         ),
         ramp=Ramp("preload", 30e3, 100.0),
