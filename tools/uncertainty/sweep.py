@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.files import columns
-from jointfmu.parameters import write_text
+from jointfmu.files.writing import write_text
 from jointfmu.progress import track
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.run import ramp

@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from ..parameters import made_folder, write_bytes
+from ..files.writing import made_folder, write_bytes
 from ..run import host
 from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
