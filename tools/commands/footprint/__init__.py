@@ -13,8 +13,8 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
-from ..finite_elements import joint_file
 from . import compute as footprint_compute
+from .finite_elements import joint_file
 
 if TYPE_CHECKING:
     from ...fields.contact import ContactField
