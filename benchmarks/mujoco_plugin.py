@@ -14,9 +14,10 @@ from time import perf_counter
 import fmpy
 import mujoco
 import numpy as np
-from fmpy.fmi3 import FMU3Model
 from jointfmu_fmu_src.building import build
 from jointfmu_tools.mujoco import plugin
+
+from jointfmu.run.host import Instance
 
 NAME = "HarmonicDriveSpring"
 JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200
@@ -84,15 +85,11 @@ def python_time(fmu: Path, parameters: dict[str, float], folder: Path) -> float:
     unpacked = fmpy.extract(str(fmu), str(folder))
     slaves = []
     for i in range(JOINTS):
-        slave = FMU3Model(
-            guid=description.guid,
-            unzipDirectory=unpacked,
-            modelIdentifier=description.modelExchange.modelIdentifier,
-            instanceName=f"drive{i}",
-        )
-        slave.instantiate()
-        slave.setFloat64([refs[n] for n in parameters], list(parameters.values()))
-        slave.enterInitializationMode()
+        instance = Instance(unpacked, description, f"drive{i}", exchange=True)
+        instance.instantiate()
+        instance.set(parameters)
+        instance.begin()
+        slave = instance.fmu
         slave.exitInitializationMode()
         slave.enterContinuousTimeMode()
         slaves.append(slave)

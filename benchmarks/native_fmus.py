@@ -27,7 +27,7 @@ from jointfmu_fmu_src.native import compiler, data, generate
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
-from jointfmu.run.host import Fmi2
+from jointfmu.run.host import Instance
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"
@@ -165,18 +165,13 @@ def native_times(host: Path, name: str, flavour: str, library: Path, token: str,
 def python_times(fmu: Path, unpacked: Path) -> Times:
     """The same of the python flavour, in fmpy; all inputs and all outputs take one call each."""
     description = fmpy.read_model_description(str(fmu))
-    slave = Fmi2(
-        guid=description.guid,
-        unzipDirectory=fmpy.extract(str(fmu), str(unpacked)),
-        modelIdentifier=description.coSimulation.modelIdentifier,
-        instanceName="benchmark",
-    )
+    slave = Instance(fmpy.extract(str(fmu), str(unpacked)), description, "benchmark", exchange=False)
     refs = {
         kind: [v.valueReference for v in description.modelVariables if v.causality == kind]
         for kind in ("input", "output")
     }
     begin = perf_counter()
-    slave.start(lambda message: None)
+    slave.instantiate()
     slave.begin()
     slave.fmu.exitInitializationMode()
     times = {"start": perf_counter() - begin}

@@ -24,8 +24,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from jointfmu import plots
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import write_text
 from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parent.parent

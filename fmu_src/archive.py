@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from jointfmu.parameters import made_folder
+from jointfmu.files.writing import made_folder
 
 
 @contextmanager

@@ -7,11 +7,13 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 from filelock import FileLock
 from hypothesis import settings
+
+from jointfmu.run.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
 settings.load_profile("jointfmu")
@@ -52,66 +54,19 @@ def refused_line(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
     return err
 
 
-class Message(NamedTuple):
-    """One logged message; status 1 is a warning, 3 an error."""
-
-    status: int
-    text: str
-    category: str
-
-
-class Fmu:
-    """An instance of an FMU file, FMI 2.0 or 3.0, in a host that keeps all messages; variables by name."""
+class Fmu(Instance):
+    """An instance of an FMU file with a clock, whose messages are looked at."""
 
     def __init__(self, path: Path, name: str = "test", exchange: bool = False, logging: bool = True) -> None:
-        from fmpy import fmi2, fmi3
-
-        unpacked, self.description = unpack(path, path.stat().st_mtime_ns)
-        self.variables = {v.name: v for v in self.description.modelVariables}
+        super().__init__(*unpack(path, path.stat().st_mtime_ns), name, exchange)
         self.outputs = [v.name for v in self.description.modelVariables if v.causality == "output"]
-        self.messages: list[Message] = []
         self.time = 0.0
-        self.version = int(self.description.fmiVersion[0])
-        self.exchange = exchange
-        kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
-        interface = self.description.modelExchange if exchange else self.description.coSimulation
-        self.fmu = kinds[self.version][exchange](
-            guid=self.description.guid,
-            unzipDirectory=unpacked,
-            modelIdentifier=interface.modelIdentifier,
-            instanceName=name,
-        )
         native = self.description.modelExchange is not None
         self.error_statuses = (3,) if native else (3, 4)  # pythonfmu turns every exception into fatal
-        if self.version == 2:
-            self.read, self.write = self.fmu.getReal, self.fmu.setReal
-            self._instantiate2(logging)
-        else:
-            self.read, self.write = self.fmu.getFloat64, self.fmu.setFloat64
-            self.fmu.instantiate(
-                loggingOn=logging,
-                logMessage=lambda env, status, category, text: self._log(status, category, text),
-            )
-
-    def _instantiate2(self, logging: bool) -> None:
-        from fmpy import calloc, fmi2, free
-
-        self.callbacks = fmi2.fmi2CallbackFunctions()
-        self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-            lambda env, instance, status, category, text: self._log(status, category, text)
-        )
-        self.callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
-        self.callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
-
-    def _log(self, status: int, category: bytes | None, text: bytes) -> None:
-        self.messages.append(Message(status, text.decode(), (category or b"").decode()))
-
-    def set(self, values: Mapping[str, Any]) -> None:
-        """Set parameters and inputs, one call each."""
-        for name, value in values.items():
-            setter = self.fmu.setBoolean if self.variables[name].type == "Boolean" else self.write
-            setter([self.variables[name].valueReference], [value])
+        two = self.version == 2
+        self.read = self.fmu.getReal if two else self.fmu.getFloat64
+        self.write = self.fmu.setReal if two else self.fmu.setFloat64
+        self.instantiate(logging)
 
     def get(self, *names: str) -> dict[str, float]:
         """Outputs (default: all), inputs or parameters, all in one call."""
@@ -120,11 +75,7 @@ class Fmu:
 
     def begin(self, start: float = 0.0, stop: float | None = None) -> None:
         """Enter initialization mode."""
-        if self.version == 2:
-            self.fmu.setupExperiment(startTime=start, stopTime=stop)
-            self.fmu.enterInitializationMode()
-        else:
-            self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
+        super().begin(start, stop)
         self.time = start
 
     def start(self, values: Mapping[str, Any] | None = None) -> "Fmu":
@@ -136,7 +87,7 @@ class Fmu:
 
     def step(self, size: float = 1.0) -> None:
         """One step."""
-        self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=size)
+        self.advance(self.time, size)
         self.time += size
 
     def at(self, values: Mapping[str, float]) -> dict[str, float]:
@@ -166,10 +117,6 @@ class Fmu:
     def warnings(self) -> list[str]:
         """Texts of all warnings so far."""
         return [m.text for m in self.messages if m.status == 1]
-
-    def free(self) -> None:
-        """Free the instance."""
-        self.fmu.freeInstance()
 
 
 @cache

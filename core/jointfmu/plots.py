@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .parameters import check_writable, write_bytes
+from .files.writing import check_writable, write_bytes
 from .published.reference import ROLES
 from .quantity.units import UNITS, display_unit
 

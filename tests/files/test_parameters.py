@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ORIGINS, default, dump, load, parse_setting, write_text
+from jointfmu.parameters import ORIGINS, default, dump, load, parse_setting
 from jointfmu.quantity import flat_fields, flatten
 
 each_joint = pytest.mark.parametrize("joint", KINDS)

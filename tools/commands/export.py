@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu.commands.common import command, flag, tell
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
-from jointfmu.parameters import ParameterFile, check_writable, default, load, write_text
+from jointfmu.parameters import ParameterFile, default, load
 
 from ..export import exports
 from ..export.forms import ERROR, FORMS, WHAT

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from jointfmu import plots
 from jointfmu.commands.common import Parser, command, flag, tell, written
 from jointfmu.files import columns
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import check_writable, dump, load, write_text
+from jointfmu.parameters import dump, load
 
 from ..drawing.reading import number
 from ..fitting.procedure import Option, Procedure

@@ -7,11 +7,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu.commands.common import command, tell
+from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
-from jointfmu.parameters import check_writable, write_bytes
 
 from ..fields.clamped import clamping
-from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
+from .footprint.finite_elements import (
+    assembly_arguments,
+    joint_file,
+    judge_assembly,
+    with_assembly,
+    without_fem,
+)
 
 if TYPE_CHECKING:
     from ..fem.modes import Modes

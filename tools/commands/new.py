@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu.commands.common import Parser, command, flag, tell
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import check_writable, dump, write_text
+from jointfmu.parameters import dump
 
 from ..drawing.part import Drawing, Option
 from ..joint_parts import part

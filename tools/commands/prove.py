@@ -66,7 +66,7 @@ def _expected(fmu: Path, path: Path) -> Expected:
     """
     from jointfmu_fmu_src.proof import proof
 
-    from jointfmu.run.ramp import unpacked
+    from jointfmu.run.host import unpacked
 
     file = load(path)
     with unpacked(fmu, exchange=True) as (_, description):

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.commands.common import command, without_package
-from jointfmu.parameters import check_writable, load
+from jointfmu.files.writing import check_writable
+from jointfmu.parameters import load
 
 
 def add(commands: Any) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from jointfmu import plots
 from jointfmu.commands.common import command, settings, without_package
 from jointfmu.files import columns
-from jointfmu.parameters import check_writable, write_text
+from jointfmu.files.writing import check_writable, write_text
 
 from ..systems.system import names, system
 

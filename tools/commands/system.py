@@ -8,7 +8,7 @@ from typing import Any
 from jointfmu import plots
 from jointfmu.commands.common import command, without_package
 from jointfmu.files import columns
-from jointfmu.parameters import check_writable, write_text
+from jointfmu.files.writing import check_writable, write_text
 
 from ..systems.system import names, system
 

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.commands.common import command, settings, tell
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, check_writable, default, load, write_text
+from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
 from ..pressing import judge_file

@@ -9,7 +9,7 @@ from jointfmu.commands.common import command
 from jointfmu.published import validation
 
 from ..fem.validation import natural_frequencies
-from .finite_elements import without_fem
+from .footprint.finite_elements import without_fem
 
 
 def add(commands: Any) -> None:

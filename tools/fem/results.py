@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu import plots
-from jointfmu.parameters import check_writable, write_bytes, write_text
+from jointfmu.files.writing import check_writable, write_bytes, write_text
 
 from ..fields import csvfile
 from .bolted_contact import JointSolution

@@ -7,8 +7,8 @@ from pathlib import Path
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import FLAVOURS, build
 
+from jointfmu.files.writing import write_text
 from jointfmu.joints import MODELS
-from jointfmu.parameters import write_text
 from jointfmu.progress import track
 from jointfmu.proof.outcome import Proof
 from jointfmu.proof.run import prove

@@ -12,7 +12,7 @@ from pathlib import Path
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
-from jointfmu.parameters import write_text
+from jointfmu.files.writing import write_text
 from jointfmu.quantity import units
 
 from .describe import described

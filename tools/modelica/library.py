@@ -14,10 +14,11 @@ from jointfmu_fmu_src.partners.laws import POINTS
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, default, write_text
+from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flat_fields
 
 from ..joint_parts import part

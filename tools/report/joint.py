@@ -10,9 +10,10 @@ from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
 from jointfmu.contact.roughness import DECLARED
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ORIGINS, ParameterFile, write_text
+from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import flat_fields
 from jointfmu.quantity.units import factor
 from jointfmu.run.loops import Loops

@@ -8,9 +8,9 @@ from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
 from jointfmu.files.stamp import build_time
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
-from jointfmu.parameters import write_text
 from jointfmu.published.reference import ROLES
 from jointfmu.published.validation import shown_claim, shown_error, shown_tolerance, summary
 

@@ -1,19 +1,19 @@
 """A small master: an inertia or mass on a joint to the ground, as co-simulation of two FMUs (FMI 2.0)."""
 
-import ctypes
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self, TypeVar
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
-from jointfmu.run.ramp import slave, unpacked
+from jointfmu.run.host import opened, unpacked
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 
 class Slave:
@@ -28,50 +28,38 @@ class Slave:
     ) -> None:
         self.messages: list[str] = []
         self._path = path
-        with ExitStack() as opened:
-            folder, description = opened.enter_context(unpacked(path))
-            self._refs = {v.name: v.valueReference for v in description.modelVariables}
+        with ExitStack() as entered:
+            folder, description = entered.enter_context(unpacked(path))
+            known = [v.name for v in description.modelVariables]
             for name in (*start, *inputs, *outputs):
-                if name not in self._refs:
-                    raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(self._refs)}")
-            instance = opened.enter_context(slave(folder, description, self.messages, str(path)))
-            self._fmu = instance.fmu
+                if name not in known:
+                    raise ValueError(f"{path}: unknown name {name!r}, allowed are {', '.join(known)}")
+            self._fmu = entered.enter_context(opened(folder, description, str(path), self.messages))
             try:
-                instance.begin()
-                flags = {n: value for n, value in start.items() if isinstance(value, bool)}
-                numbers = {n: value for n, value in start.items() if n not in flags}
-                self._fmu.setReal([self._refs[n] for n in numbers], list(numbers.values()))
-                self._fmu.setBoolean([self._refs[n] for n in flags], list(flags.values()))
-                self._fmu.exitInitializationMode()
+                self._fmu.begin()
+                self._fmu.set(start)
+                self._fmu.fmu.exitInitializationMode()
             except FMICallException as error:
                 raise ValueError(f"{path}: {self.messages[0] if self.messages else error}") from None
-            self._in, self._out = self._wires(inputs), self._wires(outputs)
-            self._opened = opened.pop_all()
-
-    def _wires(self, names: Sequence[str]) -> tuple[Any, int, Any]:
-        n = len(names)
-        return (ctypes.c_uint * n)(*(self._refs[name] for name in names)), n, (ctypes.c_double * n)()
+            self._in, self._out = self._fmu.reals(inputs), self._fmu.reals(outputs)
+            self._entered = entered.pop_all()
 
     def set(self, *values: float) -> None:
         """Give the inputs their values."""
-        refs, n, room = self._in
-        room[:] = values
-        self._call(self._fmu.fmi2SetReal, refs, n, room)
+        self._call(self._in.set, *values)
 
     def get(self) -> list[float]:
         """The outputs at the present inputs."""
-        refs, n, room = self._out
-        self._call(self._fmu.fmi2GetReal, refs, n, room)
-        return list(room)
+        return self._call(self._out.get)
 
     def step(self, time: float, size: float) -> None:
         """One step."""
-        self._call(self._fmu.fmi2DoStep, time, size, 1)
+        self._call(self._fmu.advance, time, size)
 
-    def _call(self, function: Callable[..., Any], *arguments: Any) -> None:
+    def _call(self, function: Callable[..., T], *arguments: float) -> T:
         """Call a function of the FMU; ValueError with the FMU's reason if it refuses."""
         try:
-            function(self._fmu.component, *arguments)
+            return function(*arguments)
         except FMICallException as error:
             raise ValueError(f"{self._path}: {self.messages[-1] if self.messages else error}") from None
 
@@ -81,7 +69,7 @@ class Slave:
     def __exit__(
         self, error_type: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._opened.close()
+        self._entered.close()
 
 
 def motion(joint: Slave, body: Slave, load: float, step: float, count: int, late: bool = False) -> Array:

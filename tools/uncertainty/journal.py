@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from jointfmu.parameters import made_folder, write_text
+from jointfmu.files.writing import made_folder, write_text
 
 STUDY, RUNS, BANDS = "study.json", "runs.jsonl", "bands.csv"
 FAR = 1 << 40

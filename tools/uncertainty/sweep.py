@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.files import columns
-from jointfmu.parameters import write_text
+from jointfmu.files.writing import write_text
 from jointfmu.progress import track
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.run import ramp
+from jointfmu.run.host import unpacked
 
 from . import journal
 from .cluster import client
@@ -52,7 +53,7 @@ def plan(
     Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
     """
     ramp.steps(drive.to, drive.step)
-    with ramp.unpacked(fmu) as (_, description):
+    with unpacked(fmu) as (_, description):
         variables = {v.name: v for v in description.modelVariables}
     inputs = [v.name for v in variables.values() if v.causality == "input"]
     settable = [v.name for v in variables.values() if v.causality in ("input", "parameter")]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import plots
-from ..parameters import check_writable, write_text
+from ..files.writing import check_writable, write_text
 from ..run import loops, ramp
 from .common import command, flag, settings
 

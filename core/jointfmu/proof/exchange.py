@@ -5,12 +5,13 @@ the FMU announces, where an indicator changes its sign, and where a completed st
 """
 
 import ctypes
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from .task import FLOOR, Rows, Task, description_of, reader
+from ..run.host import Instance, description, opened
+from .task import FLOOR, Rows, Task, reader
 
 MOST_STEPS = 100_000
 """Of the solver between two communication points."""
@@ -20,16 +21,12 @@ NEAR = 1e-9
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy and CVode, FMI 2.0 and 3.0."""
-    from ..run import ramp
-
-    description, variables = description_of(task.fmu)
-    with ramp.slave(task.folder, description, messages, task.fmu, exchange=True) as instance:
+    with opened(task.folder, description(task.fmu), task.fmu, messages, exchange=True) as instance:
         instance.begin(task.times[0])
-        for name, value in {**task.settings, **task.given(0)}.items():
-            instance.set(variables[name], value)
+        instance.set({**task.settings, **task.given(0)})
         instance.fmu.exitInitializationMode()
-        motion = _Motion(instance, description, variables, task)
-        read = reader(instance, variables, task.outputs)
+        motion = _Motion(instance, task)
+        read = reader(instance, task.outputs)
         rows: Rows = [read()]
         for i in range(len(task.times) - 1):
             motion.over(i)
@@ -40,11 +37,12 @@ def fmpy(task: Task, messages: list[str]) -> Rows:
 class _Motion:
     """An FMU in continuous time."""
 
-    def __init__(self, instance: Any, description: Any, variables: Mapping[str, Any], task: Task) -> None:
+    def __init__(self, instance: Instance, task: Task) -> None:
         from fmpy.sundials import CVodeSolver
 
-        self.instance, self.fmu, self.variables, self.task = instance, instance.fmu, variables, task
-        self.accepts = description.modelExchange.needsCompletedIntegratorStep
+        self.instance, self.fmu, self.task = instance, instance.fmu, task
+        described, variables = instance.description, instance.variables
+        self.accepts = described.modelExchange.needsCompletedIntegratorStep
         self.continuous = [
             name
             for name in task.inputs
@@ -54,8 +52,8 @@ class _Motion:
         self.failure: Exception | None = None
         self._settle()
         self.solver = CVodeSolver(
-            nx=description.numberOfContinuousStates,
-            nz=description.numberOfEventIndicators,
+            nx=described.numberOfContinuousStates,
+            nz=described.numberOfEventIndicators,
             get_x=self._kept(self.fmu.getContinuousStates),
             set_x=self._kept(self.fmu.setContinuousStates),
             get_dx=self._kept(instance.rates),
@@ -87,8 +85,8 @@ class _Motion:
             jumps = end - self.time <= near and self._jumps(interval + 1)
             if wanted or jumps or np.any(roots) or self.time >= self.event:
                 self.fmu.enterEventMode()
-                for name, value in self.task.given(interval + 1).items() if jumps else ():
-                    self.instance.set(self.variables[name], value)
+                if jumps:
+                    self.instance.set(self.task.given(interval + 1))
                 self._settle()
                 self.solver.reset(self.time)
 
@@ -120,7 +118,7 @@ class _Motion:
         for name in self.continuous:
             first, last = self.task.inputs[name][i], self.task.before[name][i + 1]
             value = first if first == last else (1.0 - part) * first + part * last
-            self.instance.set(self.variables[name], value)
+            self.instance.set({name: value})
 
     def _nominals(self, values: Any, count: int) -> None:
         """Sizes below which round-off counts, as for what is compared."""

@@ -7,40 +7,33 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ..run.host import description, opened
 from . import exchange
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE
-from .task import Execute, Rows, Task, description_of, reader
+from .task import Execute, Rows, Task, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy, FMI 2.0 and 3.0."""
-    from ..run import ramp
-
-    description, variables = description_of(task.fmu)
-    with ramp.slave(task.folder, description, messages, task.fmu) as slave:
+    with opened(task.folder, description(task.fmu), task.fmu, messages) as slave:
         slave.begin(task.times[0])
-        for name, value in {**task.settings, **task.given(0)}.items():
-            slave.set(variables[name], value)
+        slave.set({**task.settings, **task.given(0)})
         slave.fmu.exitInitializationMode()
-        read = reader(slave, variables, task.outputs)
+        read = reader(slave, task.outputs)
         rows: Rows = [read()]
         for i, time in enumerate(task.times[:-1]):
-            for name, value in task.given(i).items():
-                slave.set(variables[name], value)
-            slave.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=task.times[i + 1] - time)
+            slave.set(task.given(i))
+            slave.advance(time, task.times[i + 1] - time)
             rows.append(read())
     return rows
 
 
 def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
     """What the FMU starts the variables `task.outputs` of any type with, by fmpy; one row."""
-    from ..run import ramp
-
-    description, variables = description_of(task.fmu)
     exchanged = task.interface == MODEL_EXCHANGE
-    with ramp.slave(task.folder, description, messages, task.fmu, exchanged) as slave:
+    with opened(task.folder, description(task.fmu), task.fmu, messages, exchanged) as slave:
         slave.begin()
-        return [[slave.read(variables[name]) for name in task.outputs]]
+        return [[slave.value(name) for name in task.outputs]]
 
 
 def ecos(task: Task, messages: list[str]) -> Rows:
@@ -118,7 +111,7 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
 
 def _known(task: Task) -> None:
     """Raise ValueError for a variable of a type that ecos leaves as it is and libcosim does not list."""
-    _, variables = description_of(task.fmu)
+    variables = {v.name: v for v in description(task.fmu).modelVariables}
     for name in (*task.settings, *task.inputs, *task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):
             raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")

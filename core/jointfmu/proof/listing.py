@@ -9,7 +9,8 @@ import zipfile
 from pathlib import Path
 from typing import Any
 
-from ..parameters import made_folder, write_bytes
+from ..files.writing import made_folder, write_bytes
+from ..run import host
 from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
@@ -24,13 +25,11 @@ def write(proof: Proof, out: Path) -> list[Path]:
 
     Raises ValueError if no experiment fits, or the folder cannot be written.
     """
-    from fmpy import read_model_description
-
-    description = read_model_description(str(proof.fmu), validate=False)
-    files = _files(proof, _chosen(proof), description)
-    tool, _, version = (description.generationTool or "unknown").rpartition(" ")
-    below = [_safe(tool or version), _safe(version), _safe(description.modelName)]
-    version = description.fmiVersion[:3]
+    described = host.description(proof.fmu)
+    files = _files(proof, _chosen(proof), described)
+    tool, _, version = (described.generationTool or "unknown").rpartition(" ")
+    below = [_safe(tool or version), _safe(version), _safe(described.modelName)]
+    version = described.fmiVersion[:3]
     folders = [out.joinpath("fmus", version, "cs", p, *below) for p in _platforms(proof.fmu, version)]
     for folder in folders:
         with made_folder(folder):

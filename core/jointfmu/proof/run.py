@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..progress import track
-from ..run import ramp
+from ..run.host import unpacked
 from .importers import PACKAGES, VERSIONS, interfaces
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof
@@ -45,7 +45,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
             f"the package {PACKAGES[importer]} is missing, needed to run FMUs in {importer}; "
             "install it with: pip install 'jointfmu[test]'"
         )
-    with ramp.unpacked(fmu, exchange=True) as (folder, description):
+    with unpacked(fmu, exchange=True) as (folder, description):
         if description.fmiVersion[0] not in VERSIONS[importer]:
             raise ValueError(
                 f"{fmu}: is of FMI {description.fmiVersion}, {importer} takes "

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..run.host import Instance
 from .values import REAL
 
 FLOOR = 1e-6
@@ -60,18 +61,8 @@ Execute = Callable[[Task, list[str]], Rows]
 """(task, messages, to which those of the FMU are added) -> outputs."""
 
 
-def reader(instance: Any, variables: Mapping[str, Any], outputs: Sequence[str]) -> Callable[[], list[float]]:
-    """What reads outputs of an instance in fmpy, real numbers in one call."""
-    chosen = [variables[name] for name in outputs]
-    if all(v.type in REAL for v in chosen):
-        references = [v.valueReference for v in chosen]
-        return lambda: list(instance.get(references))
-    return lambda: [float(instance.read(v)) for v in chosen]
-
-
-def description_of(fmu: str) -> tuple[Any, dict[str, Any]]:
-    """fmpy's model description of an FMU, and its variables by name."""
-    from fmpy import read_model_description
-
-    description = read_model_description(fmu, validate=False)
-    return description, {v.name: v for v in description.modelVariables}
+def reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[float]]:
+    """What reads outputs of an instance, real numbers in one call."""
+    if all(instance.variables[name].type in REAL for name in outputs):
+        return instance.reals(outputs).get
+    return lambda: [float(instance.value(name)) for name in outputs]

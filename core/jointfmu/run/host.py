@@ -1,94 +1,241 @@
-"""fmpy's instances of FMI 2.0 and 3.0 behind one face: start, set, get."""
+"""The one host of FMUs, on fmpy: FMI 2.0 and 3.0, co-simulation and model exchange, variables by name."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+import os
+import shutil
+import sys
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from ctypes import c_double, c_uint
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
 
-from fmpy import calloc, fmi2, fmi3, free
 
-Log = Callable[[bytes], None]
+class Message(NamedTuple):
+    """What an FMU logs; status 0 is an event, 1 a warning, 3 an error."""
+
+    status: int
+    text: str
+    category: str
 
 
-class Fmi2:
-    """An instance of FMI 2.0, for co-simulation or model exchange."""
+class Instance:
+    """An instance of an FMU that is unpacked in a folder; `description` is fmpy's.
 
-    def __init__(self, exchange: bool = False, **options: Any) -> None:
-        self.fmu = (fmi2.FMU2Model if exchange else fmi2.FMU2Slave)(**options)
+    fmu   : fmpy's own object, for what has no name here
+    lines : warnings and errors are appended here as they come, one line each; `messages` has everything
 
-    def start(self, log: Log) -> None:
-        """Instantiate with logging on; `log` gets what is more than an event."""
+    Raises what fmpy and ctypes raise: if the library cannot be loaded, and in every call that fails.
+    """
+
+    def __init__(
+        self, folder: str, description: Any, name: str, exchange: bool, lines: list[str] | None = None
+    ) -> None:
+        from fmpy import fmi2, fmi3
+
+        self.description = description
+        self.variables = {v.name: v for v in description.modelVariables}
+        self.version = int(description.fmiVersion[0])
+        self.exchange = exchange
+        self.messages: list[Message] = []
+        self._lines = [] if lines is None else lines
+        kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
+        interface = description.modelExchange if exchange else description.coSimulation
+        self.fmu: Any = kinds[self.version][exchange](
+            guid=description.guid,
+            unzipDirectory=folder,
+            modelIdentifier=interface.modelIdentifier,
+            instanceName=name,
+        )
+
+    def instantiate(self, logging: bool = True) -> None:
+        """Instantiate; errors and warnings are logged even if logging is off."""
+        from fmpy import calloc, fmi2, free
+
+        if self.version == 3:
+            self.fmu.instantiate(
+                loggingOn=logging,
+                logMessage=lambda env, status, category, text: self._log(status, category, text),
+            )
+            return
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-            lambda env, instance, status, category, message: log(message) if status else None
+            lambda env, instance, status, category, text: self._log(status, category, text)
         )
         callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        self.fmu.instantiate(callbacks=callbacks, loggingOn=True)
+        self.fmu.instantiate(callbacks=callbacks, loggingOn=logging)
 
-    def begin(self, start: float = 0.0) -> None:
+    def _log(self, status: int, category: bytes | None, text: bytes) -> None:
+        shown = text.decode("utf-8", "replace")
+        self.messages.append(Message(status, shown, (category or b"").decode("utf-8", "replace")))
+        if status:
+            self._lines.append(" ".join(shown.split()))
+
+    def begin(self, start: float = 0.0, stop: float | None = None) -> None:
         """Enter initialization at a time [s]."""
-        self.fmu.setupExperiment(startTime=start)
-        self.fmu.enterInitializationMode()
+        if self.version == 2:
+            self.fmu.setupExperiment(startTime=start, stopTime=stop)
+            self.fmu.enterInitializationMode()
+        else:
+            self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
 
-    def set(self, variable: Any, value: Any) -> None:
-        """Set a variable."""
-        getattr(self.fmu, f"set{_plain(variable)}")([variable.valueReference], [value])
+    def set(self, values: Mapping[str, Any]) -> None:
+        """Set variables of any type, one call each."""
+        for name, value in values.items():
+            getattr(self.fmu, f"set{self._type(name)}")([self.variables[name].valueReference], [value])
 
-    def read(self, variable: Any) -> Any:
-        """Value of a variable."""
-        return getattr(self.fmu, f"get{_plain(variable)}")([variable.valueReference])[0]
+    def value(self, name: str) -> Any:
+        """Value of a variable of any type."""
+        return getattr(self.fmu, f"get{self._type(name)}")([self.variables[name].valueReference])[0]
 
-    def get(self, references: Sequence[int]) -> list[float]:
-        """Values of Real variables."""
-        return list(self.fmu.getReal(references))
+    def _type(self, name: str) -> str:
+        """The type by which a variable is set; values of an enumeration are whole numbers."""
+        own = str(self.variables[name].type)
+        return own if own != "Enumeration" else "Integer" if self.version == 2 else "Int64"
+
+    def reals(self, names: Sequence[str]) -> "Reals":
+        """Some real variables, to be set or read in one call."""
+        return Reals(self, names)
+
+    def advance(self, time: float, size: float) -> None:
+        """One step [s] of co-simulation."""
+        self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=size)
 
     @property
     def rates(self) -> Callable[..., Any]:
         """What gives the derivatives of the continuous states."""
-        return self.fmu.getDerivatives  # type: ignore[no-any-return]
+        two = self.version == 2
+        return self.fmu.getDerivatives if two else self.fmu.getContinuousStateDerivatives  # type: ignore[no-any-return]
 
     def update(self) -> tuple[Any, ...]:
         """One event iteration: whether another is needed, whether to end, ... the next event's time."""
-        return tuple(self.fmu.newDiscreteStates())
+        return tuple(self.fmu.newDiscreteStates() if self.version == 2 else self.fmu.updateDiscreteStates())
+
+    def free(self) -> None:
+        """Free the instance."""
+        self.fmu.freeInstance()
 
 
-class Fmi3:
-    """An instance of FMI 3.0, for co-simulation or model exchange."""
+class Reals:
+    """Real variables of an instance, in arrays that stay from call to call."""
 
-    def __init__(self, exchange: bool = False, **options: Any) -> None:
-        self.fmu = (fmi3.FMU3Model if exchange else fmi3.FMU3Slave)(**options)
-
-    def start(self, log: Log) -> None:
-        """Instantiate; errors and warnings are logged."""
-        self.fmu.instantiate(
-            logMessage=lambda env, status, category, message: log(message) if status else None
+    def __init__(self, instance: Instance, names: Sequence[str]) -> None:
+        n = len(names)
+        references = (c_uint * n)(*(instance.variables[name].valueReference for name in names))
+        self._values = (c_double * n)()
+        fmu, lengths = instance.fmu, () if instance.version == 2 else (n,)
+        self._arguments = (fmu.component, references, n, self._values, *lengths)
+        self._set, self._get = (
+            (fmu.fmi2SetReal, fmu.fmi2GetReal)
+            if instance.version == 2
+            else (fmu.fmi3SetFloat64, fmu.fmi3GetFloat64)
         )
 
-    def begin(self, start: float = 0.0) -> None:
-        """Enter initialization at a time [s]."""
-        self.fmu.enterInitializationMode(startTime=start)
+    def set(self, *values: float) -> None:
+        """Give them these values."""
+        self._values[:] = list(values)
+        self._set(*self._arguments)
 
-    def set(self, variable: Any, value: Any) -> None:
-        """Set a variable."""
-        getattr(self.fmu, f"set{_plain(variable, 'Int64')}")([variable.valueReference], [value])
-
-    def read(self, variable: Any) -> Any:
-        """Value of a variable."""
-        return getattr(self.fmu, f"get{_plain(variable, 'Int64')}")([variable.valueReference])[0]
-
-    def get(self, references: Sequence[int]) -> list[float]:
-        """Values of Float64 variables."""
-        return list(self.fmu.getFloat64(references))
-
-    @property
-    def rates(self) -> Callable[..., Any]:
-        """What gives the derivatives of the continuous states."""
-        return self.fmu.getContinuousStateDerivatives  # type: ignore[no-any-return]
-
-    def update(self) -> tuple[Any, ...]:
-        """One event iteration: whether another is needed, whether to end, ... the next event's time."""
-        return tuple(self.fmu.updateDiscreteStates())
+    def get(self) -> list[float]:
+        """Their values."""
+        self._get(*self._arguments)
+        return list(self._values)
 
 
-def _plain(variable: Any, whole: str = "Integer") -> str:
-    """The type by which a variable is set; values of an enumeration are whole numbers."""
-    return whole if variable.type == "Enumeration" else str(variable.type)
+@contextmanager
+def opened(
+    folder: str, described: Any, source: str, lines: list[str], exchange: bool = False
+) -> Iterator[Instance]:
+    """An instance of an unpacked FMU, freed afterwards; its warnings and errors are appended to `lines`.
+
+    Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
+    RuntimeError if it does not instantiate.
+    """
+    before = Path.cwd()
+    try:
+        instance = Instance(folder, described, "host", exchange, lines)
+    except Exception as error:  # fmpy raises bare Exception, ctypes its own
+        os.chdir(before)  # where fmpy has left it
+        reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
+        raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
+    try:
+        instance.instantiate()
+    except Exception as error:  # fmpy raises bare Exception
+        raise RuntimeError(f"{source}: {lines[-1] if lines else error}") from None
+    try:
+        yield instance
+    finally:
+        instance.free()
+
+
+def description(fmu: str | Path) -> Any:
+    """fmpy's model description of an FMU, not validated."""
+    from fmpy import read_model_description
+
+    return read_model_description(str(fmu), validate=False)
+
+
+@contextmanager
+def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any]]:
+    """Folder and fmpy model description of an FMU, removed afterwards.
+
+    exchange : whether it may be for model exchange only
+
+    Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
+    version of FMI, not for co-simulation, or for other platforms.
+    """
+    from fmpy import extract
+
+    path = Path(fmu)
+    if not path.is_file():
+        raise ValueError(f"{path}: there is no such file; expected an FMU")
+    try:
+        version = _fmi_version(path)
+        if known := version.startswith(("2.", "3.")):
+            described = description(path)
+            folder = extract(str(path))
+    except (zipfile.BadZipFile, KeyError, OSError) as error:
+        raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
+    except Exception as error:  # fmpy raises bare Exception for a broken description
+        raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
+    if not known:
+        raise ValueError(f"{path}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
+    try:
+        _check_interface(described, path, exchange)
+        _check_python_flavour(Path(folder) / "resources", path)
+        yield folder, described
+    finally:
+        while (resources := str(Path(folder) / "resources")) in sys.path:
+            sys.path.remove(resources)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _fmi_version(path: Path) -> str:
+    """The version of FMI, before fmpy reads the rest: it stumbles over what FMI 1.0 leaves out."""
+    with zipfile.ZipFile(path) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    return root.get("fmiVersion", "none")
+
+
+def _check_interface(described: Any, source: Path, exchange: bool) -> None:
+    """Refuse what cannot be driven: no such interface, no binary for this platform."""
+    from fmpy import platform, supported_platforms
+
+    if described.coSimulation is None and not (exchange and described.modelExchange):
+        raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
+    if platform not in (built_for := supported_platforms(str(source))):
+        raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
+
+
+def _check_python_flavour(resources: Path, source: Path) -> None:
+    """Refuse a pythonfmu FMU without the files whose absence its library answers with a crash."""
+    if not (resources / "pythonfmu").is_dir():
+        return
+    entry = resources / "slavemodule.txt"
+    if not entry.is_file():
+        raise ValueError(f"{source}: is no complete FMU; resources/slavemodule.txt is missing")
+    script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
+    if not script.is_file():
+        raise ValueError(f"{source}: is no complete FMU; resources/{script.name} is missing")

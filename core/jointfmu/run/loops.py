@@ -12,6 +12,7 @@ from ..files import columns
 from ..files.columns import Array
 from ..quantity import units
 from . import ramp
+from .host import unpacked
 
 SHAPES = ("triangle", "sine")
 POINTS, CYCLES = 200, 2
@@ -188,7 +189,7 @@ def run(
     Raises ValueError as `ramp.run`, for a swing that is none, or where no output is conjugate to the input.
     """
     points = [swing.along(amplitude) for amplitude in amplitudes]
-    with ramp.unpacked(fmu) as (_, description):
+    with unpacked(fmu) as (_, description):
         output = conjugate(*variables(description), input_name, output, str(fmu))
     return of([ramp.along(fmu, input_name, each, settings) for each in points], input_name, output, swing)
 

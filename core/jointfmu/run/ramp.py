@@ -1,21 +1,16 @@
 """Load ramps: any of the FMUs driven through fmpy from zero, every output read at every point."""
 
-import os
-import shutil
-import sys
-import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..files import columns
 from ..progress import track
+from .host import opened, unpacked
 
 Array = NDArray[np.float64]
 
@@ -71,8 +66,8 @@ def run(
 
     Raises
     ------
-    ValueError   : the path is no FMU that can be driven (`unpacked`, `slave`), a name is unknown, a value
-        is impossible, or the FMU refuses a value (the message is the FMU's own)
+    ValueError   : the path is no FMU that can be driven (`unpacked`, `opened` of `host`), a name is unknown,
+        a value is impossible, or the FMU refuses a value (the message is the FMU's own)
     RuntimeError : the FMU does not instantiate
     """
     return along(fmu, input_name, steps(to, step), settings)
@@ -87,73 +82,9 @@ def along(
 
 
 def units(fmu: str | Path) -> dict[str, str]:
-    """{variable: its unit} of an FMU; ValueError as `unpacked`."""
+    """{variable: its unit} of an FMU; ValueError as `host.unpacked`."""
     with unpacked(fmu) as (_, description):
         return {v.name: v.unit or "1" for v in description.modelVariables}
-
-
-@contextmanager
-def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any]]:
-    """Folder and fmpy model description of an FMU, removed afterwards.
-
-    exchange : whether it may be for model exchange only
-
-    Raises ValueError if there is no such file, it is no FMU, or none that can be driven here: of another
-    version of FMI, not for co-simulation, or for other platforms.
-    """
-    from fmpy import extract, read_model_description
-
-    path = Path(fmu)
-    if not path.is_file():
-        raise ValueError(f"{path}: there is no such file; expected an FMU")
-    try:
-        version = _fmi_version(path)
-        if known := version.startswith(("2.", "3.")):
-            description = read_model_description(str(path), validate=False)
-            folder = extract(str(path))
-    except (zipfile.BadZipFile, KeyError, OSError) as error:
-        raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
-    except Exception as error:  # fmpy raises bare Exception for a broken description
-        raise ValueError(f"{path}: is no FMU ({str(error).splitlines()[0]})") from None
-    if not known:
-        raise ValueError(f"{path}: is an FMU of FMI {version}, allowed are 2.0 and 3.0")
-    try:
-        _check_interface(description, path, exchange)
-        _check_python_flavour(Path(folder) / "resources", path)
-        yield folder, description
-    finally:
-        while (resources := str(Path(folder) / "resources")) in sys.path:
-            sys.path.remove(resources)
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _fmi_version(path: Path) -> str:
-    """The version of FMI, before fmpy reads the rest: it stumbles over what FMI 1.0 leaves out."""
-    with zipfile.ZipFile(path) as archive:
-        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    return root.get("fmiVersion", "none")
-
-
-def _check_interface(description: Any, source: Path, exchange: bool) -> None:
-    """Refuse what cannot be driven: no such interface, no binary for this platform."""
-    from fmpy import platform, supported_platforms
-
-    if description.coSimulation is None and not (exchange and description.modelExchange):
-        raise ValueError(f"{source}: has no co-simulation; expected an FMU for co-simulation")
-    if platform not in (built_for := supported_platforms(str(source))):
-        raise ValueError(f"{source}: has no binary for {platform}, only for {', '.join(built_for) or 'none'}")
-
-
-def _check_python_flavour(resources: Path, source: Path) -> None:
-    """Refuse a pythonfmu FMU without the files whose absence its library answers with a crash."""
-    if not (resources / "pythonfmu").is_dir():
-        return
-    entry = resources / "slavemodule.txt"
-    if not entry.is_file():
-        raise ValueError(f"{source}: is no complete FMU; resources/slavemodule.txt is missing")
-    script = resources / f"{entry.read_text(encoding='utf-8').strip()}.py"
-    if not script.is_file():
-        raise ValueError(f"{source}: is no complete FMU; resources/{script.name} is missing")
 
 
 def _drive(
@@ -176,56 +107,20 @@ def _drive(
             raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []
-    with slave(folder, md, messages, source) as fmu:
+    with opened(folder, md, source, messages) as fmu:
         try:
             fmu.begin()
-            for name, value in settings.items():
-                fmu.set(variables[name], value)
-            fmu.set(variables[input_name], points[0])
+            fmu.set({**settings, input_name: points[0]})
             fmu.fmu.exitInitializationMode()
-            references = [v.valueReference for v in outputs]
+            driven, read = fmu.reals([input_name]), fmu.reals([v.name for v in outputs])
             for i, value in enumerate(track(points, Path(source).stem, len(points))):
-                fmu.set(variables[input_name], value)
+                driven.set(value)
                 if i:
-                    fmu.fmu.doStep(currentCommunicationPoint=float(i - 1), communicationStepSize=1.0)
-                rows.append(fmu.get(references))
+                    fmu.advance(float(i - 1), 1.0)
+                rows.append(read.get())
         except Exception as error:
             raise ValueError(f"{source}: {messages[0] if messages else error}") from None
     table = np.asarray(rows).reshape(len(points), len(outputs))
     columns = {input_name: points} | {v.name: table[:, i] for i, v in enumerate(outputs)}
     units = {name: variables[name].unit or "1" for name in columns}
     return RampResult(columns, units, tuple(messages))
-
-
-@contextmanager
-def slave(folder: str, md: Any, messages: list[str], source: str, exchange: bool = False) -> Iterator[Any]:
-    """An instance for co-simulation or model exchange; what it logs is appended to `messages`.
-
-    Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
-    RuntimeError if it does not instantiate.
-    """
-    from . import host
-
-    flavour = host.Fmi2 if md.fmiVersion.startswith("2") else host.Fmi3
-    interface = md.modelExchange if exchange else md.coSimulation
-    before = Path.cwd()
-    try:
-        fmu = flavour(
-            exchange,
-            guid=md.guid,
-            unzipDirectory=folder,
-            modelIdentifier=interface.modelIdentifier,
-            instanceName="ramp",
-        )
-    except Exception as error:  # fmpy raises bare Exception, ctypes its own
-        os.chdir(before)  # where fmpy has left it
-        reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
-        raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
-    try:
-        fmu.start(lambda text: messages.append(" ".join(text.decode("utf-8", "replace").split())))
-    except Exception as error:  # fmpy raises bare Exception
-        raise RuntimeError(f"{source}: {messages[-1] if messages else error}") from None
-    try:
-        yield fmu
-    finally:
-        fmu.fmu.freeInstance()

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
 from jointfmu.commands.common import Parser, command, tell
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
-from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
+from jointfmu.parameters import ParameterFile, dump
 
-from ..finite_elements import joint_file
 from . import compute as footprint_compute
+from .finite_elements import joint_file
 
 if TYPE_CHECKING:
     from ...fields.contact import ContactField

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
 from jointfmu.commands.common import command, tell
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.parameters import ParameterFile, check_writable, dump, write_text
+from jointfmu.parameters import ParameterFile, dump
 
-from ..finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
 
 if TYPE_CHECKING:
     from ...fem.bolted_contact import JointSolution

@@ -6,8 +6,9 @@ from typing import Any
 
 from jointfmu import plots
 from jointfmu.commands.common import IMPLIED, Parser, command, written
+from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ParameterFile, check_writable, default, dump, load, write_text
+from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu.commands.common import command
-from jointfmu.parameters import check_writable, write_text
+from jointfmu.files.writing import check_writable, write_text
 
 from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights

@@ -9,12 +9,12 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
-from ..drawing.proof import proof_load
-from ..fields.clamped import clamped
-from ..pressing import overload
+from ...drawing.proof import proof_load
+from ...fields.clamped import clamped
+from ...pressing import overload
 
 if TYPE_CHECKING:
-    from ..fem.geometry import Assembly
+    from ...fem.geometry import Assembly
 
 
 def assembly_arguments(sub: argparse.ArgumentParser) -> None:
