@@ -3,13 +3,12 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, without_package
+from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.parameters import check_writable, load
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = (
         "write a page about one joint: curves, loops, friction, sources of its numbers, how far to trust it"
