@@ -6,7 +6,7 @@ A joint's folder of `jointfmu_fmu_src.joints` fills in `Parts`; the builders abo
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .data import DataPart
 from .page import Panel
@@ -16,7 +16,7 @@ from .terminals import Terminal
 if TYPE_CHECKING:
     from .native import NativePart
 
-Drawing = Callable[[Any, float], Sequence[Plot]]
+Drawing = Callable[..., Sequence[Plot]]
 """(spring, end of the ramp) -> plots in a row."""
 
 

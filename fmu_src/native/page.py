@@ -8,7 +8,7 @@ import numpy as np
 from jinja2 import Template
 
 from jointfmu import __version__
-from jointfmu.joints.model import Model
+from jointfmu.joints.model import Model, Spring
 from jointfmu.parameters import ParameterFile
 from jointfmu.plots import BLUE, GREEN, RED
 from jointfmu.quantity import flat_fields, problem
@@ -100,7 +100,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
     return rows
 
 
-def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
+def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:
     """(level, example, meaning) of what an instance may log."""
     name, item = next(iter(model.parameter_fields().items()))
     v = model.inputs[0]
@@ -129,7 +129,7 @@ def _messages(model: Model, spring: Any, rest: Mapping[str, float]) -> list[tupl
     ]
 
 
-def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]:
+def _warnings(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[str]:
     """An example of every warning: the end of the ramp, with one variable a tenth beyond its interval."""
     inputs = {**rest, model.ramp.input: model.ramp.end}
     values = inputs | evaluated(model, spring, inputs)
@@ -141,7 +141,7 @@ def _warnings(model: Model, spring: Any, rest: Mapping[str, float]) -> list[str]
     return warnings
 
 
-def evaluated(model: Model, spring: Any, inputs: Mapping[str, float]) -> dict[str, float]:
+def evaluated(model: Model, spring: Spring, inputs: Mapping[str, float]) -> dict[str, float]:
     """All outputs of a tabulated joint at inputs."""
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
@@ -152,7 +152,7 @@ def panels(model: Model) -> tuple[Panel, ...]:
     return own or (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
 
-def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
+def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
     """The load ramp, evaluated by the package; the other inputs stay at rest, their start values."""
     ramp = model.ramp.end * np.linspace(0.0, 1.0, _POINTS) ** 2  # dense where the curves bend
     points = [{**rest, model.ramp.input: float(x)} for x in ramp]
@@ -173,7 +173,7 @@ def _figure(model: Model, spring: Any, rest: Mapping[str, float]) -> str:
     return svg(plots)
 
 
-def drawings(model: Model, spring: Any) -> dict[str, str]:
+def drawings(model: Model, spring: Spring) -> dict[str, str]:
     """Further ones, as SVG by name."""
     named = parts_of(model).drawings.get(model.name, {})
     return {name: svg(plots(spring, model.ramp.end)) for name, plots in named.items()}

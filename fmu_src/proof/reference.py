@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.model import Model
+from jointfmu.joints.model import Model, Outputs, Spring
 from jointfmu.parameters import ParameterFile
 from jointfmu.proof.series import Series
 
@@ -64,7 +64,7 @@ def results(model: Model, values: Any, start: Mapping[str, float], drive: Drive)
     return Series(drive.instants, outputs)
 
 
-def _rows(model: Model, spring: Any, inputs: dict[str, float], drive: Drive) -> list[Mapping[str, Any]]:
+def _rows(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive) -> list[Outputs]:
     if model.states:
         return _moving(model, spring, inputs, drive)
     memory = None if model.rest is None else model.rest(spring)
@@ -79,7 +79,7 @@ def _rows(model: Model, spring: Any, inputs: dict[str, float], drive: Drive) -> 
     return rows
 
 
-def _moving(model: Model, spring: Any, inputs: dict[str, float], drive: Drive) -> list[Mapping[str, Any]]:
+def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive) -> list[Outputs]:
     """The motion of a model with states under inputs that rest, by an integration far finer than any step."""
     from scipy.integrate import solve_ivp
 

@@ -19,7 +19,7 @@ from jointfmu import __version__
 from jointfmu.files.stamp import build_time
 from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
-from jointfmu.joints.model import Memory, Model
+from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import load
 from jointfmu.quantity import build
 
@@ -88,7 +88,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.initialized = False
         self.warned: set[int] = set()
         self.way: Way | None = None
-        self._spring: Any = None
+        self._spring: Spring | None = None
         self._outputs: dict[str, float] | None = None
         self._memory: Memory | None = None
         self._register()
@@ -171,7 +171,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         if self._memory is not None and (self.way is None or inputs != self.way.inputs):
             self.way = Way(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
 
-    def spring(self) -> Any:
+    def spring(self) -> Spring:
         """The tabulated joint of the present parameters."""
         if self._spring is None:
             parameters = {name: self.values[name] for name in self.start}

@@ -3,16 +3,15 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, tell, without_package
+from jointfmu.commands.common import Commands, command, tell, without_package
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 
 from ..pressing import judge_file
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "build", _build, "build FMUs")
     make.add_argument(

@@ -4,7 +4,7 @@ import argparse
 import json
 from typing import Any
 
-from jointfmu.commands.common import command
+from jointfmu.commands.common import Commands, command
 from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
@@ -12,7 +12,7 @@ from ..catalogue import Column, Item
 from ..joint_parts import part
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
     sub.add_argument("word", nargs="?", default="", metavar="WORD", help="part of a name, as CSG-17 or 100")

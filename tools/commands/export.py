@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import command, flag, tell
+from jointfmu.commands.common import Commands, command, flag, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
@@ -28,7 +28,7 @@ _ABOVE = {
 _SI = {"K_": "N/m", "C_": "N.s/m"}
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     export = command(commands, "export", _export, "write the joint for another solver")
     with_springs = exports.able("springs")

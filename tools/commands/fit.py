@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import Parser, command, flag, tell, written
+from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..fitting.outcome import Outcome, Picture
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command and what the joints are fitted to."""
     text = "fit a joint's parameters to a measured curve or a catalogue row"
     top = commands.add_parser("fit", help=text, description=text)
@@ -45,7 +45,7 @@ def _procedures() -> dict[str, dict[str, Procedure]]:
     return found
 
 
-def _declare(procedures: Any, choices: Mapping[str, Procedure]) -> None:
+def _declare(procedures: Commands, choices: Mapping[str, Procedure]) -> None:
     """Declare the procedures of one name: what all share, and their own options."""
     first = next(iter(choices.values()))
     text = "; ".join(procedure.text for procedure in choices.values())

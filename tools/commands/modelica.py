@@ -3,9 +3,8 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, flag, tell, without_package
+from jointfmu.commands.common import Commands, command, flag, tell, without_package
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
@@ -14,7 +13,7 @@ from jointfmu.parameters import ParameterFile, load
 from ..pressing import judge_file
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
     make.add_argument("--params", type=Path, metavar="FILE", help="parameter file of one joint (TOML)")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import command, tell
+from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
@@ -26,7 +26,7 @@ MOST = 40
 """Most modes that are asked for."""
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
     sub = command(commands, "modes", run, text)

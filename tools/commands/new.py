@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Parser, command, flag, tell
+from jointfmu.commands.common import Commands, Parser, command, flag, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import dump
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..drawing.part import NewJoint
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command, the joints that it makes, and the tables."""
     text = "make a joint's parameter file from what stands on its drawing"
     top = commands.add_parser("new", help=text, description=text)
@@ -32,7 +32,7 @@ def add(commands: Any) -> None:
         command(things, name, partial(_table, rows), f"print the {name} that drawings may name")
 
 
-def _declare(things: Any, name: str, drawing: Drawing) -> None:
+def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     """Declare one joint."""
     sub = command(things, name, partial(_make, drawing), f"make {drawing.text}")
     sub.example = f"new {name} {drawing.example} --out my.toml"

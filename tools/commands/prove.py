@@ -4,9 +4,8 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command
+from jointfmu.commands.common import Commands, command
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.proof import listing, report
@@ -14,7 +13,7 @@ from jointfmu.proof.importers import IMPORTERS
 from jointfmu.proof.run import Expected, prove
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run the experiments that an FMU carries (FMI-LS-REF) and compare with its reference results"
     sub = command(commands, "prove", _prove, text)

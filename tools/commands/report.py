@@ -3,14 +3,13 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, without_package
+from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files.writing import check_writable
 from jointfmu.parameters import load
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = (
         "write a page about one joint: curves, loops, friction, sources of its numbers, how far to trust it"

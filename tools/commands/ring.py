@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from jointfmu import plots
-from jointfmu.commands.common import command, settings, without_package
+from jointfmu.commands.common import Commands, command, settings, without_package
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
 
 from ..systems.system import names, system
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)

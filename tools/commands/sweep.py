@@ -4,14 +4,13 @@ import argparse
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, settings
+from jointfmu.commands.common import Commands, command, settings
 
 from .uncertainty import SYNTAX
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     many = command(
         commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"

@@ -3,17 +3,16 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
 from jointfmu import plots
-from jointfmu.commands.common import command, without_package
+from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
 
 from ..systems.system import names, system
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)

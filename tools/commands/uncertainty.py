@@ -4,9 +4,8 @@ import argparse
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command, settings, tell
+from jointfmu.commands.common import Commands, command, settings, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
@@ -21,7 +20,7 @@ SYNTAX = (
 )
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     study = command(
         commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"

@@ -3,16 +3,15 @@
 import argparse
 import json
 from dataclasses import asdict
-from typing import Any
 
-from jointfmu.commands.common import command
+from jointfmu.commands.common import Commands, command
 from jointfmu.published import validation
 
 from ..fem.validation import natural_frequencies
 from .footprint.finite_elements import without_fem
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     sub = command(commands, "validate", _validate, "compare every published number with the computed one")
     sub.add_argument(

@@ -5,13 +5,15 @@ import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 from ..judgement import Judgement
 from ..parameters import parse_setting
 from .examples import BEFORE, EXAMPLES
 
 Run = Callable[[argparse.Namespace], int]
+Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
+"""Where commands are declared."""
 IMPLIED = {"surface": ("identify", "synthesize")}
 """{command: its sub-commands}, of which the first runs where none is named."""
 
@@ -43,7 +45,7 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
-def command(commands: Any, name: str, run: Run, text: str) -> Parser:
+def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
     """Declare a command with `--json`."""
     sub: Parser = commands.add_parser(name, help=text, description=text)
     sub.set_defaults(run=run)

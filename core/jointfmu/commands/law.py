@@ -16,13 +16,13 @@ from ..joints import KINDS
 from ..judgement import judge, known_height, law_height
 from ..parameters import ParameterFile, default, load
 from ..quantity import build, flat_fields, flatten
-from .common import command, settings, tell
+from .common import Commands, command, settings, tell
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     law = command(commands, "law", _law, "evaluate one interface law at pressures or largest spots")
     laws = [name for name in LAWS if _joints(name)]

@@ -13,13 +13,13 @@ from ..contact.roughness import DECLARED
 from ..joints import KINDS, MODELS
 from ..parameters import ParameterFile, default, load
 from ..quantity import flat_fields, flatten
-from .common import command
+from .common import Commands, command
 from .law import law_file, law_parameters
 
 _HEAD = ("name", "default", "unit", "allowed", "meaning")
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "list what can be set of an FMU, a joint or an interface law"
     sub = command(commands, "parameters", _parameters, text)

@@ -11,7 +11,7 @@ import numpy as np
 from .. import plots
 from ..files.writing import check_writable, write_text
 from ..run import loops, ramp
-from .common import command, flag, settings
+from .common import Commands, command, flag, settings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output", "p
 """Options of a ramp, and of loops beside --loop."""
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run an FMU along a load ramp from zero, or to and fro, and print every output or the loops' loss"
     drive = command(commands, "ramp", _run, text)

@@ -6,7 +6,7 @@ Parameters are those of the joint's parameter set, whose units, intervals and me
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,32 @@ from numpy.typing import NDArray
 from ..quantity import Interval, Number, flat_fields
 
 Values = Mapping[str, float]
+Outputs = Mapping[str, Number]
 Memory = NDArray[np.float64]
+
+
+class Tabulated(Protocol):
+    """A force law over a displacement, with an end."""
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """Displacement and load at the end of the table."""
+
+
+class Spring(Protocol):
+    """What a joint gives the builders: a parameter set, tabulated once.
+
+    The functions of its `Model` take it, and C is generated of the parameter set. Of a joint of equations the
+    parameter set itself may stand for it; then nothing is outside a table.
+    """
+
+    @property
+    def joint(self) -> object:
+        """The parameter set, a frozen dataclass of quantities."""
+
+    @property
+    def curve(self) -> Tabulated:
+        """The curve that its outputs are read from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +89,7 @@ class Outside:
     """
 
     variable: str
-    interval: Callable[[Any, tuple[Number, Number], Mapping[str, Number]], tuple[Number, Number]]
+    interval: Callable[..., tuple[Number, Number]]
     doc: str
 
 
@@ -95,10 +120,10 @@ class Model:
     joint: str
     doc: str
     parameters: type[Any]
-    spring: Callable[[Any], Any]
+    spring: Callable[..., Spring]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]
-    evaluate: Callable[[Any, Values], Mapping[str, Any]]
+    evaluate: Callable[..., Outputs]
     outside: Sequence[Outside]
     ramp: Ramp
     dependencies: Mapping[str, Sequence[str]]
@@ -106,9 +131,9 @@ class Model:
     hidden: Sequence[str] = ()
     states: int = 0
     moves: bool = False
-    events: Callable[[Any], Sequence[Number]] | None = None
-    rest: Callable[[Any], Memory] | None = None
-    evolve: Callable[[Any, Values, Memory], tuple[Mapping[str, Any], Memory]] | None = None
+    events: Callable[..., Sequence[Number]] | None = None
+    rest: Callable[..., Memory] | None = None
+    evolve: Callable[..., tuple[Outputs, Memory]] | None = None
     loop: Loop | None = None
     alias: str = ""
 
@@ -132,7 +157,7 @@ class Model:
             and not isinstance(item.metadata.get("allowed", (0,))[0], str)
         }
 
-    def of(self, joint: str, parameters: Any) -> "Model":
+    def of(self, joint: str, parameters: object) -> "Model":
         """The model with the parameters of a parameter file, whose interface law may be another.
 
         Raises ValueError if the file is of another joint than this FMU's.
@@ -141,11 +166,11 @@ class Model:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
         return replace(self, parameters=type(parameters))
 
-    def memory_size(self, parameters: Any) -> int:
+    def memory_size(self, parameters: object) -> int:
         """Numbers of the memory; 0 without one."""
         return 0 if self.rest is None else self.rest(self.spring(parameters)).size
 
-    def warnings(self, spring: Any, values: Values) -> dict[int, str]:
+    def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}
         messages = {}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import Parser, command, tell
+from jointfmu.commands.common import Commands, Parser, command, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ...fields.reduction import Reduction
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command and its sub-commands."""
     text = "the contact pressure of a bolted joint: from a file, or by finite elements"
     top = commands.add_parser("footprint", help=text, description=text)
@@ -34,7 +34,7 @@ OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with
 """{name of the library's argument: the option's} where they differ."""
 
 
-def _import(steps: Any) -> None:
+def _import(steps: Commands) -> None:
     step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
     step.add_argument(
         "file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu import plots
-from jointfmu.commands.common import command, tell
+from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
@@ -24,7 +24,7 @@ COARSEST = 0.3
 """Least refinement [1] at which a hole still looks like one."""
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command."""
     text = "compute the contact pressure of a bolted joint by finite elements"
     sub = command(commands, "compute", run, text)

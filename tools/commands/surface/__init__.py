@@ -2,10 +2,9 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from jointfmu import plots
-from jointfmu.commands.common import IMPLIED, Parser, command, written
+from jointfmu.commands.common import IMPLIED, Commands, Parser, command, written
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
@@ -20,7 +19,7 @@ SUBCOMMANDS = IMPLIED["surface"]
 """The first is what the command does where none is named."""
 
 
-def add(commands: Any) -> None:
+def add(commands: Commands) -> None:
     """Declare the command and its sub-commands."""
     text = "identify D and G of a measured surface or of a pair"
     top = commands.add_parser("surface", help=text, description=f"{text}; make a surface")

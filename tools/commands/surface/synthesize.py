@@ -3,9 +3,8 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
-from jointfmu.commands.common import command
+from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_writable, write_text
 
 from ...surfaces import csvfile, synthesis
@@ -19,7 +18,7 @@ MOST_RIDGES = 1000
 SHAPES = ("isotropic", "textured", "profile")
 
 
-def add(steps: Any, name: str) -> None:
+def add(steps: Commands, name: str) -> None:
     """Declare the sub-command."""
     make = command(steps, name, _synthesize, "make a Weierstrass-Mandelbrot surface")
     make.add_argument(
