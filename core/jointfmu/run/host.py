@@ -11,7 +11,7 @@ Log = Callable[[bytes], None]
 class Fmi2:
     """An instance of FMI 2.0, for co-simulation or model exchange."""
 
-    def __init__(self, exchange: bool = False, **options: Any) -> None:
+    def __init__(self, exchange: bool = False, **options: object) -> None:
         self.fmu = (fmi2.FMU2Model if exchange else fmi2.FMU2Slave)(**options)
 
     def start(self, log: Log) -> None:
@@ -42,11 +42,11 @@ class Fmi2:
         return list(self.fmu.getReal(references))
 
     @property
-    def rates(self) -> Callable[..., Any]:
+    def rates(self) -> Callable[..., object]:
         """What gives the derivatives of the continuous states."""
         return self.fmu.getDerivatives  # type: ignore[no-any-return]
 
-    def update(self) -> tuple[Any, ...]:
+    def update(self) -> tuple[object, ...]:
         """One event iteration: whether another is needed, whether to end, ... the next event's time."""
         return tuple(self.fmu.newDiscreteStates())
 
@@ -54,7 +54,7 @@ class Fmi2:
 class Fmi3:
     """An instance of FMI 3.0, for co-simulation or model exchange."""
 
-    def __init__(self, exchange: bool = False, **options: Any) -> None:
+    def __init__(self, exchange: bool = False, **options: object) -> None:
         self.fmu = (fmi3.FMU3Model if exchange else fmi3.FMU3Slave)(**options)
 
     def start(self, log: Log) -> None:
@@ -80,11 +80,11 @@ class Fmi3:
         return list(self.fmu.getFloat64(references))
 
     @property
-    def rates(self) -> Callable[..., Any]:
+    def rates(self) -> Callable[..., object]:
         """What gives the derivatives of the continuous states."""
         return self.fmu.getContinuousStateDerivatives  # type: ignore[no-any-return]
 
-    def update(self) -> tuple[Any, ...]:
+    def update(self) -> tuple[object, ...]:
         """One event iteration: whether another is needed, whether to end, ... the next event's time."""
         return tuple(self.fmu.updateDiscreteStates())
 
