@@ -8,7 +8,8 @@ entry per parameter,
 
 `kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
 A section `[inputs]` of the same form gives start values of the joint's inputs; others start at zero.
-A section `[roughness]` states what is known of the surfaces, see `roughness`; no law reads it.
+A section `[roughness]` states what is known of the surfaces, see `roughness`: the law of that name takes its
+h from there, the level of others is judged by it.
 """
 
 import json
@@ -33,6 +34,8 @@ _PER_LINE = 5
 """Numbers of a list on a line."""
 _INPUTS = "inputs."
 """Prefix of the names of start values."""
+SAME_HEIGHT = 0.01
+"""How far h of a law may be from what the roughnesses beside it make [1]: they are printed in two digits."""
 _ROUGHNESS = "roughness."
 """Prefix of the names of roughnesses."""
 
@@ -125,13 +128,40 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     given, surfaces = _section(values, _INPUTS), _section(values, _ROUGHNESS)
     try:
         inputs, heights = _start_values(stated, given), roughness.check(surfaces, _ROUGHNESS)
-        parameters = build(cls, values)
+        of_law = _height_of_law(declared, values, heights)
+        parameters = build(cls, values | of_law)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     for text in KINDS[stated].contradictions(parameters):
         raise ValueError(f"{path}: {text}")
     name = str(document.get("name", path.stem))
+    text = "; ".join(dict.fromkeys(sources[_ROUGHNESS + height] for height in heights))
+    origins |= dict.fromkeys(of_law, "derived")
+    sources |= dict.fromkeys(of_law, f"from {', '.join(_ROUGHNESS + height for height in heights)}: {text}")
     return ParameterFile(stated, name, parameters, origins, sources, inputs, heights)
+
+
+def _height_of_law(
+    declared: Mapping[str, Any], values: Mapping[str, Any], heights: Mapping[str, float]
+) -> dict[str, float]:
+    """{name: h [m]} of the law that takes one, where the file states it by its roughnesses alone.
+
+    Raises ValueError if it states another h beside them.
+    """
+    stated = roughness.height(heights)
+    names = [name for name in declared if name.split(".")[-1] == "h" and not name.startswith(_ROUGHNESS)]
+    if stated is None or not names:
+        return {}
+    (name,) = names
+    if name not in values:
+        return {name: stated}
+    if not abs(values[name] / stated - 1.0) <= SAME_HEIGHT:
+        makers = ", ".join(_ROUGHNESS + height for height in heights)
+        raise ValueError(
+            f"{name} = {values[name]:g} m beside {makers}, which make {stated:.4g} m: expected one of them, "
+            f"or both within {SAME_HEIGHT:.1%}"
+        )
+    return {}
 
 
 def read_document(path: Path, expected: str) -> dict[str, Any]:

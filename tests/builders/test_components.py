@@ -451,7 +451,7 @@ def test_a_variant_needs_no_compiler_once_the_module_is_kept(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     model, file = MODELS[NAMES[0]], default(MODELS[NAMES[0]].joint)
-    parameter, value = next(iter(CASES[NAMES[0]].tuned.items()))
+    parameter, value = next(iter(CASES[NAMES[0]].tuning.tuned.items()))
     changed = file.with_values({parameter: value}, "user", "test")
     (tmp_path / "variant.toml").write_text(dump(changed))
     words = (NAMES[0], tmp_path / "variant.toml", tmp_path / "out", "--wasm")

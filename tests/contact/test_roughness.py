@@ -1,9 +1,11 @@
 """What is known of the surfaces: the section [roughness] of parameter files, and the level it stands for."""
 
 import math
+import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import numpy as np
 import pytest
 from jointfmu_tools.fields.contact import ContactField
 from jointfmu_tools.fields.joint_parameters import with_field
@@ -99,6 +101,35 @@ def test_what_is_new_replaces_what_spoke_of_the_same_side():
     assert both.with_roughness({"Ra2": 1e-6}, "user", "drawing").roughness == {"Ra2": 1e-6}
     with pytest.raises(ValueError, match=r"roughness\.Ra3"):
         file.with_roughness({"Ra3": 1e-6}, "user", "wrong")
+
+
+WITHOUT_H = re.compile(r"^h = .*\n", re.MULTILINE)
+
+
+@pytest.mark.parametrize("joint", KINDS)
+def test_it_is_the_height_of_the_law_of_that_name(joint):
+    """A file without h takes it from the heights of both sides; sqrt(pi/2) Ra each, Gaussian."""
+    text = dump(default(joint, "roughness"))
+    found = load_text(WITHOUT_H.sub("", text) + SECTION + entry("Ra1", 0.8e-6) + entry("Rq2", 1e-6))
+    name = next(name for name in found.flat if name.split(".")[-1] == "h")
+    assert found.flat[name] == pytest.approx(np.sqrt(np.pi / 2 * 0.64e-12 + 1e-12), rel=1e-15)
+    assert (found.origins[name], found.sources[name]) == (
+        "derived",
+        "from roughness.Ra1, roughness.Rq2: drawing",
+    )
+
+
+@pytest.mark.parametrize("joint", KINDS)
+def test_another_height_of_the_law_beside_it_is_refused(joint):
+    """Within 1 % both may stand there, and the law's own acts."""
+    file = default(joint, "roughness")
+    name = next(name for name in file.flat if name.split(".")[-1] == "h")
+    near = load_text(dump(file) + SECTION + entry("h", 1.009 * file.flat[name]))
+    assert near.flat[name] == file.flat[name]
+    with pytest.raises(
+        ValueError, match=r"h = .* m beside roughness\.Ra1, which make 1\.003e-06 m: "
+    ):
+        load_text(dump(file) + SECTION + entry("Ra1", 0.8e-6))
 
 
 def test_a_field_keeps_it():
