@@ -126,9 +126,7 @@ def test_another_height_of_the_law_beside_it_is_refused(joint):
     name = next(name for name in file.flat if name.split(".")[-1] == "h")
     near = load_text(dump(file) + SECTION + entry("h", 1.009 * file.flat[name]))
     assert near.flat[name] == file.flat[name]
-    with pytest.raises(
-        ValueError, match=r"h = .* m beside roughness\.Ra1, which make 1\.003e-06 m: "
-    ):
+    with pytest.raises(ValueError, match=r"h = .* m beside roughness\.Ra1, which make 1\.003e-06 m: "):
         load_text(dump(file) + SECTION + entry("Ra1", 0.8e-6))
 
 
