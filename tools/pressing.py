@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
@@ -25,11 +24,11 @@ class Pressing:
     """
 
     load: str
-    usual: Callable[[Any], float]
-    mean: Callable[[Any, float], float]
-    peak: Callable[[Any, float], float]
-    scale: Callable[[Any, float], float] = lambda parameters, load: 1.0
-    borne: Callable[[Any], tuple[float, str] | None] = lambda parameters: None
+    usual: Callable[..., float]
+    mean: Callable[..., float]
+    peak: Callable[..., float]
+    scale: Callable[..., float] = lambda parameters, load: 1.0
+    borne: Callable[..., tuple[float, str] | None] = lambda parameters: None
 
 
 def pressing(kind: Kind) -> Pressing | None:

@@ -85,7 +85,7 @@ def known_height(file: ParameterFile) -> float | None:
 
 
 def judge(
-    law: Any,
+    law: Law,
     pressures: Sequence[float],
     h: float | None,
     peak: float = 0.0,

@@ -56,7 +56,7 @@ def check(path: str | Path) -> None:
         ) from None
 
 
-def published_mark(role: str, colour: str = "black") -> dict[str, Any]:
+def published_mark(role: str, colour: str = "black") -> dict[str, object]:
     """How a published number of a role is drawn, and its legend; filled points are predictions alone."""
     shape = _MARKERS.get(role, {"marker": "+"})
     return {"linestyle": "none", "color": colour, "ms": 5, "label": f"published, {ROLES[role]}"} | shape

@@ -34,9 +34,9 @@ class DataPart:
     tables : (parameter set) -> {name: table} that its C reads, `data.NAME` with `data.n_NAME` rows
     """
 
-    stands: Callable[[Any], Mapping[str, Any]] = flatten
-    of: Callable[[Any], type[Any]] = type
-    tables: Callable[[Any], Tables] = lambda values: NO_TABLES
+    stands: Callable[..., Mapping[str, Any]] = flatten
+    of: Callable[..., type[object]] = type
+    tables: Callable[..., Tables] = lambda values: NO_TABLES
 
 
 class Split(NamedTuple):
@@ -51,8 +51,8 @@ class Split(NamedTuple):
 
     exposed: Sequence[str]
     fixed: Mapping[str, float]
-    code: Mapping[str, Any]
-    of: type[Any]
+    code: Mapping[str, object]
+    of: type[object]
     tables: Tables
 
     @property

@@ -13,11 +13,11 @@ import casadi as ca
 from jointfmu.contact.powerlaw import Power, Smooth, Spots, Term
 from jointfmu.joints.model import Model
 from jointfmu.mechanics.curve import closing
-from jointfmu.quantity import Limit, build
+from jointfmu.quantity import Limit, Number, build
 
 from .data import Split
 
-Symbols = Sequence[Any]
+Symbols = Sequence[Number]
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def symbols(name: str, count: int) -> list[ca.SX]:
     return [ca.SX.sym(f"{name}{i}") for i in range(count)]
 
 
-def limits(joint: Any) -> list[Limit]:
+def limits(joint: object) -> list[Limit]:
     """Intervals of parameters that other parameters decide."""
     own = joint.limits() if hasattr(joint, "limits") else []
     return [*own, *(joint.table_limits() if hasattr(joint, "table_limits") else [])]
@@ -124,33 +124,33 @@ class _Settled:
     term: Smooth
 
     @property
-    def lower(self) -> Any:
+    def lower(self) -> Number:
         return self.term.lower
 
     @property
-    def upper(self) -> Any:
+    def upper(self) -> Number:
         return self.term.upper
 
-    def spot(self, t: Any) -> float:
+    def spot(self, t: Number) -> float:
         return 0.0
 
-    def integral(self, m: Any, u: Any) -> Any:
+    def integral(self, m: Number, u: Number) -> Number:
         return self.term.integral(m, self.term.upper)
 
 
-def _regimes(spots: Spots) -> tuple[list[Any], list[Spots]]:
+def _regimes(spots: Spots) -> tuple[list[Number], list[Spots]]:
     """Log-areas where a costly term (Gauss-Legendre) begins or ends, and the law in between.
 
     Between two of them only the terms that are under way need their quadrature.
     """
     terms = [t for row in spots.terms.values() for t in row if isinstance(t, Smooth)]
-    ends: list[Any] = []
+    ends: list[Number] = []
     for t in terms:
         for end in (t.lower, t.upper):
             if not any(end is known for known in ends):
                 ends.append(end)
 
-    def place(end: Any) -> int:
+    def place(end: Number) -> int:
         return next(i for i, known in enumerate(ends) if known is end)
 
     def at(term: Term, k: int) -> list[Term]:
@@ -198,7 +198,7 @@ def law_functions(g: Graph, law: Any, table: Sequence[str], state: Any = None) -
             g.add(f"law_state_{k}", doc, [u], ca.densify(ca.vertcat(*rows)).nz)
 
 
-def _bend_of_load(spots: Spots, u: Any) -> Any:
+def _bend_of_load(spots: Spots, u: Number) -> Number:
     """F'' - m F': of the largest spot alone, without a sum over the others."""
     largest = sum(term.spot(u) for term in spots.terms["load"])
     return spots.m * spots.weight * ca.jacobian(largest, u)

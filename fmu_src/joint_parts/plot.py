@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from html import escape
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 WIDTH, HEIGHT = 690.0, 270.0
 """Of a row of plots."""
@@ -37,7 +37,9 @@ class Plot:
     logarithmic: bool = False
     curves: list[Curve] = field(default_factory=list)
 
-    def add(self, x: Any, y: Any, color: str, label: str = "", dashed: bool = False) -> None:
+    def add(
+        self, x: Iterable[float], y: Iterable[float], color: str, label: str = "", dashed: bool = False
+    ) -> None:
         """Add a curve."""
         self.curves.append(Curve([float(v) for v in x], [float(v) for v in y], color, label, dashed))
 

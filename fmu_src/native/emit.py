@@ -4,7 +4,6 @@ What the laws take of the elementary functions gives the same bits everywhere, b
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import casadi as ca
 
@@ -72,7 +71,7 @@ static inline double root_of_squares(double a, double b)
 """What the functions call besides libm and `runtime/elementary.c`."""
 
 
-def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[Any], derivative: bool = False) -> str:
+def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], derivative: bool = False) -> str:
     """C of `static void name(const double *x, const double *c, double *y)`.
 
     Every intermediate value is a constant of its own, in the order of evaluation. In a `derivative`

@@ -204,7 +204,7 @@ class TorqueCurve:
         return {"tau": v["tau_in"] + sum(point * share for point, share in zip(points, shares, strict=True))}
 
 
-PARTNERS: dict[str, type[Any]] = {
+PARTNERS: dict[str, type[object]] = {
     cls.__name__: cls
     for cls in (RotationalInertia, TranslationalMass, TorqueProfile, ForceProfile, AngleProfile, TorqueCurve)
 }

@@ -42,7 +42,7 @@ class Experiment:
     purpose: str
     name: str
     doc: str
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     drive: Drive
     results: Series
 
@@ -62,12 +62,12 @@ def experiments(model: Model, parameters: ParameterFile) -> list[Experiment]:
     ]
 
 
-def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile, dict[str, Any]]]:
+def models(model: Model, parameters: ParameterFile) -> list[tuple[ParameterFile, dict[str, object]]]:
     """The parameter file, and the shipped ones of the same joint, law and structure, each with what differs.
 
     Numbers that the FMU does not expose stay those of the parameter file; groups of them are structure.
     """
-    found = [(parameters, dict[str, Any]())]
+    found = [(parameters, dict[str, object]())]
     if model.joint not in KINDS:
         return found
     fields = model.parameter_fields()
@@ -110,7 +110,7 @@ def _experiment(
     purpose: str,
     name: str,
     doc: str,
-    settings: Mapping[str, Any],
+    settings: Mapping[str, object],
     levels: int,
 ) -> Experiment:
     """The load ramp in some levels; a model with states rests under the ramp's end."""
@@ -155,9 +155,9 @@ def _loop(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
 
 
 def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
-    found: dict[tuple[str, Any], Experiment] = {}
+    found: dict[tuple[str, object], Experiment] = {}
 
-    def taken(name: str, value: Any) -> bool:
+    def taken(name: str, value: object) -> bool:
         shown = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
         with suppress(*_REFUSALS):
             found[name, value] = _experiment(

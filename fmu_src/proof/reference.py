@@ -6,7 +6,6 @@ all importers give the same: those that hold an input over a step, and those tha
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +46,7 @@ class Drive:
         return Series(np.array(times), {self.input: held})
 
 
-def results(model: Model, values: Any, start: Mapping[str, float], drive: Drive) -> Series:
+def results(model: Model, values: object, start: Mapping[str, float], drive: Drive) -> Series:
     """Outputs at the instants, from rest.
 
     values : parameter set
@@ -86,11 +85,11 @@ def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive
     names = [v.name for v in model.outputs]
     inputs = {**inputs, drive.input: float(drive.levels[0])}
 
-    def outputs(time: float, x: Any) -> Mapping[str, Any]:
+    def outputs(time: float, x: Array) -> Outputs:
         known = dict(zip(names[: model.states], map(float, x), strict=True))
         return model.evaluate(spring, {**inputs, **known, "time": time})
 
-    def rates(time: float, x: Any) -> list[float]:
+    def rates(time: float, x: Array) -> list[float]:
         found = outputs(time, x)
         return [found[name] for name in names[1 : model.states + 1]]
 

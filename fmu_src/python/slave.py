@@ -65,7 +65,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     content: ClassVar[str]
     """Digest of everything that runs inside; the GUID comes from it."""
 
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
         if self.kind.name not in KINDS:  # of another package
             register(self.kind)
@@ -97,7 +97,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         for item in self.listed:
             self.register_variable(self._variable(item), nested=False)
 
-    def _variable(self, item: Listed) -> Any:
+    def _variable(self, item: Listed) -> object:
         name, output, parameter = item.name, item.causality == "output", item.causality == "parameter"
         initial = Fmi2Initial.calculated if output else Fmi2Initial.exact
         return (Boolean if item.boolean else Real)(
@@ -110,7 +110,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             **({"initial": initial} if output or parameter else {}),
         )
 
-    def set(self, name: str, value: Any) -> None:
+    def set(self, name: str, value: object) -> None:
         """Take a parameter or an input; it is checked when it is used."""
         if name in self.fields:
             if self.initialized:
@@ -200,7 +200,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     get_boolean, set_boolean = surviving(Fmi2Slave.get_boolean), surviving(Fmi2Slave.set_boolean)
     get_string, set_string = surviving(Fmi2Slave.get_string), surviving(Fmi2Slave.set_string)
 
-    def _get_fmu_state(self) -> dict[str, Any]:
+    def _get_fmu_state(self) -> dict[str, object]:
         state = {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
         return state | ({"way": self.way} if self.model.rest else {})
 
@@ -217,7 +217,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             self._spring = None
 
     @staticmethod
-    def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
+    def _fmu_state_from_bytes(state: bytes) -> dict[str, object]:
         """A state from its bytes; unreadable ones are refused when they are set."""
         try:
             values = json.loads(state.decode("utf-8"))

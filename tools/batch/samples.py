@@ -1,7 +1,7 @@
 """Parameter sets whose numbers are columns of samples, and which samples lie inside all intervals."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ Mask = NDArray[np.bool_]
 T = TypeVar("T")
 
 
-def columns(cls: type[T], values: Mapping[str, Any], axes: int = 0) -> T:
+def columns(cls: type[T], values: Mapping[str, object], axes: int = 0) -> T:
     """The parameter set `cls` with samples (n) among its values, as (n, 1, ...) with `axes` ones.
 
     Unchecked: `inside` tells the samples apart.
@@ -22,7 +22,7 @@ def columns(cls: type[T], values: Mapping[str, Any], axes: int = 0) -> T:
     return assemble(cls, shaped, _unchecked)
 
 
-def _unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
+def _unchecked(cls: type[object], arguments: Mapping[str, object]) -> object:
     """A frozen instance without its checks, which take no samples."""
     instance = object.__new__(cls)
     for name, value in arguments.items():
@@ -30,7 +30,7 @@ def _unchecked(cls: type[Any], arguments: Mapping[str, Any]) -> Any:
     return instance
 
 
-def inside(joint: Any, count: int) -> Mask:
+def inside(joint: object, count: int) -> Mask:
     """Which of `count` samples have every parameter in its interval, those that others decide included."""
     good = np.ones(count, dtype=bool)
     values = flatten(joint)
@@ -48,7 +48,7 @@ def inside(joint: Any, count: int) -> Mask:
     return good
 
 
-def within(values: Mapping[str, Any], limits: Iterable[Limit], count: int) -> Mask:
+def within(values: Mapping[str, object], limits: Iterable[Limit], count: int) -> Mask:
     """Which samples lie between the limits that other parameters decide."""
     good = np.ones(count, dtype=bool)
     for limit in limits:

@@ -17,7 +17,7 @@ class Sheet:
 
     joint: str
     law: str
-    known: dict[str, tuple[Any, str, str]] = field(default_factory=dict)
+    known: dict[str, tuple[object, str, str]] = field(default_factory=dict)
     inputs: dict[str, float] = field(default_factory=dict)
 
     def put(self, name: str, value: Any, kind: str, source: str) -> None:
@@ -26,7 +26,7 @@ class Sheet:
             self.inputs[name.removeprefix("inputs.")] = value
         self.known[name] = (value, kind, source)
 
-    def stated(self, name: str, value: Any) -> None:
+    def stated(self, name: str, value: object) -> None:
         """A parameter that stands on the drawing."""
         self.put(name, value, "user", "stated on the drawing")
 

@@ -51,7 +51,7 @@ class Exports:
     lacks   : {what: why it cannot be written and what can}
     """
 
-    state: type[Any] | None = None
+    state: type[object] | None = None
     springs: "Callable[[Any, Any, Mesh | None, Placing], tuple[Springs, str]] | None" = None
     contact: "Callable[[Any], tuple[Curve, Sequence[str]]] | None" = None
     curve: LoadCurve | None = None

@@ -1,7 +1,6 @@
 """One file of each kind: the numbers of a joint, its comment, its text."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -18,10 +17,10 @@ class Written:
     """The text of a file and what is worth saying about it."""
 
     text: str
-    facts: dict[str, Any]
+    facts: dict[str, object]
 
 
-def springs(form: str, file: ParameterFile, state: Any, mesh: Mesh | None, placing: Placing) -> Written:
+def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, placing: Placing) -> Written:
     """Springs (and dashpots) of a joint between node pairs.
 
     state : working point, or None where the mesh states the pressures
@@ -85,7 +84,7 @@ def contact(form: str, file: ParameterFile, units: Units, error: float) -> Writt
     return Written(text, _facts(table))
 
 
-def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float) -> Written:
+def curve(form: str, file: ParameterFile, state: object, units: Units, error: float) -> Written:
     """Load over displacement of the whole joint, with its stiffness.
 
     Raises ValueError if the joint has no such curve or its working point is missing.
@@ -110,7 +109,7 @@ def curve(form: str, file: ParameterFile, state: Any, units: Units, error: float
     return Written(columns.table_csv(table.rows, heads, units, about), _facts(table))
 
 
-def _facts(table: tables.Table) -> dict[str, Any]:
+def _facts(table: tables.Table) -> dict[str, object]:
     return {
         "rows": len(table.rows),
         "error": table.straight[0],

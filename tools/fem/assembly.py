@@ -21,8 +21,8 @@ from jointfmu.quantity import build, flat_fields
 from .bolts import BoltGrid, BoltList
 from .geometry import Assembly, BoxSection, Plate
 
-BODIES: dict[str, type[Any]] = {"plate": Plate, "box": BoxSection}
-LAYOUTS: dict[str, type[Any]] = {"grid": BoltGrid, "list": BoltList}
+BODIES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
+LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}
 SECTIONS = {"side1": ("body", BODIES), "side2": ("body", BODIES), "bolts": ("layout", LAYOUTS)}
 
 

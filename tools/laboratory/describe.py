@@ -26,7 +26,7 @@ _DECADE = 10.0
 """Span of a slider to both sides of a start value that has no better interval."""
 
 
-def described(module: Module) -> dict[str, Any]:
+def described(module: Module) -> dict[str, object]:
     """All of a module but its binary form."""
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _bench(model)
@@ -86,9 +86,9 @@ def _panels(model: Model, bench: Bench) -> Sequence[Panel]:
     return (*panels(model), *bench.panels)
 
 
-def _row(v: Listed, model: Model, bench: Bench) -> dict[str, Any]:
+def _row(v: Listed, model: Model, bench: Bench) -> dict[str, object]:
     unit = v.attributes.get("unit", "1")
-    row: dict[str, Any] = {
+    row: dict[str, object] = {
         "name": v.name,
         "causality": v.causality,
         "doc": v.doc,
@@ -146,7 +146,7 @@ def _bound(file: ParameterFile) -> Iterator[str]:
                 yield name
 
 
-def _set(file: ParameterFile, model: Model) -> dict[str, Any]:
+def _set(file: ParameterFile, model: Model) -> dict[str, object]:
     """A parameter file: values of what can be set, and its text."""
     names = model.parameter_fields()
     values = {name: value for name, value in file.flat.items() if name in names}
@@ -154,7 +154,7 @@ def _set(file: ParameterFile, model: Model) -> dict[str, Any]:
     return {"name": file.name, "values": values, "inputs": inputs, "toml": dump(file)}
 
 
-def _points(model: Model, bench: Bench) -> Iterator[dict[str, Any]]:
+def _points(model: Model, bench: Bench) -> Iterator[dict[str, object]]:
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
     for paper in KINDS[model.joint].papers:
@@ -177,7 +177,7 @@ def _points(model: Model, bench: Bench) -> Iterator[dict[str, Any]]:
             }
 
 
-def _map(bench: Bench, file: ParameterFile) -> dict[str, Any] | None:
+def _map(bench: Bench, file: ParameterFile) -> dict[str, object] | None:
     picture = bench.picture
     if picture is None:
         return None

@@ -1,7 +1,6 @@
 """What the packages Interfaces and Wrappers show of an FMU: its variables, and how they meet flanges."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.terminals import Terminal
@@ -29,10 +28,10 @@ _TAKES_FORCE = (
 _TAKES_MOTION = "It takes motion and gives force, so it belongs between inertias."
 
 
-def interface(model: Model) -> dict[str, Any]:
+def interface(model: Model) -> dict[str, object]:
     """Content of the partial block with an FMU's inputs and outputs."""
 
-    def column(variables: Sequence[Variable]) -> list[dict[str, Any]]:
+    def column(variables: Sequence[Variable]) -> list[dict[str, object]]:
         return [
             {
                 "name": v.name,
@@ -48,7 +47,7 @@ def interface(model: Model) -> dict[str, Any]:
     return {"name": model.name, "doc": text(model.doc), "inputs": inputs, "outputs": outputs}
 
 
-def wrapper(model: Model) -> dict[str, Any]:
+def wrapper(model: Model) -> dict[str, object]:
     """Content of the model that puts an FMU between flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
@@ -99,7 +98,7 @@ def _heights(variables: Sequence[Variable]) -> list[int]:
     return [round(90 - (i + 0.5) * 180 / len(variables)) for i in range(len(variables))]
 
 
-def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+def _flange(terminal: Terminal, ports: Mapping[str, tuple[float, float]]) -> dict[str, object]:
     """A flange with its adaptor; potential, rate and force of the terminal go to p, pder and f."""
     rotational = ".Rotational." in terminal.kind
     potential, rate, force = (

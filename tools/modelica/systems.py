@@ -46,7 +46,7 @@ def system_model(system: System, shared: Environment, library: Records, within: 
     """
     connected = ends(system)
     places = _places(system, connected)
-    records: list[dict[str, Any]] = []
+    records: list[dict[str, object]] = []
     parts: list[Declared] = []
     lines: list[tuple[str, str, str]] = []
 
@@ -120,7 +120,7 @@ def _component(part: Part) -> Component:
 
 
 def _record(
-    part: Part, library: Records, records: list[dict[str, Any]]
+    part: Part, library: Records, records: list[dict[str, object]]
 ) -> tuple[Sequence[str], Sequence[str]]:
     """Modifications of a joint: its record, and what it changes of it."""
     assert part.file

@@ -6,11 +6,10 @@ Newton-Euler recursion (Luh, Walker and Paul, J. Dyn. Sys. Meas. Control 102, 19
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from jointfmu_fmu_src.partners.laws import GRAVITY, smooth_step, smooth_step_slopes
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from jointfmu.quantity import check, quantity
 
@@ -47,7 +46,7 @@ class Arm:
     start: float
     duration: float
 
-    def motion(self, time: Any) -> tuple[Array, Array, Array]:
+    def motion(self, time: ArrayLike) -> tuple[Array, Array, Array]:
         """Angles [rad], speeds [rad/s], accelerations [rad/s2] of all axes, (times, axes)."""
         x = (np.asarray(time, dtype=np.float64)[:, None] - self.start) / self.duration
         travel = np.array([link.travel for link in self.links])

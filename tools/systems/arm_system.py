@@ -19,7 +19,6 @@ wind-up moves the others is left out: it is small against the motion.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from jointfmu_fmu_src.partners.laws import TorqueCurve
@@ -35,10 +34,10 @@ _MOTION = {
     "start": quantity("s", "begin of the motion", ge=0.0),
     "duration": quantity("s", "from its begin to its end", gt=0.0),
 }
-Sections = dict[str, dict[str, Any]]
+Sections = dict[str, dict[str, object]]
 
 
-def arm_parts(path: Path, section: Any) -> tuple[Arm, Sections, list[tuple[str, str]]]:
+def arm_parts(path: Path, section: object) -> tuple[Arm, Sections, list[tuple[str, str]]]:
     """The arm, and the sections and connections of its components: `NAME_motor`, `NAME_drive`,
     `NAME_link`, `NAME_load` of the axis NAME.
 
@@ -81,7 +80,7 @@ def arm_parts(path: Path, section: Any) -> tuple[Arm, Sections, list[tuple[str, 
     return arm, sections, wires
 
 
-def _ratio(path: Path, name: str, drive: Mapping[str, Any]) -> float:
+def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     """Of the drive of an axis: its own, or that of its parameters."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
@@ -95,7 +94,7 @@ def _ratio(path: Path, name: str, drive: Mapping[str, Any]) -> float:
     return float(file.flat["ratio"])
 
 
-def _axis(arm: Arm, name: str, drive: Mapping[str, Any], ratio: float) -> Sections:
+def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sections:
     """The sections of one axis."""
     k = arm.names.index(name)
     link = arm.links[k]
@@ -123,7 +122,7 @@ def _clean(torque: float) -> float:
     return round(torque, 8) + 0.0
 
 
-def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, Any]:
+def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:
     text = "kinematics and inverse dynamics of [arm]"
     return {"model": model} | {
         name: {"value": value, "unit": unit, "kind": "derived", "source": text}

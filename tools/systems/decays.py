@@ -69,7 +69,7 @@ def decays(
     first: float,
     loads: Sequence[float] | None = None,
     inertia: float | None = None,
-    settings: Mapping[str, Any] | None = None,
+    settings: Mapping[str, object] | None = None,
 ) -> list[Decay]:
     """The body of a system on its joint, pulled by `first` [m or rad] from its working point and let go.
 
@@ -124,7 +124,7 @@ def _decay_at(
 
 def _of_loops(
     path: Path,
-    held: Mapping[str, Any],
+    held: Mapping[str, object],
     body: Body,
     rest: Rest,
     mass: float,

@@ -17,7 +17,7 @@ _NO_DASK = "the package {} is missing, needed for a sweep; install it with: pip 
 
 
 @contextmanager
-def client(scheduler: str | None, workers: int | None) -> Iterator[Any]:
+def client(scheduler: str | None, workers: int | None) -> Iterator[object]:
     """A dask client: of a scheduler's address, or of local processes.
 
     Raises ValueError if dask is missing or the scheduler does not answer.
@@ -83,7 +83,7 @@ def _mute() -> Iterator[None]:
     _unmute(before, kept)
 
 
-def _unmute(before: Any, kept: int) -> None:
+def _unmute(before: object, kept: int) -> None:
     os.dup2(kept, 2)
     own: Any = sys.stderr
     own.close()

@@ -70,12 +70,12 @@ def _law(text: str, base: float | None) -> Any:
     return None
 
 
-def _uniform(low: float, high: float) -> Any:
+def _uniform(low: float, high: float) -> object:
     _ascending(low, high)
     return stats.uniform(low, high - low)
 
 
-def _loguniform(parts: list[str], base: float | None) -> Any:
+def _loguniform(parts: list[str], base: float | None) -> object:
     low, high = _numbers(parts, 2)
     if low <= 0.0:
         raise ValueError(f"low = {low:g} is outside (0, inf)")
@@ -83,7 +83,7 @@ def _loguniform(parts: list[str], base: float | None) -> Any:
     return stats.loguniform(low, high)
 
 
-def _normal(parts: list[str], base: float | None) -> Any:
+def _normal(parts: list[str], base: float | None) -> object:
     mean, spread = _about(parts, base)
     sd = abs(mean) * _percent(spread) if _is_percent(spread) else _number(spread)
     if sd <= 0.0:
@@ -91,7 +91,7 @@ def _normal(parts: list[str], base: float | None) -> Any:
     return stats.norm(mean, sd)
 
 
-def _lognormal(parts: list[str], base: float | None) -> Any:
+def _lognormal(parts: list[str], base: float | None) -> object:
     median, spread = _about(parts, base)
     factor = 1.0 + _percent(spread) if _is_percent(spread) else _number(spread)
     if median <= 0.0:
@@ -101,7 +101,7 @@ def _lognormal(parts: list[str], base: float | None) -> Any:
     return stats.lognorm(math.log(factor), scale=median)
 
 
-def _triangular(parts: list[str], base: float | None) -> Any:
+def _triangular(parts: list[str], base: float | None) -> object:
     low, mode, high = _numbers(parts, 3)
     _ascending(low, high)
     if not low <= mode <= high:

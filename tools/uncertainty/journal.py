@@ -27,7 +27,7 @@ def digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def claim(folder: Path, study: Mapping[str, Any]) -> None:
+def claim(folder: Path, study: Mapping[str, object]) -> None:
     """Make the folder this study's, or check that it already is.
 
     Raises ValueError if it holds another study (the line names what differs) or foreign files.
@@ -54,7 +54,7 @@ def claim(folder: Path, study: Mapping[str, Any]) -> None:
 
 
 @contextmanager
-def claimed(folder: Path, study: Mapping[str, Any]) -> Iterator[None]:
+def claimed(folder: Path, study: Mapping[str, object]) -> Iterator[None]:
     """`claim`; a folder that is new is removed again if the work is refused before any run is finished."""
     new = not (folder / STUDY).exists()
     with made_folder(folder):
@@ -76,7 +76,7 @@ class Journal:
         self.path = folder / RUNS
         self.finished: set[int] = set()
         self.failed = 0
-        self.first_failure: dict[str, Any] | None = None
+        self.first_failure: dict[str, object] | None = None
 
     def __enter__(self) -> "Journal":
         self.file = self.path.open("ab")
@@ -94,11 +94,11 @@ class Journal:
         return self
 
     def __exit__(
-        self, error_type: type[BaseException] | None, error: Any, trace: TracebackType | None
+        self, error_type: type[BaseException] | None, error: object, trace: TracebackType | None
     ) -> None:
         self.file.close()
 
-    def add(self, entry: Mapping[str, Any]) -> None:
+    def add(self, entry: Mapping[str, object]) -> None:
         """Append a finished run, once."""
         if entry["run"] in self.finished:
             return

@@ -33,8 +33,8 @@ class Problem:
     """
 
     joint: str
-    parameters: type[Any]
-    values: Mapping[str, Any]
+    parameters: type[object]
+    values: Mapping[str, object]
     uncertain: tuple[Uncertain, ...]
     loads: Array
     relative: bool | None = None
@@ -44,7 +44,7 @@ class Problem:
         """How the joint's curves are computed."""
         return reduced(KINDS[self.joint])
 
-    def sampled(self, points: Array) -> tuple[dict[str, Any], Array]:
+    def sampled(self, points: Array) -> tuple[dict[str, object], Array]:
         """Values with samples (n) among them, and factors (n) on the load, from points of the unit cube."""
         drawn = samples_of(self.uncertain, points)
         load = drawn.pop(self.reduced.load.name, None)
@@ -52,7 +52,7 @@ class Problem:
         return {**self.values, **drawn}, factor
 
 
-def pose(file: ParameterFile, given: Mapping[str, Any], to: float | None, points: int) -> Problem:
+def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, points: int) -> Problem:
     """The problem of a parameter file and settings (values and distributions by name).
 
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
@@ -95,7 +95,7 @@ def _check(parameter: Uncertain, item: Any) -> None:
 
 
 def _ramp(
-    curves: Reduced, values: Any, at: Any, to: float | None, points: int, load: Uncertain | None
+    curves: Reduced, values: object, at: object, to: float | None, points: int, load: Uncertain | None
 ) -> Array:
     """The loads: a ramp from 0 to `to`, or the one load that was set."""
     allowed = Interval.of(gt=0.0, le=curves.most(values))

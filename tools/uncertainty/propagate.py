@@ -129,7 +129,7 @@ def _spread(row: Singles, good: Mask) -> Array:
     return np.array([kept.mean(), kept.std(), *np.interp(places, np.arange(kept.size), kept)])
 
 
-def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, Any], float, dict[str, float]]:
+def one_sample(task: Problem, points: Array, i: int) -> tuple[dict[str, object], float, dict[str, float]]:
     """Values, factor on the load, and the drawn numbers by name, of sample i."""
     values, factor = task.sampled(points[i : i + 1])
     single = {k: float(v[0]) if isinstance(v, np.ndarray) else v for k, v in values.items()}

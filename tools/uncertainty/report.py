@@ -37,7 +37,7 @@ def bands_csv(task: Problem, bands: Bands) -> str:
     return columns.text(heads, values)
 
 
-def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, Any]:
+def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dict[str, object]:
     """Everything as one JSON object."""
     outputs = {
         name: {
@@ -68,7 +68,7 @@ def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dic
     }
 
 
-def _indices_json(sensitivity: Sensitivity) -> dict[str, Any]:
+def _indices_json(sensitivity: Sensitivity) -> dict[str, object]:
     numbers = ("first", "first_half", "total", "total_half")
     return {
         "rows": sensitivity.rows,

@@ -13,7 +13,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +28,7 @@ Array = NDArray[np.float64]
 MOST_SAMPLES = 2**24
 
 
-def read(path: str | Path) -> dict[str, Any]:
+def read(path: str | Path) -> dict[str, object]:
     """{name: number, true, false or text} of a study file.
 
     Raises ValueError with one line that names the file, the entry and what is allowed.
@@ -48,24 +47,26 @@ def read(path: str | Path) -> dict[str, Any]:
     return {name: float(value) if type(value) is int else value for name, value in entries.items()}
 
 
-def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
-    leaves: list[tuple[str, Any]] = []
+def _leaves(table: Mapping[str, object], prefix: str) -> list[tuple[str, object]]:
+    leaves: list[tuple[str, object]] = []
     for key, value in table.items():
         leaves += _leaves(value, f"{prefix}{key}.") if isinstance(value, Mapping) else [(prefix + key, value)]
     return leaves
 
 
-def settings(path: Path | None, given: Sequence[tuple[str, Any]]) -> dict[str, Any]:
+def settings(path: Path | None, given: Sequence[tuple[str, object]]) -> dict[str, object]:
     """Settings of a study file, if any, and those given, which win."""
     return (read(path) if path else {}) | dict(given)
 
 
-def split(given: Mapping[str, Any], base: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[Uncertain, ...]]:
+def split(
+    given: Mapping[str, object], base: Mapping[str, object]
+) -> tuple[dict[str, object], tuple[Uncertain, ...]]:
     """Plain values and distributions among settings; `base` has the values that percentages refer to.
 
     Raises ValueError for a text that is meant as a distribution and is none.
     """
-    plain: dict[str, Any] = {}
+    plain: dict[str, object] = {}
     uncertain = []
     for name, value in given.items():
         about = base.get(name)

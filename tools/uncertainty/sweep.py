@@ -46,8 +46,8 @@ class Summary:
 
 
 def plan(
-    fmu: Path, drive: Drive, given: Mapping[str, Any], count: int, seed: int
-) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    fmu: Path, drive: Drive, given: Mapping[str, object], count: int, seed: int
+) -> tuple[dict[str, object], list[dict[str, object]]]:
     """The study as a record for its folder, and the settings of each of `count` runs.
 
     Raises ValueError for a file that is no FMU, an unknown name, a wrong distribution or ramp.
@@ -88,7 +88,7 @@ def plan(
 def sweep(
     fmu: Path,
     drive: Drive,
-    runs: Sequence[Mapping[str, Any]],
+    runs: Sequence[Mapping[str, object]],
     out: Path,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -113,7 +113,7 @@ def sweep(
 
 def _finished(
     dask_client: Any, fmu: Path, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[dict[str, object]]:
     """Finished runs as they come; never more than AHEAD per worker are under way."""
     from .plugin import Bring
 
@@ -132,12 +132,12 @@ def _finished(
 
 def _as_completed(
     dask_client: Any, key: str, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[dict[str, object]]:
     from distributed import KilledWorker, as_completed
 
     waiting, indices, lost = iter(todo), {}, Counter[int]()
 
-    def submit(index: int) -> Any:
+    def submit(index: int) -> object:
         future = dask_client.submit(one_run, key, drive, index, runs[index], pure=False)
         indices[future.key] = index
         return future

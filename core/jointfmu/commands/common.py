@@ -99,7 +99,7 @@ def settings(sub: argparse.ArgumentParser) -> None:
     sub.set_defaults(options={"settings": "set"})
 
 
-def _setting(text: str) -> tuple[str, Any]:
+def _setting(text: str) -> tuple[str, object]:
     try:
         return parse_setting(text)
     except ValueError as error:

@@ -53,8 +53,8 @@ def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any
 
 
 def roughness_settings(
-    known: dict[str, Any], stated: float | None, longest: float, settings: dict[str, Any]
-) -> dict[str, Any]:
+    known: dict[str, object], stated: float | None, longest: float, settings: dict[str, object]
+) -> dict[str, object]:
     """Settings of the law `roughness` with its h, and hurst, out of what else tells them.
 
     known    : parameters of another law by structured name; D and G of a surface count

@@ -22,12 +22,12 @@ class RoughSurface:
     direction: str | None = None
 
 
-def itself(parameters: Any) -> Any:
+def itself(parameters: object) -> object:
     """The interface law of a joint whose parameter set is one."""
     return parameters
 
 
-def none(parameters: Any) -> Iterable[str]:
+def none(parameters: object) -> Iterable[str]:
     """No contradictions: each parameter stands for itself."""
     return ()
 
@@ -53,12 +53,12 @@ class Kind:
     name: str
     package: str
     default: str
-    laws: Mapping[str, type[Any]]
+    laws: Mapping[str, type[object]]
     law_of: Callable[[Any], Any] = itself
     models: Sequence[Model]
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
-    contradictions: Callable[[Any], Iterable[str]] = none
+    contradictions: Callable[..., Iterable[str]] = none
     papers: Sequence[str] = ()
 
     @property
@@ -67,11 +67,11 @@ class Kind:
         return self.name.replace("_", " ")
 
     @property
-    def parameters(self) -> type[Any]:
+    def parameters(self) -> type[object]:
         """Its parameter set with the default law."""
         return next(iter(self.laws.values()))
 
-    def law(self, parameters: Any) -> str:
+    def law(self, parameters: object) -> str:
         """Name of the interface law of a parameter set."""
         return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
@@ -85,7 +85,7 @@ class Kind:
         """Whether it comes with this package, and not from another one."""
         return self.package.startswith(f"{__package__}.")
 
-    def spring(self, parameters: Any) -> Any:
+    def spring(self, parameters: object) -> object:
         """The tabulated joint of a parameter set."""
         return self.models[0].spring(parameters)
 

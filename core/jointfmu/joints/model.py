@@ -119,7 +119,7 @@ class Model:
     name: str
     joint: str
     doc: str
-    parameters: type[Any]
+    parameters: type[object]
     spring: Callable[..., Spring]
     inputs: Sequence[Variable]
     outputs: Sequence[Variable]

@@ -120,15 +120,15 @@ class _Motion:
             value = first if first == last else (1.0 - part) * first + part * last
             self.instance.set({name: value})
 
-    def _nominals(self, values: Any, count: int) -> None:
+    def _nominals(self, values: object, count: int) -> None:
         """Sizes below which round-off counts, as for what is compared."""
         self.fmu.getNominalsOfContinuousStates(values, count)
         np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
 
-    def _kept(self, call: Callable[..., Any]) -> Callable[..., None]:
+    def _kept(self, call: Callable[..., object]) -> Callable[..., None]:
         """A call whose first failure is kept: C, which calls it, does not hand on exceptions."""
 
-        def kept(*arguments: Any) -> None:
+        def kept(*arguments: object) -> None:
             try:
                 call(*arguments)
             except Exception as failure:  # fmpy raises bare Exception

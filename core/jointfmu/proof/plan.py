@@ -57,7 +57,7 @@ class Plan:
             times = _times(experiment, description)
             if stimuli and interface == MODEL_EXCHANGE:
                 times = _with_corners(times, stimuli.time)
-            values: dict[str, Any] = {
+            values: dict[str, object] = {
                 "settings": {n: setting(variables[n], given) for n, given in experiment.settings.items()},
                 "kinds": {n: kind(variables[n]) for n in (*inputs, *outputs)},
             }
@@ -131,7 +131,7 @@ def _times(experiment: Experiment, description: Any) -> Array:
     return np.append(start + step * np.arange(count), stop)
 
 
-def task(fmu: Path, folder: str, interface: str, **more: Any) -> dict[str, Any]:
+def task(fmu: Path, folder: str, interface: str, **more: object) -> dict[str, object]:
     """The fields of a `Task`."""
     return {"fmu": str(fmu), "folder": str(folder), "interface": interface, **more}
 

@@ -1,7 +1,6 @@
 """A proof as text and as one JSON object."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 from .manifest import PURPOSES
 from .outcome import Outcome, Point, Proof
@@ -56,7 +55,7 @@ def summary(proof: Proof) -> str:
     return ", ".join(words)
 
 
-def document(proof: Proof) -> dict[str, Any]:
+def document(proof: Proof) -> dict[str, object]:
     """All of it: every experiment with the worst point of each output."""
     return {
         "fmu": str(proof.fmu),
@@ -69,7 +68,7 @@ def document(proof: Proof) -> dict[str, Any]:
     }
 
 
-def _experiment(outcome: Outcome) -> dict[str, Any]:
+def _experiment(outcome: Outcome) -> dict[str, object]:
     one = outcome.experiment
     return {
         "name": one.name,
@@ -82,7 +81,7 @@ def _experiment(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _point(point: Point) -> Mapping[str, Any]:
+def _point(point: Point) -> Mapping[str, object]:
     value = point.value if point.finite else None
     return {
         "output": point.output,

@@ -29,7 +29,7 @@ class Expected:
     """
 
     source: str
-    starts: Mapping[str, Any]
+    starts: Mapping[str, object]
     members: Mapping[str, bytes]
 
 
@@ -83,7 +83,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
     return Proof(fmu, importer, common, len(starting), differing, outcomes)
 
 
-def _differing(found: Mapping[str, Any], expected: Expected) -> list[str]:
+def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:
     """A line for each start value that is not the one expected."""
     return [
         f"{name} {f'starts at {_shown(found[name])}' if name in found else 'is no parameter of the FMU'}, "

@@ -29,7 +29,7 @@ class Task:
     fmu: str
     folder: str
     interface: str
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, object] = field(default_factory=dict)
     times: Sequence[float] = ()
     inputs: Mapping[str, Sequence[float]] = field(default_factory=dict)
     before: Mapping[str, Sequence[float]] = field(default_factory=dict)

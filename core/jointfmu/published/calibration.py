@@ -52,11 +52,11 @@ def _solve(start: ParameterFile, fit: Fit, chosen: Sequence[Point]) -> Parameter
 
 
 def _residuals(
-    at: Callable[[Any], ParameterFile],
+    at: Callable[[object], ParameterFile],
     observables: Mapping[str, Callable[..., float | bool]],
     chosen: Sequence[Point],
-) -> Callable[[Any], list[float]]:
-    def residuals(logs: Any) -> list[float]:
+) -> Callable[[object], list[float]]:
+    def residuals(logs: object) -> list[float]:
         values = at(logs).values
         return [observables[p.quantity](values, **p.where) / p.value - 1.0 for p in chosen]
 

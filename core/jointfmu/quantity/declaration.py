@@ -61,7 +61,7 @@ def label(item: Field[Any]) -> str:
     return item.name.rstrip("_")
 
 
-def problem(name: str, value: Any, item: Field[Any]) -> str | None:
+def problem(name: str, value: object, item: Field[object]) -> str | None:
     """One line that names the thing, the value with its unit, and what is allowed; None if fine."""
     meta = item.metadata
     if is_symbol(value):
@@ -89,7 +89,7 @@ def problem(name: str, value: Any, item: Field[Any]) -> str | None:
     return None
 
 
-def _series_problem(name: str, values: Any, item: Field[Any]) -> str | None:
+def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
     """As `problem`, of the first of some numbers that is wrong."""
     if not isinstance(values, list | tuple) or not values:
         return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
@@ -98,7 +98,7 @@ def _series_problem(name: str, values: Any, item: Field[Any]) -> str | None:
     return next((text for text in problems if text), None)
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     """A value of any type on one short line."""
     return " ".join(repr(value).split())[:80]
 

@@ -180,7 +180,7 @@ def run(
     amplitudes: Sequence[float],
     swing: Swing,
     output: str | None = None,
-    settings: Mapping[str, Any] | None = None,
+    settings: Mapping[str, object] | None = None,
 ) -> Loops:
     """Drive one input to and fro, each amplitude from rest in an instance of its own; all else stays.
 

@@ -53,7 +53,7 @@ def run(
     input_name: str,
     to: float,
     step: float,
-    settings: Mapping[str, Any] | None = None,
+    settings: Mapping[str, object] | None = None,
 ) -> RampResult:
     """Drive one input from zero along a ramp, one step of one second each; all else stays.
 
@@ -74,7 +74,7 @@ def run(
 
 
 def along(
-    fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, Any] | None = None
+    fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
     """Drive one input along points (n), one step of one second each; all else stays. Raises as `run`."""
     with unpacked(fmu) as (folder, description):

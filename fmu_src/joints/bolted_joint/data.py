@@ -18,7 +18,7 @@ _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0
 """A field of one point."""
 
 
-def _stands(joint: Bolted) -> Mapping[str, Any]:
+def _stands(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
     spread = dict(zip(("bolt_x2", "bolt_y2"), joint.pattern.bolt_spread, strict=True))

@@ -147,7 +147,7 @@ def _lines(facts: dict[str, Any]) -> Iterator[str]:
     yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
 
 
-def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, Any]]:
+def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, object]]:
     for row in rows:
         yield {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
 

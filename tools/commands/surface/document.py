@@ -3,7 +3,6 @@
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.roughness import height, level
@@ -24,7 +23,7 @@ def as_dict(
     heights: Sequence[Heights],
     file: ParameterFile | None,
     args: argparse.Namespace,
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Everything, SI; `file` is the parameter file with the surface, if one is made."""
     joints = joints_shown(args, file)
     return {
@@ -56,7 +55,7 @@ def _joint_dict(
     return {name: _number(value) if sure else None for name, (value, _) in values.items()}
 
 
-def _roughness_dict(identified: Identification, file: ParameterFile | None) -> dict[str, Any]:
+def _roughness_dict(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
     """Of every scan and of both sides together, SI; the stiffness per area under UNIT_PRESSURE."""
     h = together(identified, file)
     return {
@@ -78,7 +77,7 @@ def _roughness_dict(identified: Identification, file: ParameterFile | None) -> d
     }
 
 
-def _result_dict(result: Result, gamma: float) -> dict[str, Any]:
+def _result_dict(result: Result, gamma: float) -> dict[str, object]:
     fit = result.fit
     return {
         "method": result.method,
