@@ -18,10 +18,10 @@ from jointfmu.footprint.friction import friction_patches
 from jointfmu.footprint.patches import few_points
 from jointfmu.footprint.plate import BoltedPlate
 from jointfmu.footprint.shape import NodalField, PressureShape
+from jointfmu.jenkins import Moved
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
-from jointfmu.sliders import Moved
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from .emit import HELPERS, function
 from .graph import Graph
 from .part import NativePart, shared_definitions
 
-_SHORT = 60
+_SHORT = 90
 """Lines of a function that is worth to be inline: what a step evaluates is short."""
 
 
