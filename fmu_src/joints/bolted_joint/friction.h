@@ -12,7 +12,7 @@ enum {
     SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
 };
 
-_Static_assert(SLIDERS <= MOST_SLIDERS, "in one call");
+_Static_assert((int)SLIDERS <= (int)MOST_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;

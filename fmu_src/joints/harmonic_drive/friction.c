@@ -1,6 +1,8 @@
 /* Repeats `Friction` of the package; the limit of the friction is generated. */
 #include "friction.h"
 
+_Static_assert(BRAKES % 4 == 0, "as sliders_line needs them");
+
 void friction_of(Friction *friction, double stiffness)
 {
     friction->acts = stiffness > 0.0;

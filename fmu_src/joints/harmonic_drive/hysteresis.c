@@ -20,6 +20,8 @@ double midline_inverse(const Curve *curve, double torque)
     return copysign(curve_inverse(curve, fabs(torque), &nearest, &carried), torque);
 }
 
+_Static_assert(SLIDERS % 4 == 0, "as sliders_line needs them");
+
 static Sliders sliders_of(const Hysteresis *h, const double *memory)
 {
     return (Sliders){h->K, h->per_K, h->limit, h->limit, {memory, NULL}};

@@ -21,11 +21,11 @@ typedef struct {
     double force[2], tangent[3], loss;
 } SliderSum;
 
-/* Along one direction; `before` and `after` are one array where the limits stay. */
+/* Along one direction, a multiple of four sliders; `before` and `after` are one array where the limits stay. */
 void sliders_line(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
 /* The same with limits that stay, where most stick: the tangents are those from a slider on that is returned. */
 int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
-/* Force along one direction with limits that stay, and its tangent. */
+/* Force along one direction with limits that stay, and its tangent; a multiple of four sliders. */
 double sliders_force(int n, const Sliders *s, double shift, double *tangent);
 /* Rates of force and heat along one direction, by rates of the shift and of the limits after it. */
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
