@@ -20,7 +20,7 @@ from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.patches import few_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField, PressureShape
-from jointfmu.mechanics.sliders import Moved
+from jointfmu.mechanics.jenkins import Moved
 from jointfmu.parameters import default
 
 Array = NDArray[np.float64]

@@ -3,7 +3,8 @@
 What the laws take of the elementary functions gives the same bits everywhere, by `runtime/elementary.c`.
 """
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 
 import casadi as ca
 
@@ -82,6 +83,7 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
     place: dict[int, str] = {}
     body: list[str] = []
     given: set[str] = set()
+    made: dict[str, tuple[int, list[str]]] = {}
     for k in range(graph.n_instructions()):
         code, out, args = graph.instruction_id(k), graph.instruction_output(k), graph.instruction_input(k)
         if code == ca.OP_OUTPUT:
@@ -97,12 +99,38 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
                 form = "{0} == 0.0 ? 0.0 : {0} / {1}"
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
-            body.append(f"const double t{k} = {form.format(*(place[a] for a in args))};")
+            names = [place[a] for a in args]
+            choice = _choice(names, made) if code == ca.OP_ADD else None
+            body.append(f"const double t{k} = {choice or form.format(*names)};")
             place[out[0]] = f"t{k}"
+            made[f"t{k}"] = code, names
     unused = [name for name in inputs if name not in given] + ([] if y else ["y"])
     body += [f"(void){name};" for name in unused]
-    lines = "\n".join(f"    {line}" for line in body)
+    lines = "\n".join(f"    {line}" for line in _used(body))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
+
+
+def _choice(names: Sequence[str], made: Mapping[str, tuple[int, list[str]]]) -> str | None:
+    """`where(condition, a, b)`, which CasADi has as the sum of both, each 0 where it does not hold."""
+    (code, first), (other, second) = (made.get(name, (None, [])) for name in names)
+    if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:
+        return None
+    for (yes, a), (no, b) in ((first, second), (second, first)):
+        if made.get(no) == (ca.OP_NOT, [yes]):
+            return f"{yes} != 0.0 ? {a} : {b}"
+    return None
+
+
+def _used(body: Sequence[str]) -> list[str]:
+    """The lines without those whose value no later line takes."""
+    kept, taken = list[str](), set[str]()
+    for line in reversed(body):
+        name, _, value = line.removeprefix("const double ").partition(" = ")
+        if line.startswith("const ") and name not in taken:
+            continue
+        taken.update(re.findall(r"\bt\d+\b", value))
+        kept.append(line)
+    return kept[::-1]
 
 
 def _number(value: float) -> str:

@@ -9,7 +9,7 @@ from ..joint_parts.graph import Graph
 from ..joint_parts.native import NativePart, shared_definitions
 from .emit import HELPERS, function
 
-_SHORT = 60
+_SHORT = 90
 """Lines of a function that is worth to be inline: what a step evaluates is short."""
 
 

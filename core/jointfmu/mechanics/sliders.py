@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..quantity import Number, where
 from .curve import Curve
 from .footprint.reproducible import to_digits
+from .jenkins import Moved, Slid, Vector, compliance, slide, trial
 
 Array = NDArray[np.float64]
 
@@ -81,32 +82,11 @@ class Carried:
     stiffness : [Pa/m] along the surface; 0 without contact
     limit     : [Pa] of the friction
     slope     : [Pa/m2] derivative of the stiffness in the approach
-    change    : [Pa/m] derivative of the limit in the approach
     """
 
     stiffness: Array
     limit: Array
     slope: Array
-    change: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Moved:
-    """Sliders after a straight path, per area.
-
-    force   : (..., 2, n) [Pa] of each slider, along the shift
-    loss    : (...) [J/m2] turned into heat on the way
-    tangent : (..., 3) [Pa/m] derivative of the sum of the forces in a further shift: xx, xy, yy
-    """
-
-    force: Array
-    loss: Array
-    tangent: Array
-
-    @property
-    def traction(self) -> Array:
-        """Sum of the forces (..., 2) [Pa]."""
-        return np.asarray(np.sum(self.force, axis=-1))
 
 
 @dataclass(frozen=True)
@@ -173,100 +153,70 @@ class Foundation:
         now, ends = self.curve.derivatives(delta, 2), self._ends
         first, last = ([end[..., part] for end in ends] for part in (slice(-1), slice(1, None)))
         load, springs = (np.where(full, b, a) for a, b in zip(now[:2], last, strict=True))
-        springs = np.where(touches, np.maximum(springs - first[1], 0.0), 0.0)
-        inside = np.minimum(delta, high)
-        normal = load - first[0] - first[1] * (inside - low)
-        normal = np.where(touches, np.maximum(normal, 0.0), 0.0)
-        rises = (delta >= low) & ~full
-        bend = np.where(rises, now[2], 0.0)
-        spread = SPREAD * np.where(touches, inside - low, 0.0)
-        narrow = springs * spread < normal  # else the springs begin at the lower height
-        apart = np.where(narrow, springs * spread, normal)
-        parts = np.where(rises, np.where(narrow, bend * spread + springs * SPREAD, springs), 0.0)
-        normal = normal + springs * (delta - inside)
-        half, limit = 0.5 * self.ratio, 0.5 * self.friction
+        width = np.where(touches, np.minimum(delta, high) - low, 0.0)
+        load = np.where(touches, load - first[0] - first[1] * width, 0.0)
+        springs = np.where(touches, springs - first[1], 0.0)
+        bend = np.where((delta >= low) & ~full, now[2], 0.0)
+        each, slope, early, late = touching(load, springs, bend, width, self.ratio, self.friction)
+        grown = self.friction / self.ratio * each * np.where(full, delta - high, 0.0)
+        limit = np.stack([early + grown, late + grown], axis=-1)
         return Carried(
-            np.repeat(half * springs, 2, axis=-1),
-            limit * _pairs(normal - apart, normal + apart),
-            np.repeat(half * bend, 2, axis=-1),
-            limit * _pairs(springs - parts, springs + parts),
+            np.repeat(each, 2, axis=-1),
+            limit.reshape(*limit.shape[:-2], -1),
+            np.repeat(slope, 2, axis=-1),
         )
 
     def moved(self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> Moved:
-        """The sliders after a straight path.
+        """The sliders after a straight path, see `slide`.
 
         force         : (..., 2, n) [Pa] of the sliders before
         before, after : (...) [m] approaches
         shift         : (..., 2) [m] of the other side along the surface
 
-        While the approach grows a slider's stiffness does, by springs that touch without a force; while it
-        falls the springs that lift off take theirs with them. Beyond the limit the force returns to the
-        friction circle. Exact for paths along one direction, of first order for turning ones.
-
-        Heat is the work less the change of the elastic energy: exact for sliders whose stiffness stays, see
-        `slip_loss`, else of third order in the path.
+        The heat is exact for sliders whose stiffness stays, else of third order in the path.
         """
         path, end = _Path.of(before, after, shift), self.carried(after)
         start = self.carried(before) if np.any(path.change) else end
-        keeps, carries = (1.0, end.stiffness) if start is end else self._carrying(start, end, path)
-        old, along = (force[..., 0, :], force[..., 1, :]), (path.along[..., 0, :], path.along[..., 1, :])
-        x, y, beyond, *tangent = slide(*old, keeps, carries, *along, end.limit, end.stiffness)
-        loss = slip_loss(*old, x, y, beyond, start.limit, end.limit, end.stiffness)
-        new = np.stack([x, y], axis=-2)
-        changes = start.stiffness != end.stiffness
+        slid = self._slid(force, start, end, path)
+        loss, changes = slid.loss, start.stiffness != end.stiffness
         if np.any(changes):
-            energy = _elastic(new, end.stiffness) - _elastic(force, start.stiffness)
-            work = self._work(force, new, start, end, path, beyond > 0.0)
-            loss = np.where(changes, np.maximum(work - energy, 0.0), loss)
-        return Moved(new, np.sum(loss, axis=-1), np.stack([np.sum(t, axis=-1) for t in tangent], axis=-1))
+            across = ~self._stays(path)
+            between = self._between_ends(force, start, path) if np.any(across) else (0.0, 0.0)
+            stiffness = start.stiffness, end.stiffness
+            heat = changing_loss(_parts(force), slid.force, path.parts, stiffness, slid.slip, across, between)
+            loss = np.where(changes, heat, loss)
+        tangent = np.stack([np.sum(t, axis=-1) for t in slid.tangent], axis=-1)
+        return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), tangent)
 
-    def _carrying(self, start: Carried, end: Carried, path: "_Path") -> tuple[Array, Array]:
-        """Part of their forces (..., n) that sliders keep on a path [1], and what the shift adds [Pa/m]."""
-        mean = self._mean_stiffness(start, end, path)
-        kept = np.divide(end.stiffness, start.stiffness, out=np.zeros_like(mean), where=start.stiffness > 0.0)
-        grows = path.change >= 0.0
-        return np.where(grows, 1.0, np.minimum(kept, 1.0)), np.where(grows, mean, end.stiffness)
+    def _slid(self, force: Array, start: Carried, end: Carried, path: "_Path") -> Slid:
+        """Each slider (..., n)."""
+        keeps, carries = self._carrying(start, end, path)
+        tried = trial(_parts(force), keeps, carries, path.parts)
+        return slide(_parts(force), tried, start.limit, end.limit, end.stiffness, compliance(end.stiffness))
 
-    def _work(
-        self, force: Array, new: Array, start: Carried, end: Carried, path: "_Path", slips: NDArray[np.bool_]
-    ) -> Array:
-        """Work (..., n) [J/m2] put into the sliders.
+    def _carrying(self, start: Carried, end: Carried, path: "_Path") -> tuple[Number, Number]:
+        """What sliders (..., n) keep, and what the shift adds."""
+        if start is end:
+            return 1.0, end.stiffness
+        small = self._stays(path) & (
+            np.abs(path.change) < SMALL * np.repeat(np.diff(self.height), 2, axis=-1)
+        )
+        limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
+        rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
+        ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
+        return carrying(*ends, path.change, rise, small | (path.change == 0.0))
 
-        By Hermite's rule from the ends of the path, by Lobatto's with two more points for those whose springs
-        begin or cease to touch on it.
-        """
-        work = 0.5 * np.sum((force + new) * path.along, axis=-2)
-        square = np.sum(path.along**2, axis=-2)
-        work += np.where(slips, 0.0, square * (start.stiffness - end.stiffness) / 12.0)
-        crosses = ~self._stays(path)
-        if not np.any(crosses):
-            return np.asarray(work)
-        total = (force + new) / 12.0
-        for part in (0.5 - LOBATTO, 0.5 + LOBATTO):
-            so_far = path.part(part)
-            there = self.carried(so_far.last[..., 0])
-            keeps, carries = self._carrying(start, there, so_far)
-            along = so_far.along[..., 0, :], so_far.along[..., 1, :]
-            x, y, *_ = slide(force[..., 0, :], force[..., 1, :], keeps, carries, *along, there.limit, 0.0)
-            total += 5.0 / 12.0 * np.stack([x, y], axis=-2)
-        return np.asarray(np.where(crosses, np.sum(total * path.along, axis=-2), work))
+    def _between_ends(self, force: Array, start: Carried, path: "_Path") -> tuple[Array, Array]:
+        """Sum of the forces (..., n) at the two inner points of Lobatto's rule."""
+        inner = [path.part(part) for part in (0.5 - LOBATTO, 0.5 + LOBATTO)]
+        slid = [self._slid(force, start, self.carried(p.last[..., 0]), p).force for p in inner]
+        return np.asarray(slid[0][0] + slid[1][0]), np.asarray(slid[0][1] + slid[1][1])
 
     def _stays(self, path: "_Path") -> NDArray[np.bool_]:
         """Whether all, some or none of the springs of sliders (..., n) touch at both ends of a path alike."""
         low, high = (np.repeat(h, 2, axis=-1) for h in self._ranges())
         first, last = path.first, path.last
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
-
-    def _mean_stiffness(self, start: Carried, end: Carried, path: "_Path") -> Array:
-        """Stiffness (..., n) of the sliders on average over a path."""
-        change = path.change
-        ends = 0.5 * (start.stiffness + end.stiffness) + change * (start.slope - end.slope) / 12.0
-        small = np.abs(change) < SMALL * np.repeat(np.diff(self.height), 2, axis=-1)
-        differs = (change != 0.0) & ~(self._stays(path) & small)
-        rise = (end.limit - start.limit).reshape(*ends.shape[:-1], -1, 2).sum(axis=-1)
-        half = 0.5 * self.ratio * np.repeat(rise, 2, axis=-1)
-        difference = np.divide(half, self.friction * change, out=ends.copy(), where=differs)
-        return np.asarray(np.where(start.stiffness == end.stiffness, end.stiffness, difference))
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,73 +237,87 @@ class _Path:
         """Of the approach (..., 1) [m]."""
         return np.asarray(self.last - self.first)
 
+    @property
+    def parts(self) -> tuple[Array, Array]:
+        """Shift (..., 1) along x and along y."""
+        return _parts(self.along)
+
     def part(self, part: float) -> "_Path":
         """Its beginning."""
         return _Path(self.first, self.first + part * self.change, part * self.along)
 
 
-def _pairs(early: Array, late: Array) -> Array:
-    """Values (..., n/2) of the two sliders of each range as those (..., n) of all."""
-    return np.stack([early, late], axis=-1).reshape(*early.shape[:-1], -1)
+def _parts(vector: Array) -> tuple[Array, Array]:
+    """Components (..., n) of vectors (..., 2, n)."""
+    return vector[..., 0, :], vector[..., 1, :]
 
 
-def _elastic(force: Array, stiffness: Array) -> Array:
-    """Elastic energy (..., n) [J/m2] of sliders."""
-    square = np.sum(force**2, axis=-2)
-    energy = np.divide(square, 2.0 * stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
-    return np.asarray(energy)
-
-
-def slide(
-    force_x: Number,
-    force_y: Number,
-    keeps: Number,
-    carries: Number,
-    shift_x: Number,
-    shift_y: Number,
-    limit: Number,
-    stiffness: Number,
+def touching(
+    load: Number, stiffness: Number, bend: Number, width: Number, ratio: Number, friction: Number
 ) -> tuple[Number, ...]:
-    """A slider after a straight path: its force along x and y, how far it would be beyond its limit, and the
-    derivatives xx, xy, yy of the force in a further shift.
+    """Springs that begin to touch, of a range that the approach has entered by `width` [m].
 
-    It keeps the part `keeps` of its force, gains `carries` times the shift and returns to the circle `limit`,
-    on which it only turns; at the end of the path its stiffness is `stiffness`.
+    load, stiffness : of the curve, less those at the lower height and their tangent [Pa, Pa/m]
+    bend            : [Pa/m2] derivative of the stiffness
+
+    Of each of the two sliders the stiffness along the surface [Pa/m], its derivative in the approach [Pa/m2];
+    the limits of the early and the late one [Pa].
     """
-    x, y = keeps * force_x + carries * shift_x, keeps * force_y + carries * shift_y
-    square = x * x + y * y
-    slips = square > limit * limit
-    size = np.sqrt(where(slips, square, 1.0))
-    part = where(slips, limit / size, 1.0)
-    turns, turned = part * stiffness, where(slips, 1.0 / (size * size), 0.0)
-    return (
-        part * x,
-        part * y,
-        where(slips, size - limit, 0.0),
-        turns * (1.0 - turned * x * x),
-        -turns * turned * x * y,
-        turns * (1.0 - turned * y * y),
-    )
+    springs, normal = np.maximum(stiffness, 0.0), np.maximum(load, 0.0)
+    apart = np.minimum(springs * (SPREAD * width), normal)  # else the springs begin at the lower height
+    half = 0.5 * friction
+    return 0.5 * ratio * springs, 0.5 * ratio * bend, half * (normal - apart), half * (normal + apart)
 
 
-def slip_loss(
-    force_x: Number,
-    force_y: Number,
-    moved_x: Number,
-    moved_y: Number,
-    beyond: Number,
-    before: Number,
-    after: Number,
-    stiffness: Number,
+def carrying(
+    start: tuple[Number, Number],
+    end: tuple[Number, Number],
+    change: Number,
+    rise: Number,
+    small: Number,
+) -> tuple[Number, Number]:
+    """Part of its force that a slider keeps on a path [1], and what the shift adds [Pa/m].
+
+    While the approach grows a slider's stiffness does, by springs that touch without a force; while it falls
+    the springs that lift off take theirs with them.
+
+    start, end : stiffness [Pa/m] and its derivative in the approach [Pa/m2]
+    change     : [m] of the approach
+    rise       : [Pa] integral of the stiffness over it, ratio/friction times the mean rise of the limits
+    small      : whether the mean stiffness follows from the ends, to the fourth order, as the rise cancels
+    """
+    (first, slope), (last, then) = start, end
+    touches, falls = first > 0.0, change < 0.0
+    kept = where(touches, np.minimum(last / where(touches, first, 1.0), 1.0), 0.0)
+    ends = 0.5 * (first + last) + change * (slope - then) / 12.0
+    mean = where(small, ends, where(first == last, last, rise / where(small, 1.0, change)))
+    return where(falls, kept, 1.0), where(falls, last, mean)
+
+
+def changing_loss(
+    force: Vector,
+    moved: Vector,
+    shift: Vector,
+    stiffness: tuple[Number, Number],
+    slip: Number,
+    across: Number,
+    between: Vector,
 ) -> Number:
-    """Work [J/m2] that a slider of constant stiffness turns into heat on a path.
+    """Heat [J/m2] of a slider whose stiffness changes from one to another: the work less what it stores.
 
-    The mean of the limit, which goes from `before` to `after`, while it slips, times the slip
-    beyond/stiffness. Exact under constant normal load, and along one direction under any.
+    The work is by Hermite's rule from the ends of the path, by Lobatto's where the springs begin or cease to
+    touch (`across`), with the sum of the forces at its two points `between`.
     """
-    slips, some = beyond > 0.0, stiffness > 0.0
-    aligned = (force_x * moved_x + force_y * moved_y) / where(after > 0.0, after, 1.0)
-    margin = np.maximum(before - aligned, 0.0)
-    onset = margin / where(slips, margin + beyond, 1.0)
-    limit = 0.5 * (after + before + onset * (after - before))
-    return where(slips, limit * beyond * where(some, 1.0 / where(some, stiffness, 1.0), 0.0), 0.0)
+    first, last = stiffness
+    ends = (force[0] + moved[0]) * shift[0] + (force[1] + moved[1]) * shift[1]
+    points = between[0] * shift[0] + between[1] * shift[1]
+    bent = where(slip > 0.0, 0.0, (shift[0] * shift[0] + shift[1] * shift[1]) * ((first - last) / 12.0))
+    work = where(across, ends / 12.0 + 5.0 / 12.0 * points, 0.5 * ends + bent)
+    return np.maximum(work - (_elastic(moved, last) - _elastic(force, first)), 0.0)
+
+
+def _elastic(force: Vector, stiffness: Number) -> Number:
+    """Elastic energy [J/m2] of a slider."""
+    some = stiffness > 0.0
+    square = force[0] * force[0] + force[1] * force[1]
+    return where(some, square / (2.0 * where(some, stiffness, 1.0)), 0.0)

@@ -10,8 +10,6 @@
 enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3, THETA = V_REL + 3, OMEGA = THETA + 3 }; /* places of the inputs */
 _Static_assert(MOMENT == PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn and their rates");
-/* Arguments of `outputs`. */
-enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 _Static_assert(N_MEMORY == FORCES + MOST_PATCHES * 2 * SLIDERS, "as the package has it");
@@ -436,8 +434,26 @@ static int moved_on(const double *inputs, const double *memory)
     return (int)memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
 }
 
-/* Sums over the patches. */
-static void slide_all(Joint *joint, const double *inputs, const double *memory, double *x)
+/* A patch moves: its sums, and the forces of all its sliders. */
+static Shear slide(Joint *joint, int j, const double *inputs, const double *memory, double *force)
+{
+    Kind *kind = &joint->kind;
+    const PatchPath path = path_of(joint, j, inputs, memory);
+    double *const moved[2] = {force, force + SLIDERS};
+    const int touched = path.from->touched > path.to->touched ? path.from->touched : path.to->touched;
+    const int n = kind->moved == RESTING ? 0 : 2 * touched, n_y = kind->moved < FREE ? 0 : n;
+    Shear shear;
+    if (kind->moved == RESTING) /* without forces all springs in contact stick, whatever the heights */
+        shear = foundation_at_rest(&kind->foundation[j], path.to);
+    else
+        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+    memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *force);
+    memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *force);
+    return shear;
+}
+
+/* Sums over the patches, and the memory after the way. */
+static void slide_all(Joint *joint, const double *inputs, const double *memory, double *after, double *x)
 {
     Kind *kind = &joint->kind;
     double heat = 0.0;
@@ -445,49 +461,19 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
-        const PatchPath path = path_of(joint, j, inputs, memory);
-        double *const moved[2] = {kind->force[j][0], kind->force[j][1]};
-        Shear shear;
-        if (kind->moved == RESTING) /* without forces all springs in contact stick, whatever the heights */
-            shear = foundation_at_rest(&kind->foundation[j], &kind->to[j]);
-        else
-            foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+        const Shear shear = slide(joint, j, inputs, memory, after + FORCES + 2 * j * SLIDERS);
         add_shear(x, data.patches[j], shear.traction, shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
+        after[REFERENCES + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
+        after[APPROACHES + j] = kind->to[j].approach;
     }
-    kind->loss = memory[LOSS] + kind->area * heat;
-    x[SUM_LOSS] = kind->loss / kind->area;
-}
-
-/* The forces of some sliders, none of the others. */
-static void copy_forces(const double *from, int n, double *to)
-{
-    memcpy(to, from, (size_t)n * sizeof *to);
-    memset(to + n, 0, (size_t)(SLIDERS - n) * sizeof *to);
-}
-
-void joint_accept(Joint *joint, const double *inputs, const double *before, double *after)
-{
-    const Kind *kind = &joint->kind;
-    if (!kind->memory) {
-        memcpy(after, before, N_MEMORY * sizeof *after);
-        return;
-    }
-    after[MOVED] = kind->moved;
-    after[LOSS] = kind->loss;
-    after[RIGID] = inputs[S_REL];
-    after[RIGID + 1] = inputs[S_REL + 1];
-    after[RIGID + 2] = inputs[THETA + 2];
-    for (int j = 0; j < n_patches(); j++) {
-        const Point *from = &kind->from[j], *to = &kind->to[j];
-        const int touched = from->touched > to->touched ? from->touched : to->touched;
-        const int n = kind->moved == RESTING ? 0 : 2 * touched;
-        double *force = after + FORCES + 2 * j * SLIDERS;
-        after[REFERENCES + j] = kind->moved == RESTING ? to->approach : kind->foundation[j].reference;
-        after[APPROACHES + j] = to->approach;
-        copy_forces(kind->force[j][0], n, force);
-        copy_forces(kind->force[j][1], kind->moved < FREE ? 0 : n, force + SLIDERS);
-    }
+    const double loss = memory[LOSS] + kind->area * heat;
+    x[SUM_LOSS] = loss / kind->area;
+    after[MOVED] = kind->memory ? kind->moved : UNKNOWN;
+    after[LOSS] = loss;
+    after[RIGID] = kind->memory ? inputs[S_REL] : 0.0;
+    after[RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
+    after[RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
 }
 
 /* Outputs */
@@ -511,7 +497,7 @@ static bool as_tightened(const Kind *kind, const double *inputs)
     return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
 }
 
-static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *x, Text *why)
+static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
 {
     Kind *kind = &joint->kind;
     tighten(joint, inputs);
@@ -526,15 +512,17 @@ static bool sum_up(Joint *joint, const double *inputs, const double *memory, dou
         memcpy(x + SUM_NORMAL, kind->sums, sizeof kind->sums);
         x[SUM_PRESSURE] = kind->sums[0];
     }
-    slide_all(joint, inputs, memory, x);
+    slide_all(joint, inputs, memory, after, x);
     fill(joint, inputs, x);
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
+                    Text *why)
 {
-    double x[N_X] = {0.0};
-    if (!sum_up(joint, inputs, memory, x, why))
+    double *x = joint->kind.known;
+    memset(x, 0, sizeof joint->kind.known);
+    if (!sum_up(joint, inputs, memory, after, x, why))
         return false;
     outputs(x, joint->c, out);
     return true;
@@ -610,8 +598,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     double x[2 * N_X] = {0.0}, *dx = x + N_X, bolts[4];
     Text ignored;
     text_clear(&ignored);
-    if (!sum_up(joint, inputs, memory, x, &ignored))
-        return;
+    memcpy(x, joint->kind.known, sizeof joint->kind.known);
     bolt_pressures(at, joint->c, bolts);
     bolt_pressures_seed(at, joint->c, bolts + 2);
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))

@@ -12,6 +12,9 @@
 enum { MOVED, LOSS, RIGID, REFERENCES = RIGID + 3, APPROACHES = REFERENCES + MOST_PATCHES, FORCES = APPROACHES + MOST_PATCHES };
 enum { UNKNOWN, RESTING, ALONG, FREE }; /* how it has moved: not yet begun, not, along x alone, otherwise */
 
+/* Arguments of `outputs`. */
+enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
+
 typedef struct {
     Spots spots;
     Approach approach;
@@ -30,8 +33,7 @@ typedef struct {
     double apart[3], normal[N_SUMS], p_max;
     Point from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
     int moved;                       /* how it has moved up to the last evaluation */
-    double loss;                     /* heat up to it [J] */
-    double force[MOST_PATCHES][2][SLIDERS];
+    double known[N_X];               /* arguments of `outputs` in it, for its derivative */
     Work work; /* of the patch at hand */
 } Kind;
 

@@ -1,9 +1,12 @@
 #include "friction.h"
 
-/* What each slider of a range has at a point, the early and the late one, and derivatives in the approach. */
+#include <string.h>
+
+/* What each slider of a range has at a point, the early and the late one; or rates of it. */
 typedef struct {
-    double K, slope, limit[2], change[2];
+    double K, slope, limit[2];
 } Pair;
+_Static_assert(sizeof(Pair) == 4 * sizeof(double), "results of touching");
 
 static double inverse(const Foundation *f, double load)
 {
@@ -89,72 +92,59 @@ Point foundation_point(const Foundation *f, double approach, int near)
     return p;
 }
 
+/* Arguments of `touching` for a range at a point. */
+enum { X_RATIO, X_MU, X_LOAD, X_STIFFNESS, X_BEND, X_WIDTH, N_TOUCHING };
+
+static inline void entered(const Foundation *f, int i, const Point *p, double *x)
+{
+    x[X_RATIO] = f->ratio;
+    x[X_MU] = f->mu;
+    x[X_WIDTH] = p->approach - f->height[i];
+    x[X_LOAD] = p->y[0] - f->load[i] - f->stiffness[i] * x[X_WIDTH];
+    x[X_STIFFNESS] = p->y[1] - f->stiffness[i];
+    x[X_BEND] = p->y[2];
+}
+
 /* Those of a range at a point, see `Foundation.carried`. */
 static inline Pair pair_at(const Foundation *f, int i, const Point *p)
 {
-    const double half = 0.5 * f->mu;
+    double x[N_TOUCHING];
+    Pair pair = {.K = 0.0};
     if (p->approach < f->height[i])
-        return (Pair){.K = 0.0};
+        return pair;
     if (i < p->full) {
-        const double *limit = f->limit + 2 * i, grows = half * f->springs[i];
-        return (Pair){.K = f->K[2 * i],
-                      .limit = {limit[0] + grows * p->approach, limit[1] + grows * p->approach},
-                      .change = {grows, grows}};
+        const double *limit = f->limit + 2 * i, grown = 0.5 * f->mu * f->springs[i] * p->approach;
+        return (Pair){.K = f->K[2 * i], .limit = {limit[0] + grown, limit[1] + grown}};
     }
-    const double width = p->approach - f->height[i], springs = fmax(p->y[1] - f->stiffness[i], 0.0);
-    const double normal = fmax(p->y[0] - f->load[i] - f->stiffness[i] * width, 0.0), spread = SLIDER_SPREAD * width;
-    const bool narrow = springs * spread < normal;
-    const double apart = narrow ? springs * spread : normal;
-    const double parts = narrow ? p->y[2] * spread + springs * SLIDER_SPREAD : springs;
-    return (Pair){.K = 0.5 * f->ratio * springs,
-                  .slope = 0.5 * f->ratio * p->y[2],
-                  .limit = {half * (normal - apart), half * (normal + apart)},
-                  .change = {half * (springs - parts), half * (springs + parts)}};
+    entered(f, i, p, x);
+    touching(x, NULL, &pair.K);
+    return pair;
+}
+
+/* Its rate by that of the approach; `bend` is the derivative of the slope. */
+static Pair pair_rate(const Foundation *f, int i, const Point *p, double rate, double bend)
+{
+    double x[2 * N_TOUCHING - X_LOAD], *dx = x + N_TOUCHING - X_LOAD;
+    Pair pair = {.K = 0.0};
+    if (p->approach < f->height[i])
+        return pair;
+    if (i < p->full) {
+        const double grows = 0.5 * f->mu * f->springs[i] * rate;
+        return (Pair){.limit = {grows, grows}};
+    }
+    entered(f, i, p, x);
+    dx[X_LOAD] = (p->y[1] - f->stiffness[i]) * rate;
+    dx[X_STIFFNESS] = p->y[2] * rate;
+    dx[X_BEND] = 2.0 / f->ratio * bend * rate;
+    dx[X_WIDTH] = rate;
+    touching_seed(x, NULL, &pair.K);
+    return pair;
 }
 
 /* Whether all, some or none of the springs of a range touch at both points alike. */
 static bool stays(int i, const Point *from, const Point *to)
 {
     return (i < from->touched) == (i < to->touched) && (i < from->full) == (i < to->full);
-}
-
-/* What the sliders of a range keep of their forces on a way, what they gain by the shift, and both by the
- * approaches at its ends. */
-typedef struct {
-    double keeps, carries, keeps_by[2], carries_by[2];
-} Gain;
-
-static Gain gain_on(const Foundation *f, int i, const Point *from, const Point *to, const Pair *start, const Pair *end)
-{
-    const double change = to->approach - from->approach;
-    if (change < 0.0) {
-        const bool loses = start->K > 0.0 && end->K < start->K;
-        const double keeps = loses ? end->K / start->K : (start->K > 0.0 ? 1.0 : 0.0);
-        return (Gain){.keeps = keeps,
-                      .carries = end->K,
-                      .keeps_by = {loses ? -keeps * start->slope / start->K : 0.0, loses ? end->slope / start->K : 0.0},
-                      .carries_by = {0.0, end->slope}};
-    }
-    const double width = f->height[i + 1] - f->height[i];
-    if (start->K == end->K || change == 0.0 || (stays(i, from, to) && change < SLIDER_SMALL * width)) {
-        const double ends = 0.5 * (start->K + end->K) + change * (start->slope - end->slope) / 12.0;
-        return (Gain){.keeps = 1.0,
-                      .carries = start->K == end->K ? end->K : ends,
-                      .carries_by = {start->slope / 3.0 + end->slope / 6.0, start->slope / 6.0 + end->slope / 3.0}};
-    }
-    const double rise = end->limit[0] + end->limit[1] - start->limit[0] - start->limit[1];
-    const double mean = 0.5 * f->ratio * rise / (f->mu * change);
-    return (Gain){.keeps = 1.0, .carries = mean, .carries_by = {(mean - start->K) / change, (end->K - mean) / change}};
-}
-
-static double square_of(const double v[2])
-{
-    return v[0] * v[0] + v[1] * v[1];
-}
-
-static double elastic(const double q[2], double K)
-{
-    return K > 0.0 ? square_of(q) / (2.0 * K) : 0.0;
 }
 
 /* The two points of Lobatto's rule on a way, looked up when they are first needed. */
@@ -175,291 +165,171 @@ static const Point *inner_points(const Foundation *f, const PatchPath *path, Inn
     return inner->at;
 }
 
-/* Sums over the sliders, over the early and the late ones. */
-typedef struct {
-    double x[2], y[2], xx[2], xy[2], yy[2], heat[2];
-} Sums;
-
-/* Trial forces x, y, their limits, and whether they are beyond these. */
-static inline void try_forces(const Foundation *restrict f, int n, double u, double v, double to,
-                              const double *restrict q_x, const double *restrict q_y, double *restrict x,
-                              double *restrict y, Work *restrict w)
+static void add(const SliderSum *sum, Shear *shear)
 {
-    const double grown = f->mu / f->ratio * to;
+    for (int d = 0; d < 2; d++)
+        shear->traction[d] += sum->force[d];
+    for (int d = 0; d < 3; d++)
+        shear->tangent[d] += sum->tangent[d];
+    shear->loss += sum->loss;
+}
+
+/* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
+static void move_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
+                        double *const moved[2], Shear *shear)
+{
+    SliderSum sum;
+    const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
+                            : sliders_plane(n, s, path->shift, moved, &sum);
+    const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
+    sum.tangent[0] += K;
+    sum.tangent[2] += K;
+    add(&sum, shear);
+}
+
+/* The first `n` sliders, of ranges all in contact. */
+static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
+                      Work *work, Shear *shear)
+{
+    const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
     for (int k = 0; k < n; k++) {
-        w->limit[k] = f->limit[k] + f->K[k] * grown;
-        x[k] = q_x[k] + f->K[k] * u;
-        y[k] = q_y[k] + f->K[k] * v;
-        w->over[k] = x[k] * x[k] + y[k] * y[k] - w->limit[k] * w->limit[k];
+        work->before[k] = f->limit[k] + f->K[k] * from;
+        work->after[k] = f->limit[k] + f->K[k] * to;
     }
-}
-
-/* Those from the first that slips on: trial forces x, y become forces on the friction circle where they are
- * beyond it. Written are the changes of the tangent and the heat. */
-static inline void slip_all(const double *restrict K, const double *restrict per_K, const double *restrict fixed,
-                            double grown, int first, int n, const double *restrict q_x,
-                            const double *restrict q_y, double *restrict x, double *restrict y, Work *restrict w)
-{
-    for (int k = first; k < n; k++) {
-        const double limit = w->limit[k], before = fixed[k] + K[k] * grown, square = x[k] * x[k] + y[k] * y[k];
-        const bool slips = square > limit * limit;
-        const double size = sqrt(slips ? square : 1.0), beyond = slips ? size - limit : 1.0;
-        const double early = before * size - (q_x[k] * x[k] + q_y[k] * y[k]); /* margin times size */
-        const double margin = early > 0.0 ? early : 0.0, all = margin + beyond * size, per_all = 1.0 / (size * all);
-        const double per = slips ? all * per_all : 0.0, onset = margin * size * per_all;
-        const double part = slips ? limit * per : 1.0, n_x = x[k] * per, n_y = y[k] * per;
-        const double stiffness = part * K[k], gone = stiffness - K[k];
-        const double heat = 0.5 * (limit + before + onset * (limit - before)) * beyond * per_K[k];
-        w->xx[k] = gone - stiffness * n_x * n_x;
-        w->xy[k] = stiffness * n_x * n_y;
-        w->yy[k] = gone - stiffness * n_y * n_y;
-        w->heat[k] = slips ? heat : 0.0;
-        x[k] *= part;
-        y[k] *= part;
-    }
-}
-
-/* The first pair of which one is beyond its limit. */
-static inline int first_over(const double *over, int n)
-{
-    int k = 0;
-    while (k < n && !((over[k] > over[k + 1] ? over[k] : over[k + 1]) > 0.0))
-        k += 2;
-    return k;
-}
-
-/* Add forces, and from the first that slips on changes of the tangent and heat. */
-static inline void add_up(const double *x, const double *y, const Work *w, int first, int n, Sums *sum)
-{
-    Sums s = *sum;
-    double next[2][2] = {{0.0, 0.0}, {0.0, 0.0}}; /* every second range has sums of its own, to be added meanwhile */
-    int i = 0;
-    for (; i + 4 <= n; i += 4) {
-        s.x[0] += x[i];
-        s.x[1] += x[i + 1];
-        s.y[0] += y[i];
-        s.y[1] += y[i + 1];
-        next[0][0] += x[i + 2];
-        next[0][1] += x[i + 3];
-        next[1][0] += y[i + 2];
-        next[1][1] += y[i + 3];
-    }
-    for (; i < n; i++) {
-        next[0][i % 2] += x[i];
-        next[1][i % 2] += y[i];
-    }
-    for (int l = 0; l < 2; l++) {
-        s.x[l] += next[0][l];
-        s.y[l] += next[1][l];
-    }
-    for (int k = first; k < n; k += 2) {
-        s.xx[0] += w->xx[k];
-        s.xx[1] += w->xx[k + 1];
-        s.xy[0] -= w->xy[k];
-        s.xy[1] -= w->xy[k + 1];
-        s.yy[0] += w->yy[k];
-        s.yy[1] += w->yy[k + 1];
-        s.heat[0] += w->heat[k];
-        s.heat[1] += w->heat[k + 1];
-    }
-    *sum = s;
-}
-
-/* The first `n` sliders, of ranges all in contact. Those that stick take no more than a trial force. */
-static void move_full(const Foundation *f, int n, const PatchPath *path, double *const moved[2], Work *w, Sums *sum)
-{
-    const double *q_x = path->force[0], *q_y = path->force[1], to = path->to->approach, from = path->from->approach;
-    try_forces(f, n, path->shift[0], path->shift[1], to, q_x, q_y, moved[0], moved[1], w);
-    const int first = first_over(w->over, n);
-    slip_all(f->K, f->per_K, f->limit, f->mu / f->ratio * from, first, n, q_x, q_y, moved[0], moved[1], w);
-    add_up(moved[0], moved[1], w, first, n, sum);
-}
-
-/* The same along x alone and under a load that stays. */
-static inline void try_along(const Foundation *restrict f, int n, double u, double to, const double *restrict q,
-                             double *restrict x, Work *restrict w)
-{
-    const double grown = f->mu / f->ratio * to;
-    for (int k = 0; k < n; k++) {
-        w->limit[k] = f->limit[k] + f->K[k] * grown;
-        x[k] = q[k] + f->K[k] * u;
-        w->over[k] = fabs(x[k]) - w->limit[k];
-    }
-}
-
-static inline void slip_along(const Foundation *restrict f, int first, int n, double *restrict x, Work *restrict w)
-{
-    for (int k = first; k < n; k++) {
-        const bool slips = w->over[k] > 0.0;
-        const double beyond = slips ? w->over[k] : 0.0, size = fabs(x[k]), part = slips ? w->limit[k] / size : 1.0;
-        w->xx[k] = slips ? -f->K[k] : 0.0;
-        w->yy[k] = (part - 1.0) * f->K[k];
-        w->heat[k] = w->limit[k] * beyond * f->per_K[k];
-        x[k] *= part;
-    }
-}
-
-static void move_along(const Foundation *f, int n, const PatchPath *path, double *x, Work *w, Sums *sum)
-{
-    double force[2] = {0.0, 0.0};
-    try_along(f, n, path->shift[0], path->to->approach, path->force[0], x, w);
-    const int first = first_over(w->over, n);
-    slip_along(f, first, n, x, w);
-    for (int k = 0; k < n; k += 2) {
-        force[0] += x[k];
-        force[1] += x[k + 1];
-    }
-    for (int l = 0; l < 2; l++) {
-        sum->x[l] += force[l];
-        for (int k = first + l; k < n; k += 2) {
-            sum->xx[l] += w->xx[k];
-            sum->yy[l] += w->yy[k];
-            sum->heat[l] += w->heat[k];
-        }
-    }
-}
-
-/* The range in which springs begin to touch, along x alone and while the load stays. */
-static void rest_along(const Foundation *f, int i, const PatchPath *path, double *x, Sums *sum)
-{
-    const Pair here = pair_at(f, i, path->to);
-    const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0;
-    for (int l = 0; l < 2; l++) {
-        const double trial = path->force[0][2 * i + l] + here.K * path->shift[0], size = fabs(trial);
-        const bool slips = size > here.limit[l];
-        const double part = slips ? here.limit[l] / size : 1.0;
-        x[2 * i + l] = part * trial;
-        sum->x[l] += part * trial;
-        sum->xx[l] += slips ? 0.0 : here.K;
-        sum->yy[l] += part * here.K;
-        sum->heat[l] += slips ? here.limit[l] * (size - here.limit[l]) * soft : 0.0;
-    }
+    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
+    move_steady(n, &s, f->stick, path, along, moved, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
-static void move_resting(const Foundation *f, int i, const PatchPath *path, double *const moved[2], Work *w,
-                         Sums *sum)
+static void move_resting(const Foundation *f, int i, const PatchPath *path, bool along, double *const moved[2],
+                         Shear *shear)
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    const double *q_x = path->force[0] + 2 * i, *q_y = path->force[1] + 2 * i;
-    double *x = moved[0] + 2 * i, *y = moved[1] + 2 * i;
-    for (int l = 0; l < 2; l++) {
-        w->limit[l] = here.limit[l];
-        x[l] = q_x[l] + here.K * path->shift[0];
-        y[l] = q_y[l] + here.K * path->shift[1];
-        w->over[l] = x[l] * x[l] + y[l] * y[l] - here.limit[l] * here.limit[l];
-        sum->xx[l] += here.K;
-        sum->yy[l] += here.K;
-    }
-    const int first = first_over(w->over, 2);
-    if (first < 2)
-        slip_all(K, per_K, here.limit, 0.0, first, 2, q_x, q_y, x, y, w);
-    add_up(x, y, w, first, 2, sum);
+    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i}};
+    double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
+    move_steady(2, &s, &stick, path, along, to, shear);
 }
 
-/* A range whose stiffness changes on the way. */
+/* A range whose stiffness changes on the way, or rates of what it has at its ends and at the points between. */
 typedef struct {
-    Pair start, end;
-    double per_start, per_end; /* 1/K, 0 without springs */
-    double per_rise;           /* mean stiffness over the rise of the limits */
-    bool across;               /* its springs begin or cease to touch */
+    Pair start, end, inner[2];
 } Range;
 
-static Range range_on(const Foundation *f, int i, const PatchPath *path)
+static Range range_on(const Foundation *f, int i, const PatchPath *path, const Point *inner)
 {
-    const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
-    const double change = path->to->approach - path->from->approach;
-    return (Range){.start = start,
-                   .end = end,
-                   .per_start = start.K > 0.0 ? 1.0 / start.K : 0.0,
-                   .per_end = end.K > 0.0 ? 1.0 / end.K : 0.0,
-                   .per_rise = 0.5 * f->ratio / (f->mu * change),
-                   .across = !stays(i, path->from, path->to)};
+    Range r = {.start = pair_at(f, i, path->from), .end = pair_at(f, i, path->to)};
+    for (int p = 0; p < 2 && inner; p++)
+        r.inner[p] = pair_at(f, i, &inner[p]);
+    return r;
 }
 
-/* Stiffness by which sliders gain force on a part of the way, and what they keep. */
-static inline void carrying(const Foundation *f, int i, const PatchPath *path, const Range *r, const Point *at,
-                            const Pair *to, double part, double *keeps, double *carries)
+/* Arguments of `carrying`. */
+enum { X_SMALL, X_FIRST, X_SLOPE, X_LAST, X_THEN, X_CHANGE, X_RISE, N_CARRYING };
+
+static inline double sum_of_limits(const Pair *pair)
 {
-    const double change = part * (path->to->approach - path->from->approach);
-    const bool small = change < SLIDER_SMALL * (f->height[i + 1] - f->height[i]);
-    *keeps = 1.0;
-    *carries = to->K;
-    if (change < 0.0) {
-        const double kept = to->K * r->per_start;
-        *keeps = kept < 1.0 ? kept : 1.0;
-    } else if (to->K != r->start.K && small && stays(i, path->from, at)) {
-        *carries = 0.5 * (r->start.K + to->K) + change * (r->start.slope - to->slope) / 12.0;
-    } else if (to->K != r->start.K) {
-        const double rise = to->limit[0] + to->limit[1] - r->start.limit[0] - r->start.limit[1];
-        *carries = rise * r->per_rise / part;
+    return pair->limit[0] + pair->limit[1];
+}
+
+/* Those that change: of a range from its start to a point, the part `part` of the way, or rates of them. */
+static inline void ends_of(const Foundation *f, const Pair *start, const Pair *end, double change, double *x)
+{
+    x[X_FIRST] = start->K;
+    x[X_SLOPE] = start->slope;
+    x[X_LAST] = end->K;
+    x[X_THEN] = end->slope;
+    x[X_CHANGE] = change;
+    x[X_RISE] = 0.5 * f->ratio / f->mu * (sum_of_limits(end) - sum_of_limits(start));
+}
+
+static inline void gain(const Foundation *f, int i, const PatchPath *path, const Pair *start, const Pair *end,
+                        const Point *at, double *x)
+{
+    const double change = at->approach - path->from->approach;
+    const bool near = fabs(change) < SLIDER_SMALL * (f->height[i + 1] - f->height[i]);
+    ends_of(f, start, end, change, x);
+    x[X_SMALL] = change == 0.0 || (near && stays(i, path->from, at));
+}
+
+/* Arguments of `slide_plane`, and its results. */
+enum { S_FORCE, S_KEEPS = 2, S_CARRIES, S_SHIFT, S_BEFORE = 6, S_AFTER, S_K, S_PER_K, N_SLIDE };
+enum { MOVED_FORCE, MOVED_TANGENT = 2, MOVED_LOSS = 5, MOVED_SLIP, N_MOVED };
+
+static inline void slider_on(const PatchPath *path, int k, const double gained[2], double part, const Pair *start,
+                             const Pair *end, double *x)
+{
+    x[S_FORCE] = path->force[0][k];
+    x[S_FORCE + 1] = path->force[1][k];
+    x[S_KEEPS] = gained[0];
+    x[S_CARRIES] = gained[1];
+    x[S_SHIFT] = part * path->shift[0];
+    x[S_SHIFT + 1] = part * path->shift[1];
+    x[S_BEFORE] = start->limit[k % 2];
+    x[S_AFTER] = end->limit[k % 2];
+    x[S_K] = end->K;
+    x[S_PER_K] = end->K > 0.0 ? 1.0 / end->K : 0.0;
+}
+
+/* The slider after it; most stick, which takes no root. */
+static inline void slide(const double *x, double *y)
+{
+    const double stick[] = {x[0], x[1], x[S_KEEPS], x[S_CARRIES], x[S_SHIFT], x[S_SHIFT + 1], x[S_AFTER]};
+    double tried[3];
+    stick_plane(stick, NULL, tried);
+    if (tried[2] > 0.0) {
+        slide_plane(x, NULL, y);
+        return;
     }
+    const double sticks[N_MOVED] = {tried[0], tried[1], x[S_K], 0.0, x[S_K]};
+    memcpy(y, sticks, sizeof sticks);
 }
 
-/* A slider after a way, as `slide` of the package; returned is 1 over the size of the trial force, 0 if it sticks. */
-static inline double slid(double q_x, double q_y, double keeps, double carries, const double shift[2], double limit,
-                          double y[2])
-{
-    y[0] = keeps * q_x + carries * shift[0];
-    y[1] = keeps * q_y + carries * shift[1];
-    const double square = y[0] * y[0] + y[1] * y[1];
-    if (!(square > limit * limit))
-        return 0.0;
-    const double per = 1.0 / sqrt(square);
-    y[0] *= limit * per;
-    y[1] *= limit * per;
-    return per;
-}
+/* Arguments of `changing_loss`. */
+enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_BETWEEN, N_CHANGING = 12 };
 
-/* Work of the two sliders by Lobatto's rule. */
-static void work_across(const Foundation *f, int i, const PatchPath *path, const Range *r, const Point *inner,
-                        const double *x, const double *y, double work[2])
+static inline void changing(const double *slider, const double *moved, const double shift[2], const Pair *start,
+                            const Pair *end, double *x)
 {
-    const double *q_x = path->force[0] + 2 * i, *q_y = path->force[1] + 2 * i, *u = path->shift;
-    for (int l = 0; l < 2; l++)
-        work[l] = ((q_x[l] + x[l]) * u[0] + (q_y[l] + y[l]) * u[1]) / 12.0;
-    for (int p = 0; p < 2; p++) {
-        const Pair there = pair_at(f, i, &inner[p]);
-        const double shift[2] = {lobatto[p] * u[0], lobatto[p] * u[1]};
-        double keeps, carries, force[2];
-        carrying(f, i, path, r, &inner[p], &there, lobatto[p], &keeps, &carries);
-        for (int l = 0; l < 2; l++) {
-            slid(q_x[l], q_y[l], keeps, carries, shift, there.limit[l], force);
-            work[l] += 5.0 / 12.0 * (force[0] * u[0] + force[1] * u[1]);
-        }
+    for (int d = 0; d < 2; d++) {
+        x[C_FORCE + d] = slider[S_FORCE + d];
+        x[C_MOVED + d] = moved[MOVED_FORCE + d];
+        x[C_SHIFT + d] = shift[d];
     }
+    x[C_FIRST] = start->K;
+    x[C_LAST] = end->K;
+    x[C_SLIP] = moved[MOVED_SLIP];
 }
 
-/* The sliders of a range that changes, or is not all in contact. */
+/* The sliders of a range that changes. */
 static void move_range(const Foundation *f, int i, const PatchPath *path, Inner *inner, double *const moved[2],
-                       Sums *sum)
+                       Shear *shear)
 {
-    const Range r = range_on(f, i, path);
-    const double *q_x = path->force[0] + 2 * i, *q_y = path->force[1] + 2 * i, *u = path->shift;
-    const double bent = square_of(u) * (r.start.K - r.end.K) / 12.0;
-    double *x = moved[0] + 2 * i, *y = moved[1] + 2 * i, work[2], keeps, carries, per[2];
-    carrying(f, i, path, &r, path->to, &r.end, 1.0, &keeps, &carries);
-    for (int l = 0; l < 2; l++) {
-        double force[2];
-        per[l] = slid(q_x[l], q_y[l], keeps, carries, u, r.end.limit[l], force);
-        x[l] = force[0];
-        y[l] = force[1];
-        const double part = per[l] > 0.0 ? r.end.limit[l] * per[l] : 1.0, stiffness = part * r.end.K;
-        const double turned = per[l] > 0.0 && r.end.limit[l] > 0.0 ? r.end.K * per[l] / r.end.limit[l] : 0.0;
-        sum->x[l] += x[l];
-        sum->y[l] += y[l];
-        sum->xx[l] += stiffness - turned * x[l] * x[l];
-        sum->xy[l] -= turned * x[l] * y[l];
-        sum->yy[l] += stiffness - turned * y[l] * y[l];
-        work[l] = 0.5 * ((q_x[l] + x[l]) * u[0] + (q_y[l] + y[l]) * u[1]) + (per[l] > 0.0 ? 0.0 : bent);
+    const bool across = !stays(i, path->from, path->to);
+    const Point *points = across ? inner_points(f, path, inner) : NULL;
+    const Range r = range_on(f, i, path, points);
+    double x[N_CARRYING], gained[3][2];
+    gain(f, i, path, &r.start, &r.end, path->to, x);
+    carrying(x, NULL, gained[2]);
+    for (int p = 0; p < 2 && across; p++) {
+        gain(f, i, path, &r.start, &r.inner[p], &points[p], x);
+        carrying(x, NULL, gained[p]);
     }
-    if (r.across)
-        work_across(f, i, path, &r, inner_points(f, path, inner), x, y, work);
-    for (int l = 0; l < 2; l++) {
-        const double stored = x[l] * x[l] + y[l] * y[l], was = q_x[l] * q_x[l] + q_y[l] * q_y[l];
-        const double heat = work[l] - 0.5 * (stored * r.per_end - was * r.per_start);
-        sum->heat[l] += heat > 0.0 ? heat : 0.0;
+    for (int k = 2 * i; k < 2 * i + 2; k++) {
+        double slider[N_SLIDE], y[N_MOVED], there[N_MOVED], c[N_CHANGING] = {across}, loss;
+        slider_on(path, k, gained[2], 1.0, &r.start, &r.end, slider);
+        slide(slider, y);
+        changing(slider, y, path->shift, &r.start, &r.end, c);
+        for (int p = 0; p < 2 && across; p++) {
+            slider_on(path, k, gained[p], lobatto[p], &r.start, &r.inner[p], slider);
+            slide(slider, there);
+            c[C_BETWEEN] += there[0];
+            c[C_BETWEEN + 1] += there[1];
+        }
+        changing_loss(c, NULL, &loss);
+        moved[0][k] = y[0];
+        moved[1][k] = y[1];
+        add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, r.start.K == r.end.K ? y[MOVED_LOSS] : loss}, shear);
     }
 }
 
@@ -471,25 +341,16 @@ static int touched_on(const PatchPath *path)
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
-    const bool rests = path->from->approach == path->to->approach;
-    const double stick = full > 0 ? 0.5 * f->stick[full - 1] : 0.0;
-    Sums sum = {.xx = {stick, stick}, .yy = {stick, stick}};
+    const bool rests = path->from->approach == path->to->approach, along = rests && path->straight;
     Inner inner = {.known = false};
-    if (rests && path->straight)
-        move_along(f, 2 * full, path, moved[0], work, &sum);
-    else
-        move_full(f, 2 * full, path, moved, work, &sum);
+    *shear = (Shear){.loss = 0.0};
+    move_full(f, 2 * full, path, along, moved, work, shear);
     for (int i = full; i < touched; i++) {
-        if (rests && path->straight)
-            rest_along(f, i, path, moved[0], &sum);
-        else if (rests)
-            move_resting(f, i, path, moved, work, &sum);
+        if (rests)
+            move_resting(f, i, path, along, moved, shear);
         else
-            move_range(f, i, path, &inner, moved, &sum);
+            move_range(f, i, path, &inner, moved, shear);
     }
-    *shear = (Shear){.traction = {sum.x[0] + sum.x[1], sum.y[0] + sum.y[1]},
-                     .tangent = {sum.xx[0] + sum.xx[1], sum.xy[0] + sum.xy[1], sum.yy[0] + sum.yy[1]},
-                     .loss = sum.heat[0] + sum.heat[1]};
 }
 
 Shear foundation_at_rest(const Foundation *f, const Point *at)
@@ -500,131 +361,107 @@ Shear foundation_at_rest(const Foundation *f, const Point *at)
 
 /* Rates */
 
-enum { KEEPS = 2, CARRIES, SHIFT, LIMIT = SHIFT + 2, STIFFNESS, N_SLIDE }; /* arguments of `slide`: force, then these */
-enum { BEYOND = 2, TANGENT, N_SLID = TANGENT + 3 };             /* its results: force, then these */
+/* Rates of a path: of the approaches at its ends, of the shift. */
+typedef struct {
+    double ends[2], shift[2];
+} PathRate;
 
-/* Arguments of `slide` for the part of a path up to a point, and their rates. */
-static void arguments(const Foundation *f, int i, int late, const PatchPath *path, const Point *to, double part,
-                      const double rates[2], const double shift[2], double *x)
+static double rate_at(const PathRate *rates, double part)
 {
-    const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, to);
-    const Gain gain = gain_on(f, i, path->from, to, &start, &end);
-    const double first = rates[0], last = first + part * (rates[1] - first);
-    double *dx = x + N_SLIDE - KEEPS; /* none of the force */
-    for (int d = 0; d < 2; d++) {
-        x[d] = path->force[d][2 * i + late];
-        x[SHIFT + d] = part * path->shift[d];
-        dx[SHIFT + d] = part * shift[d];
-    }
-    x[KEEPS] = gain.keeps;
-    x[CARRIES] = gain.carries;
-    x[STIFFNESS] = end.K;
-    x[LIMIT] = end.limit[late];
-    dx[KEEPS] = gain.keeps_by[0] * first + gain.keeps_by[1] * last;
-    dx[CARRIES] = gain.carries_by[0] * first + gain.carries_by[1] * last;
-    dx[STIFFNESS] = end.slope * last;
-    dx[LIMIT] = end.change[late] * last;
+    return rates->ends[0] + part * (rates->ends[1] - rates->ends[0]);
 }
 
-/* Work on a slider that changes, and its rate, as in `move_range`. */
-static void work_rate(const Foundation *f, const Point *inner, int i, int late, const PatchPath *path,
-                      const double rates[2], const double shift[2], const double *y, const double *dy, double *work)
+/* Rate of a slider on a part of the way to a point, its results before it: `then` are rates of the pair there. */
+static void slider_rate(const Foundation *f, int k, const PatchPath *path, const PathRate *rates, const Pair *start,
+                        const Point *at, double part, const Pair *end, double *y, double *dy)
 {
-    const double *u = path->shift;
-    const int k = 2 * i + late;
-    work[0] = work[1] = 0.0;
-    if (stays(i, path->from, path->to)) {
-        const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
-        const double softens = y[BEYOND] > 0.0 ? 0.0 : (start.K - end.K) / 12.0;
-        const double softens_rate = y[BEYOND] > 0.0 ? 0.0 : (start.slope * rates[0] - end.slope * rates[1]) / 12.0;
+    double g[2 * N_CARRYING - 1], gained[2], grows[2], x[2 * N_SLIDE - 2], *dx = x + N_SLIDE;
+    const double change = at->approach - path->from->approach, r = rate_at(rates, part);
+    const double bend = change != 0.0 ? (end->slope - start->slope) / change : 0.0;
+    const Pair first = pair_rate(f, k / 2, path->from, rates->ends[0], bend), last = pair_rate(f, k / 2, at, r, bend);
+    gain(f, k / 2, path, start, end, at, g);
+    carrying(g, NULL, gained);
+    ends_of(f, &first, &last, r - rates->ends[0], g + N_CARRYING - 1);
+    carrying_seed(g, NULL, grows);
+    slider_on(path, k, gained, part, start, end, x);
+    const double seed[] = {grows[0], grows[1], part * rates->shift[0], part * rates->shift[1], first.limit[k % 2],
+                           last.limit[k % 2], last.K, -last.K * x[S_PER_K] * x[S_PER_K]};
+    memcpy(dx, seed, sizeof seed);
+    slide_plane(x, NULL, y);
+    slide_plane_seed(x, NULL, dy);
+}
+
+/* Rate of the heat of a slider that changes. */
+static double changing_rate(const Foundation *f, int k, const PatchPath *path, const PathRate *rates, const Range *r,
+                            const Point *inner, const double *y, const double *dy)
+{
+    const int i = k / 2;
+    const bool across = !stays(i, path->from, path->to);
+    double x[2 * N_CHANGING - C_MOVED] = {across}, *dx = x + N_CHANGING - C_MOVED, rate;
+    const double q[2] = {path->force[0][k], path->force[1][k]};
+    const Pair first = pair_rate(f, i, path->from, rates->ends[0], 0.0), last = pair_rate(f, i, path->to, rates->ends[1], 0.0);
+    changing(q, dy, rates->shift, &first, &last, dx);
+    changing(q, y, path->shift, &r->start, &r->end, x);
+    x[C_BETWEEN] = x[C_BETWEEN + 1] = 0.0; /* seeds of the force are none and lie there */
+    for (int p = 0; p < 2 && across; p++) {
+        double there[N_MOVED], moves[N_MOVED];
+        slider_rate(f, k, path, rates, &r->start, &inner[p], lobatto[p], &r->inner[p], there, moves);
         for (int d = 0; d < 2; d++) {
-            const double total = path->force[d][k] + y[d];
-            work[0] += 0.5 * total * u[d] + u[d] * u[d] * softens;
-            work[1] += 0.5 * (total * shift[d] + dy[d] * u[d]) + 2.0 * u[d] * shift[d] * softens + u[d] * u[d] * softens_rate;
-        }
-        return;
-    }
-    for (int d = 0; d < 2; d++) {
-        work[0] += (path->force[d][k] + y[d]) / 12.0 * u[d];
-        work[1] += ((path->force[d][k] + y[d]) * shift[d] + dy[d] * u[d]) / 12.0;
-    }
-    for (int p = 0; p < 2; p++) {
-        double x[2 * N_SLIDE], there[N_SLID], rate[N_SLID];
-        arguments(f, i, late, path, &inner[p], lobatto[p], rates, shift, x);
-        slide(x, NULL, there);
-        slide_seed(x, NULL, rate);
-        for (int d = 0; d < 2; d++) {
-            work[0] += 5.0 / 12.0 * there[d] * u[d];
-            work[1] += 5.0 / 12.0 * (there[d] * shift[d] + rate[d] * u[d]);
+            x[C_BETWEEN + d] += there[d];
+            dx[C_BETWEEN + d] += moves[d];
         }
     }
+    changing_loss_seed(x, NULL, &rate);
+    return rate;
 }
 
-/* Rate of the heat of a slider. */
-static double heat_rate(const Foundation *f, const Point *inner, int i, int late, const PatchPath *path,
-                        const double rates[2], const double shift[2], const double *y, const double *dy)
+/* Rates of the sliders of a range that is not all in contact. */
+static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *inner,
+                       Shear *rate)
 {
-    const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
-    const double q[2] = {path->force[0][2 * i + late], path->force[1][2 * i + late]};
-    if (start.K == end.K) {
-        const double x[14] = {q[0], q[1], y[0], y[1], y[BEYOND], start.limit[late], end.limit[late], end.K,
-                              dy[0], dy[1], dy[BEYOND], start.change[late] * rates[0], end.change[late] * rates[1],
-                              end.slope * rates[1]};
-        double rate;
-        slip_loss_seed(x, NULL, &rate);
-        return rate;
+    const Range r = range_on(f, i, path, inner);
+    for (int k = 2 * i; k < 2 * i + 2; k++) {
+        double y[N_MOVED], dy[N_MOVED];
+        slider_rate(f, k, path, rates, &r.start, path->to, 1.0, &r.end, y, dy);
+        if (r.start.K != r.end.K)
+            dy[MOVED_LOSS] = changing_rate(f, k, path, rates, &r, inner, y, dy);
+        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[MOVED_LOSS]}, rate);
     }
-    double work[2];
-    work_rate(f, inner, i, late, path, rates, shift, y, dy, work);
-    if (!(work[0] > elastic(y, end.K) - elastic(q, start.K)))
-        return 0.0;
-    const double after = end.K > 0.0 ? (y[0] * dy[0] + y[1] * dy[1]) / end.K - elastic(y, end.K) * end.slope * rates[1] / end.K : 0.0;
-    const double before = start.K > 0.0 ? elastic(q, start.K) * start.slope * rates[0] / start.K : 0.0;
-    return work[1] - after - before;
 }
 
-/* Whether a slider of a range whose springs all touch sticks. */
-static bool sticks(const Foundation *f, int k, const PatchPath *path)
+/* Rates of the first `n` sliders, of ranges all in contact. */
+static void full_rates(const Foundation *f, int n, const PatchPath *path, const PathRate *rates, Shear *rate)
 {
-    const double x = path->force[0][k] + f->K[k] * path->shift[0], y = path->force[1][k] + f->K[k] * path->shift[1];
-    const double limit = f->limit[k] + f->K[k] * (f->mu / f->ratio * path->to->approach);
-    return !(x * x + y * y > limit * limit);
+    const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
+    const double *u = path->shift, *du = rates->shift;
+    for (int k = 0; k < n; k++) {
+        const double K = f->K[k], before = f->limit[k] + K * from, after = f->limit[k] + K * to;
+        const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
+                            0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
+        const double trial[] = {x[0], x[1], 1.0, K, u[0], u[1], after};
+        double y[3], dy[N_MOVED] = {K * du[0], K * du[1]};
+        stick_plane(trial, NULL, y);
+        if (y[2] > 0.0)
+            slide_plane_seed(x, NULL, dy);
+        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[MOVED_LOSS]}, rate);
+    }
 }
 
-/* Add the rates of one slider. */
-static void add_rates(const Foundation *f, const Point *inner, int k, const PatchPath *path, const double rates[2],
+void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
                       const double shift[2], Shear *rate)
-{
-    double x[2 * N_SLIDE], y[N_SLID], dy[N_SLID];
-    arguments(f, k / 2, k % 2, path, path->to, 1.0, rates, shift, x);
-    slide(x, NULL, y);
-    slide_seed(x, NULL, dy);
-    for (int d = 0; d < 2; d++)
-        rate->traction[d] += dy[d];
-    for (int d = 0; d < 3; d++)
-        rate->tangent[d] += dy[TANGENT + d];
-    rate->loss += heat_rate(f, inner, k / 2, k % 2, path, rates, shift, y, dy);
-}
-
-void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2], const double shift[2],
-                      Shear *rate)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
     const double approach = fmax(path->from->approach, path->to->approach);
+    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1]}};
     int touched = touched_on(path);
     Inner inner = {.known = false};
     const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0;
     if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
         touched++;
     *rate = (Shear){.loss = 0.0};
+    full_rates(f, 2 * full, path, &moves, rate);
     if (touched > full)
         inner_points(f, path, &inner);
-    for (int k = 0; k < 2 * touched; k++) {
-        if (k < 2 * full && sticks(f, k, path)) {
-            rate->traction[0] += f->K[k] * shift[0];
-            rate->traction[1] += f->K[k] * shift[1];
-        } else {
-            add_rates(f, inner.at, k, path, rates, shift, rate);
-        }
-    }
+    for (int i = full; i < touched; i++)
+        range_rate(f, i, path, &moves, inner.at, rate);
 }

@@ -4,12 +4,15 @@
 
 #include "curve.h"
 #include "energy.h"
+#include "sliders.h"
 
 enum {
     N_HEIGHTS = N_BELOW + N_ABOVE + 3,
     HEIGHTS = N_HEIGHTS - 1, /* ranges of heights, whose springs two sliders stand for */
     SLIDERS = 2 * HEIGHTS   /* from the lowest heights on, of each range first the one that slips earlier */
 };
+
+_Static_assert((int)SLIDERS <= (int)MOST_SLIDERS, "in one call");
 
 typedef struct {
     const Curve *curve;
@@ -24,7 +27,7 @@ typedef struct {
     /* Of the sliders of ranges whose springs all touch: K, 1/K, and the limit at no approach, from which it grows
      * by K mu/ratio. */
     double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS];
-    double stick[HEIGHTS]; /* sum of K up to a range */
+    double stick[HEIGHTS]; /* sum of K of all sliders up to a range */
 } Foundation;
 
 /* Where a patch is on the curve: approach, the load with its derivatives there, its integral up to there. */
@@ -41,10 +44,9 @@ typedef struct {
     bool straight; /* no force and no shift along y */
 } PatchPath;
 
-/* Room for sliders whose stiffness stays: limits, squares beyond them, changes of the tangent, heat. */
+/* Room for limits of sliders whose stiffness stays. */
 typedef struct {
-    double limit[SLIDERS], over[SLIDERS];
-    double xx[SLIDERS], xy[SLIDERS], yy[SLIDERS], heat[SLIDERS];
+    double before[SLIDERS], after[SLIDERS];
 } Work;
 
 /* What the sliders of a patch give together, per area; a rate is its derivative along a seed. */

@@ -8,6 +8,7 @@ from jointfmu.mechanics import sliders
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import ENERGY, Definitions, NativePart
+from ...joint_parts.sliders import SLIDERS, add_sliders
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -44,11 +45,22 @@ def _shear(g: Graph) -> None:
     doc = "limit, pressure and its derivatives, shift -> traction, tangent xx, xy, yy, lifted, stiffer"
     y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
     g.add_with_seed("elastic_shear", doc, x, y)
-    x = symbols("x", 8)
-    doc = "force, part kept, gain, shift, limit, stiffness -> force, beyond, tangent xx, xy, yy"
-    g.add_with_seed("slide", doc, x, sliders.slide(*x), fixed=2)
-    doc = "force before, after, beyond, limit before, after, stiffness -> loss"
-    g.add_with_seed("slip_loss", doc, x, [sliders.slip_loss(*x)], fixed=2)
+    add_sliders(g)
+    load, stiffness, bend, width, ratio, friction = symbols("x", 6)
+    doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
+    x = [ratio, friction, load, stiffness, bend, width]
+    y = sliders.touching(load, stiffness, bend, width, ratio, friction)
+    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, fixed=2)
+    small, first, slope, last, then, change, rise = symbols("x", 7)
+    doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
+    kept = sliders.carrying((first, slope), (last, then), change, rise, small)
+    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, fixed=1)
+    across, slip = symbols("x", 2)
+    force, moved, shift, ends, between = (symbols(name, 2) for name in "qfukb")
+    doc = "whether across, force before, after, shift, stiffness at both ends, slip, between -> loss"
+    loss = sliders.changing_loss(force, moved, shift, (ends[0], ends[1]), slip, across, between)
+    x = [across, *force, *moved, *shift, *ends, slip, *between]
+    g.add_with_seed("changing_loss", doc, x, [loss], fixed=3)
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
@@ -64,4 +76,4 @@ _SLIDERS = 2 * (sliders.BELOW + sliders.ABOVE + 2)
 _MEMORY = 5 + spring.PATCHES * (2 + 2 * _SLIDERS)
 """That of as many patches as there is room for: how it moved, loss, rigid motion; of each patch reference,
 approach and forces."""
-PART = NativePart(_functions, ENERGY, _definitions, _MEMORY)
+PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, _MEMORY)

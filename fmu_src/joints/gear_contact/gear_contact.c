@@ -51,10 +51,11 @@ static bool look_up(const Joint *joint, double pressure, double *x, double *slop
            approach_exact(&kind->spots, joint->c, pressure, u, x + 2, slopes + 2, why);
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
+                    Text *why)
 {
     double pressure, x[1 + N_FOUND], slopes[N_FOUND];
-    (void)memory;
+    (void)memory, (void)after;
     argument(inputs, joint->c, &pressure);
     x[0] = inputs[0];
     if (!look_up(joint, pressure, &x[1], slopes, why))

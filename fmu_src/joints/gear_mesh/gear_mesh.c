@@ -140,10 +140,11 @@ static void look_up(const Joint *joint, double deflection, int order, double *x,
 
 enum { N_PAIR = 3, N_GIVEN = 1 + N_INPUTS + N_PAIR }; /* closing, inputs, what look_up finds */
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
+                    Text *why)
 {
     double deflection, x[N_GIVEN], y[2];
-    (void)memory, (void)why;
+    (void)memory, (void)after, (void)why;
     argument(inputs, joint->c, &deflection);
     x[0] = joint->kind.closing;
     for (int i = 0; i < N_INPUTS; i++)

@@ -1,14 +1,14 @@
 /* Repeats `Friction` of the package; the limit of the friction is generated. */
 #include "friction.h"
 
-#include <math.h>
+_Static_assert(BRAKES % 4 == 0, "as sliders_line needs them");
 
 void friction_of(Friction *friction, double stiffness)
 {
     friction->acts = stiffness > 0.0;
     for (int i = 0; i < BRAKES; i++) {
-        friction->spring[i] = stiffness * BRAKE_SPRINGS[i];
-        friction->compliance[i] = friction->acts ? 1.0 / friction->spring[i] : 0.0;
+        friction->K[i] = stiffness * BRAKE_SPRINGS[i];
+        friction->per_K[i] = friction->acts ? 1.0 / friction->K[i] : 0.0;
     }
 }
 
@@ -18,72 +18,39 @@ static double way(const double *memory, Turn turn)
     return memory[AT_BEGUN] > 0.0 ? turn.angle - memory[AT_ANGLE] : TURNED * turn.speed;
 }
 
-/* A slider at the end of a path. */
-typedef struct {
-    double force, side, beyond; /* side: the sign of the slip */
-    double start, end, onset;   /* limits, and the part of the path [1] on which it sticks */
-    double rest;                /* margin and beyond */
-} Slider;
-
-static Slider slider(const Friction *friction, const double *memory, Turn turn, double moved, int i)
+static void limits_at(double limit, double *each)
 {
-    const double trial = memory[i] + friction->spring[i] * moved, end = turn.limit * BRAKE_LIMITS[i];
-    const double start = memory[AT_LIMIT] * BRAKE_LIMITS[i], size = fabs(trial);
-    if (!(size > end))
-        return (Slider){trial, 0.0, 0.0, start, end, 0.0, 1.0};
-    const double side = copysign(1.0, trial), beyond = size - end;
-    const double margin = fmax(start - side * memory[i], 0.0), rest = margin + beyond;
-    return (Slider){side * end, side, beyond, start, end, margin / rest, rest};
+    for (int i = 0; i < BRAKES; i++)
+        each[i] = limit * BRAKE_LIMITS[i];
 }
 
-Braked friction_at(const Friction *friction, const double *memory, Turn turn)
+SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after)
 {
-    const double moved = way(memory, turn);
-    Braked sum = {0.0, 0.0};
-    for (int i = 0; i < BRAKES; i++) {
-        const Slider s = slider(friction, memory, turn, moved, i);
-        sum.torque += s.force;
-        sum.loss += 0.5 * (s.start + s.end + s.onset * (s.end - s.start)) * s.beyond * friction->compliance[i];
-    }
+    double start[BRAKES], end[BRAKES];
+    limits_at(memory[AT_LIMIT], start);
+    limits_at(turn.limit, end);
+    const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
+    SliderSum sum;
+    sliders_line(BRAKES, &s, way(memory, turn), after, &sum);
+    after[AT_ANGLE] = turn.angle;
+    after[AT_LIMIT] = turn.limit;
+    after[AT_BEGUN] = 1.0;
     if (!(memory[AT_BEGUN] > 0.0))
         sum.loss = 0.0;
     return sum;
 }
 
-Braked friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate)
+SliderSum friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate)
 {
     const bool begun = memory[AT_BEGUN] > 0.0;
-    const double moved = way(memory, turn), moves = begun ? rate.angle : TURNED * rate.speed;
-    Braked sum = {0.0, 0.0};
-    for (int i = 0; i < BRAKES; i++) {
-        const Slider s = slider(friction, memory, turn, moved, i);
-        if (s.side == 0.0) {
-            sum.torque += friction->spring[i] * moves;
-            continue;
-        }
-        const double end = rate.limit * BRAKE_LIMITS[i], rise = s.end - s.start;
-        const double beyond = s.side * friction->spring[i] * moves - end, onset = -s.onset / s.rest * beyond;
-        const double mean = s.start + s.end + s.onset * rise, drift = end + onset * rise + s.onset * end;
-        sum.torque += s.side * end;
-        sum.loss += 0.5 * (drift * s.beyond + mean * beyond) * friction->compliance[i];
-    }
+    double start[BRAKES], end[BRAKES], rises[BRAKES];
+    limits_at(memory[AT_LIMIT], start);
+    limits_at(turn.limit, end);
+    limits_at(rate.limit, rises);
+    const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
+    SliderSum sum;
+    sliders_line_rate(BRAKES, &s, way(memory, turn), begun ? rate.angle : TURNED * rate.speed, rises, &sum);
     if (!begun)
         sum.loss = 0.0;
     return sum;
-}
-
-void friction_move(const Friction *friction, const double *before, Turn turn, double *after)
-{
-    const double moved = way(before, turn);
-    for (int i = 0; i < BRAKES; i++)
-        after[i] = slider(friction, before, turn, moved, i).force;
-    after[AT_ANGLE] = turn.angle;
-    after[AT_LIMIT] = turn.limit;
-    after[AT_BEGUN] = 1.0;
-}
-
-void friction_rest(double *after)
-{
-    for (int i = 0; i < N_BRAKES; i++)
-        after[i] = 0.0;
 }

@@ -6,14 +6,13 @@
 
 #include <stdbool.h>
 
-#include "law.h"
+#include "sliders.h"
 
 enum { AT_ANGLE = BRAKES, AT_LIMIT, AT_BEGUN, N_BRAKES }; /* of the memory */
 
 typedef struct {
     bool acts;
-    double spring[BRAKES]; /* of each slider */
-    double compliance[BRAKES];
+    double K[BRAKES], per_K[BRAKES]; /* of each slider */
 } Friction;
 
 /* Angle and speed of the wave generator, and the limit of its friction; or rates of them. */
@@ -21,17 +20,10 @@ typedef struct {
     double angle, speed, limit;
 } Turn;
 
-/* What the sliders do on the straight path from a memory; or its rate. */
-typedef struct {
-    double torque, loss;
-} Braked;
-
 void friction_of(Friction *friction, double stiffness);
-Braked friction_at(const Friction *friction, const double *memory, Turn turn);
-/* Its derivative along a rate. */
-Braked friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate);
-/* The memory after such a path; `rest` where nothing acts. */
-void friction_move(const Friction *friction, const double *before, Turn turn, double *after);
-void friction_rest(double *after);
+/* Torque and loss on the straight path from a memory, and the memory after it. */
+SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after);
+/* Their derivative along a rate. */
+SliderSum friction_rate(const Friction *friction, const double *memory, Turn turn, Turn rate);
 
 #endif

@@ -141,15 +141,6 @@ static double wind_up(const Joint *joint, const double *inputs, double error, co
     return midline_inverse(&joint->curve, at);
 }
 
-/* The sliders at the wind-up of the last evaluation. */
-static Slid slide(const Joint *joint, const double *memory)
-{
-    const Kind *kind = &joint->kind;
-    if (kind->hysteresis.acts)
-        return hysteresis_at(&kind->hysteresis, memory, kind->phi);
-    return (Slid){0.0, memory[AT_LOSS], 0.0, 0.0};
-}
-
 /* What the outputs are made of: inputs, and what a motion finds in the spring. */
 enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
 /* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
@@ -166,30 +157,35 @@ static void to_turn(const double *x, double *y)
     y[TURN_SLOPE] = x[SLOPE];
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
+                    Text *why)
 {
+    Kind *kind = &joint->kind;
     double x[N_GIVEN], error[N_ERROR];
     (void)why;
     error_at(joint, inputs, error);
-    joint->kind.phi = wind_up(joint, inputs, error[0], memory);
-    const Slid slid = slide(joint, memory);
+    kind->phi = wind_up(joint, inputs, error[0], memory);
+    memset(after, 0, N_MEMORY * sizeof *after);
+    kind->slid = kind->braked = (SliderSum){.loss = 0.0};
+    if (kind->hysteresis.acts)
+        kind->slid = hysteresis_at(&kind->hysteresis, memory, kind->phi, after);
     memcpy(x, inputs, N_INPUTS * sizeof(double));
-    x[PHI] = joint->kind.phi;
-    midline(&joint->curve, joint->kind.phi, 1, &x[LOAD]);
-    x[SLID] = slid.torque;
-    x[LOSS] = slid.loss;
+    x[PHI] = kind->phi;
+    midline(&joint->curve, kind->phi, 1, &x[LOAD]);
+    x[SLID] = kind->slid.force[0];
     x[ERROR] = error[0];
     x[SLOPE] = error[1];
-    x[DRY] = 0.0;
-    if (joint->kind.friction.acts) {
+    if (kind->friction.acts) {
         double given[N_TURN], y[3];
         to_turn(x, given);
         turn(given, joint->c, y);
-        joint->kind.turn = (Turn){y[0], y[1], y[2]};
-        const Braked braked = friction_at(&joint->kind.friction, memory + BRAKED, joint->kind.turn);
-        x[DRY] = braked.torque;
-        x[LOSS] += braked.loss;
+        kind->turn = (Turn){y[0], y[1], y[2]};
+        kind->braked = friction_at(&kind->friction, memory + BRAKED, kind->turn, after + BRAKED);
     }
+    x[DRY] = kind->braked.force[0];
+    x[LOSS] = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
+    after[AT_WIND_UP] = kind->phi;
+    after[AT_LOSS] = x[LOSS];
     outputs(x, joint->c, out);
     return true;
 }
@@ -197,8 +193,8 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
                       double *result)
 {
-    double x[2 * N_GIVEN], y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
-    const Slid slid = slide(joint, memory);
+    const Kind *kind = &joint->kind;
+    double x[2 * N_GIVEN] = {0.0}, y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
     error_at(joint, inputs, error);
     for (int i = 0; i < N_INPUTS; i++) {
         x[i] = at[i] = inputs[i];
@@ -207,40 +203,27 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     at[N_INPUTS] = error[0];
     at[2 * N_INPUTS + 1] = error[1] * seed[0];
     argument_seed(at, joint->c, &rate);
-    midline(&joint->curve, joint->kind.phi, 2, y);
+    midline(&joint->curve, kind->phi, 2, y);
     if (ARGUMENT_IS_LOAD)
-        rate /= y[1] + slid.tangent;
-    const double given[] = {joint->kind.phi, y[0], y[1], slid.torque, slid.loss, error[0], error[1], 0.0};
-    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid.tangent * rate, slid.heat * rate,
-                             error[1] * seed[0], error[2] * seed[0], 0.0};
+        rate /= y[1] + kind->slid.tangent[0];
+    SliderSum slides = {.loss = 0.0};
+    if (kind->hysteresis.acts)
+        slides = hysteresis_rate(&kind->hysteresis, memory, kind->phi, rate);
+    const double loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
+    const double given[] = {kind->phi, y[0], y[1], kind->slid.force[0], loss, error[0], error[1], kind->braked.force[0]};
+    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slides.force[0], slides.loss, error[1] * seed[0],
+                             error[2] * seed[0], 0.0};
     memcpy(x + PHI, given, sizeof given);
     memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
-    if (joint->kind.friction.acts) {
+    if (kind->friction.acts) {
         double turning[2 * N_TURN], drift[3];
         to_turn(x, turning);
         to_turn(x + N_GIVEN, turning + N_TURN);
         turn_seed(turning, joint->c, drift);
-        const Turn moves = {drift[0], drift[1], drift[2]};
-        const Braked braked =
-            friction_rate(&joint->kind.friction, memory + BRAKED, joint->kind.turn, moves);
-        x[N_GIVEN + DRY] = braked.torque;
-        x[N_GIVEN + LOSS] += braked.loss;
+        const SliderSum brakes =
+            friction_rate(&kind->friction, memory + BRAKED, kind->turn, (Turn){drift[0], drift[1], drift[2]});
+        x[N_GIVEN + DRY] = brakes.force[0];
+        x[N_GIVEN + LOSS] += brakes.loss;
     }
     outputs_seed(x, joint->c, result);
-}
-
-void joint_accept(Joint *joint, const double *inputs, const double *before, double *after)
-{
-    const Kind *kind = &joint->kind;
-    (void)inputs;
-    if (kind->hysteresis.acts)
-        hysteresis_move(&kind->hysteresis, before, kind->phi, after);
-    else
-        hysteresis_rest(before, kind->phi, after);
-    if (kind->friction.acts) {
-        after[AT_LOSS] += friction_at(&kind->friction, before + BRAKED, kind->turn).loss;
-        friction_move(&kind->friction, before + BRAKED, kind->turn, after + BRAKED);
-    } else {
-        friction_rest(after + BRAKED);
-    }
 }

@@ -9,8 +9,9 @@ typedef struct {
     Hysteresis hysteresis;
     Friction friction;
     bool errs;  /* there is a kinematic error */
-    double phi; /* of the last evaluation: wind-up */
-    Turn turn;  /* and what moves the friction */
+    double phi; /* of the last evaluation, for its derivative: wind-up, what moves the friction, both sums */
+    Turn turn;
+    SliderSum slid, braked;
 } Kind;
 
 #endif

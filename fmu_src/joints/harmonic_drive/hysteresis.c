@@ -20,74 +20,27 @@ double midline_inverse(const Curve *curve, double torque)
     return copysign(curve_inverse(curve, fabs(torque), &nearest, &carried), torque);
 }
 
-static inline double clamped(double trial, double limit)
+_Static_assert(SLIDERS % 4 == 0, "as sliders_line needs them");
+
+static Sliders sliders_of(const Hysteresis *h, const double *memory)
 {
-    const double below = trial < limit ? trial : limit;
-    return below > -limit ? below : -limit;
+    return (Sliders){h->K, h->per_K, h->limit, h->limit, {memory, NULL}};
 }
 
-/* Sums in lanes, which a processor adds side by side. */
-enum { LANES = 4 };
-_Static_assert(SLIDERS % LANES == 0, "whole lanes");
-
-static double sum(const double *lane)
+SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after)
 {
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+    const Sliders s = sliders_of(hysteresis, memory);
+    SliderSum sum;
+    sliders_line(SLIDERS, &s, phi - memory[AT_WIND_UP], after, &sum);
+    return sum;
 }
 
-Slid hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi)
+SliderSum hysteresis_rate(const Hysteresis *hysteresis, const double *memory, double phi, double rate)
 {
-    const double way = phi - memory[AT_WIND_UP];
-    double torque[LANES] = {0.0}, loss[LANES] = {0.0}, tangent[LANES] = {0.0}, heat[LANES] = {0.0};
-    for (int i = 0; i < SLIDERS; i += LANES)
-        for (int k = 0; k < LANES; k++) {
-            const double trial = memory[i + k] + hysteresis->spring[i + k] * way;
-            const double force = clamped(trial, hysteresis->limit[i + k]), beyond = trial - force;
-            torque[k] += force;
-            loss[k] += force * beyond * hysteresis->compliance[i + k];
-            tangent[k] += beyond == 0.0 ? hysteresis->spring[i + k] : 0.0;
-            heat[k] += beyond == 0.0 ? 0.0 : force;
-        }
-    return (Slid){sum(torque), memory[AT_LOSS] + sum(loss), sum(tangent), sum(heat)};
-}
-
-/* The torque alone, and its tangent. */
-static double torque_at(const Hysteresis *hysteresis, const double *memory, double phi, double *slope)
-{
-    const double way = phi - memory[AT_WIND_UP];
-    double torque[LANES] = {0.0}, tangent[LANES] = {0.0};
-    for (int i = 0; i < SLIDERS; i += LANES)
-        for (int k = 0; k < LANES; k++) {
-            const double trial = memory[i + k] + hysteresis->spring[i + k] * way;
-            const double force = clamped(trial, hysteresis->limit[i + k]);
-            torque[k] += force;
-            tangent[k] += trial == force ? hysteresis->spring[i + k] : 0.0;
-        }
-    *slope = sum(tangent);
-    return sum(torque);
-}
-
-void hysteresis_move(const Hysteresis *hysteresis, const double *before, double phi, double *after)
-{
-    const double way = phi - before[AT_WIND_UP];
-    double loss[LANES] = {0.0};
-    for (int i = 0; i < SLIDERS; i += LANES)
-        for (int k = 0; k < LANES; k++) {
-            const double trial = before[i + k] + hysteresis->spring[i + k] * way;
-            const double force = clamped(trial, hysteresis->limit[i + k]);
-            loss[k] += force * (trial - force) * hysteresis->compliance[i + k];
-            after[i + k] = force;
-        }
-    after[AT_WIND_UP] = phi;
-    after[AT_LOSS] = before[AT_LOSS] + sum(loss);
-}
-
-void hysteresis_rest(const double *before, double phi, double *after)
-{
-    for (int i = 0; i < SLIDERS; i++)
-        after[i] = 0.0;
-    after[AT_WIND_UP] = phi;
-    after[AT_LOSS] = before[AT_LOSS];
+    const Sliders s = sliders_of(hysteresis, memory);
+    SliderSum sum;
+    sliders_line_rate(SLIDERS, &s, phi - memory[AT_WIND_UP], rate, NULL, &sum);
+    return sum;
 }
 
 double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,
@@ -95,11 +48,12 @@ double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, cons
 {
     const double least = midline_inverse(curve, torque - hysteresis->most);
     const double largest = midline_inverse(curve, torque + hysteresis->most);
+    const Sliders sliders = sliders_of(hysteresis, memory);
     double phi = fmin(fmax(memory[AT_WIND_UP], least), largest), low = -INFINITY, high = INFINITY;
     for (int k = 0; k < MOST_STEPS; k++) {
         double y[2], tangent;
         midline(curve, phi, 1, y);
-        const double rest = torque - (y[0] + torque_at(hysteresis, memory, phi, &tangent));
+        const double rest = torque - (y[0] + sliders_force(SLIDERS, &sliders, phi - memory[AT_WIND_UP], &tangent));
         const double step = phi + rest / (y[1] + tangent);
         if (rest > 0.0)
             low = phi;
@@ -119,8 +73,10 @@ static double opening(const Hysteresis *hysteresis, const Curve *curve, double t
 {
     const double rest[SLIDERS + 2] = {0.0};
     const double turn = hysteresis_wind_up(hysteresis, curve, rest, torque);
-    return 2.0 * hysteresis_at(hysteresis, rest, 0.5 * (turn - half)).torque -
-        hysteresis_at(hysteresis, rest, turn).torque;
+    const Sliders s = sliders_of(hysteresis, rest);
+    double tangent;
+    return 2.0 * sliders_force(SLIDERS, &s, 0.5 * (turn - half), &tangent) -
+        sliders_force(SLIDERS, &s, turn, &tangent);
 }
 
 static double extra_stiffness(const double *head, const Curve *curve, double least)
@@ -170,8 +126,8 @@ bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *sha
     }
     const double stiffness = extra_stiffness(head, curve, least);
     for (int i = 0; i < SLIDERS; i++) {
-        hysteresis->spring[i] = stiffness * share[i];
-        hysteresis->compliance[i] = 1.0 / hysteresis->spring[i];
+        hysteresis->K[i] = stiffness * share[i];
+        hysteresis->per_K[i] = 1.0 / hysteresis->K[i];
     }
     double limit = least;
     for (int k = 0; k < MOST_CORRECTIONS; k++) {

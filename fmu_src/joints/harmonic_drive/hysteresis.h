@@ -5,6 +5,7 @@
 #define JOINTFMU_HYSTERESIS_H
 
 #include "curve.h"
+#include "sliders.h"
 #include "text.h"
 
 enum { AT_WIND_UP = SLIDERS, AT_LOSS }; /* of the memory */
@@ -13,17 +14,8 @@ typedef struct {
     bool acts;
     double most;            /* friction of all */
     double length;          /* wind-up over which the sliders begin to slip */
-    double spring[SLIDERS]; /* of each slider */
-    double compliance[SLIDERS];
-    double limit[SLIDERS];  /* of its friction */
+    double K[SLIDERS], per_K[SLIDERS], limit[SLIDERS]; /* of each slider */
 } Hysteresis;
-
-/* What the sliders do on the straight path from a memory to a wind-up. */
-typedef struct {
-    double torque, loss; /* loss: since the memory began */
-    double tangent;      /* of the torque in the wind-up */
-    double heat;         /* the same of the loss */
-} Slid;
 
 /* Numbers of a drive and of its sliders, and its midline; false: refused. */
 bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *share, const Curve *curve,
@@ -34,10 +26,10 @@ void midline(const Curve *curve, double phi, int order, double *y);
 /* Wind-up at which it carries a torque. */
 double midline_inverse(const Curve *curve, double torque);
 
-Slid hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi);
-/* The memory after such a path; `rest` where nothing acts. */
-void hysteresis_move(const Hysteresis *hysteresis, const double *before, double phi, double *after);
-void hysteresis_rest(const double *before, double phi, double *after);
+/* Those on the straight path from a memory to a wind-up: what they give, and their forces after it. */
+SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after);
+/* Rates of torque and loss by that of the wind-up. */
+SliderSum hysteresis_rate(const Hysteresis *hysteresis, const double *memory, double phi, double rate);
 
 /* Wind-up at which midline and sliders carry a torque, coming from a memory. */
 double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,

@@ -9,10 +9,12 @@ from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import Graph, Symbols, symbols
 from ...joint_parts.native import CURVE, Definitions, Named, NativePart, column, named, quadrature
+from ...joint_parts.sliders import SLIDERS, add_sliders
 
 
 def _functions(g: Graph, model: Model) -> None:
     drive = g.joint
+    add_sliders(g)
     if isinstance(drive, CatalogueDrive):
         doc = "-> nodes of the midline: wind-up, torque, stiffness, its derivative before and after"
         g.add("given_nodes", doc, [], [number for node in drive.nodes() for number in node])
@@ -87,4 +89,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 
-PART = NativePart(_functions, CURVE, _definitions)
+PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions)

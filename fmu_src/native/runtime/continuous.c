@@ -21,7 +21,7 @@ static double rate_at_begin(Instance *m)
     if (now->last_size > 0.0)
         for (size_t i = 0; i < N_INPUTS; i++)
             at[FIRST_INPUT + i] += now->values[LAGS + i] * (at[FIRST_INPUT + i] - now->last_inputs[i]);
-    joint_evaluate(m->joint, at + FIRST_INPUT, memory_of(m), at + FIRST_OUTPUT, &ignored);
+    joint_evaluate(m->joint, at + FIRST_INPUT, memory_of(m), m->tried, at + FIRST_OUTPUT, &ignored);
     return at[RATE];
 }
 

@@ -26,10 +26,11 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *out, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *out,
+                    Text *why)
 {
     double known[N_KNOWNS], found[N_OUTPUTS];
-    (void)memory, (void)why;
+    (void)memory, (void)after, (void)why;
     memcpy(known, inputs - FIRST_INPUT, FIRST_OUTPUT * sizeof(double));
     memcpy(known + FIRST_OUTPUT, out, N_STATES * sizeof(double));
     outputs(known, joint->c, found);

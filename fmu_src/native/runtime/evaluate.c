@@ -142,7 +142,7 @@ Status instance_evaluate(Instance *m)
             return refuse_input(m, i);
     Text why;
     text_clear(&why);
-    if (!joint_evaluate(m->joint, inputs, memory_of(m), outputs, &why))
+    if (!joint_evaluate(m->joint, inputs, memory_of(m), m->tried, outputs, &why))
         return refuse(m, &why);
     bool finite = true;
     for (size_t i = 0; i < N_OUTPUTS; i++)

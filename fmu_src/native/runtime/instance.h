@@ -72,6 +72,7 @@ typedef struct {
 typedef struct {
     State now;
     State kept;              /* to go back to where a step is refused */
+    double tried[N_MEMORY + 1]; /* memory after the way of the last evaluation */
     double tabulated[N_PARAMETERS]; /* parameters of the tables */
     Joint *joint;
     bool dirty;              /* outputs are not those of the present inputs and parameters */

@@ -1,9 +1,9 @@
-/* What a joint gives to the FMI layers. It has no state beside its tables: equal parameters, inputs and memory
- * give equal outputs. Arrays are in the order of the variable list.
+/* What a joint gives to the FMI layers. It has no state beside its tables, and what it keeps to be found sooner:
+ * equal parameters, inputs and memory give equal outputs. Arrays are in the order of the variable list.
  *
  * The memory of a joint are N_MEMORY numbers, all zero where nothing moved yet; it lies in the instance
- * (memory.h), which says when a path is gone. A joint without memory looks at none and defines no
- * joint_accept, one without events no joint_events. */
+ * (memory.h), which says when a path is gone. A joint without memory looks at none, one
+ * without events defines no joint_events. */
 #ifndef JOINTFMU_JOINT_H
 #define JOINTFMU_JOINT_H
 
@@ -21,15 +21,14 @@ size_t joint_size(void);
  * false: refused, `why` names the thing, the value and what is allowed. */
 bool joint_tabulate(Joint *joint, const double *parameters, Text *why);
 
-/* Outputs at the end of the straight path to inputs that are finite and inside their intervals. false: refused, with the reason. */
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why);
+/* Outputs at the end of the straight path from a memory to inputs that are finite and inside their intervals, and
+ * the memory there. false: refused, with the reason. */
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
+                    Text *why);
 
 /* Exact derivative of the outputs along `seed` at the inputs and with the memory of the last joint_evaluate. */
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
                       double *result);
-
-/* The memory after the straight path to the inputs of the last joint_evaluate, from the one `before` it had. */
-void joint_accept(Joint *joint, const double *inputs, const double *before, double *after);
 
 /* Ways in which the last evaluated state lies outside the tables, a bit each; 0 inside. */
 unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs);

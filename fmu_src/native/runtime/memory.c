@@ -6,12 +6,11 @@
 void memory_accept(Instance *m)
 {
     Path *path = &m->now.path;
-    const double *inputs = m->now.values + FIRST_INPUT, *before = memory_of(m);
-    if (before != path->memory[path->last])
+    if (memory_of(m) != path->memory[path->last])
         return; /* they are accepted already */
     path->last = 1u - path->last;
-    joint_accept(m->joint, inputs, before, path->memory[path->last]);
-    memcpy(path->inputs, inputs, sizeof path->inputs);
+    memcpy(path->memory[path->last], m->tried, sizeof m->tried);
+    memcpy(path->inputs, m->now.values + FIRST_INPUT, sizeof path->inputs);
     path->accepted = 1;
 }
 

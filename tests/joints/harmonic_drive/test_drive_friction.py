@@ -90,7 +90,7 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
         for part in np.linspace(0.0, 1.0, steps + 1)[1:]:
             at = before[-3] + part * (phi - before[-3]), before[-2] + part * (most - before[-2])
             few = brake.moved(memory, at[0], 0.0, at[1])
-            work += 0.5 * (np.sum(memory[:-3]) + float(few.torque)) * (at[0] - memory[-3])
+            work += 0.5 * (np.sum(memory[:-3]) + float(few.traction)) * (at[0] - memory[-3])
             loss += float(few.loss)
             memory = brake.after(few, *at)
         stored = [float(np.sum(m[:-3] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]

@@ -204,7 +204,7 @@ def test_work_is_stored_or_lost_along_random_paths():
         slips = start + (np.copysign(limit, way) - memory[:SLIDERS]) / k
         inside = slips[(slips - start) * (slips - end) < 0.0]
         corners = np.sort(np.array([start, *inside, end]))[:: 1 if way > 0.0 else -1]
-        friction = law.hysteresis.moved(memory[: SLIDERS + 2], corners).torque
+        friction = law.hysteresis.moved(memory[: SLIDERS + 2], corners).traction
         work += float(np.sum(0.5 * (friction[1:] + friction[:-1]) * np.diff(corners)))
         work += float(law.curve.energy(abs(end)) - law.curve.energy(abs(start)))
         out, memory = law.driven((0.0, 0.0, end, 0.0), memory)

@@ -29,10 +29,11 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
+                    Text *why)
 {
     const double preload = inputs[0], phi = inputs[1];
-    (void)memory;
+    (void)memory, (void)after;
     if (phi == 42.0) {
         text_add(why, "phi = 42 rad is not possible, allowed is any other angle");
         return false;

@@ -18,9 +18,10 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why)
     return true;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
+                    Text *why)
 {
-    (void)memory, (void)why;
+    (void)memory, (void)after, (void)why;
     for (int i = 0; i < N_OUTPUTS; i++)
         outputs[i] = joint->gain * inputs[i % N_INPUTS];
     return true;

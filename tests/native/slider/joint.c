@@ -32,10 +32,14 @@ static double move(const Joint *joint, double u, const double *memory, double *f
     return slips ? 0.0 : joint->k;
 }
 
-bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *outputs, Text *why)
+bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
+                    Text *why)
 {
     (void)why;
     outputs[1] = move(joint, inputs[0], memory, &outputs[0], &outputs[2]);
+    after[FORCE] = outputs[0];
+    after[LOSS] = outputs[2];
+    after[PLACE] = inputs[0];
     outputs[0] += inputs[1];
     return true;
 }
@@ -48,15 +52,6 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     result[0] = stiffness * seed[0] + seed[1];
     result[1] = 0.0;
     result[2] = stiffness > 0.0 ? 0.0 : force * seed[0];
-}
-
-void joint_accept(Joint *joint, const double *inputs, const double *before, double *after)
-{
-    double force, loss;
-    move(joint, inputs[0], before, &force, &loss);
-    after[FORCE] = force;
-    after[LOSS] = loss;
-    after[PLACE] = inputs[0];
 }
 
 unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs)

@@ -12,11 +12,12 @@ rest holds any torque below M where it is, without a threshold of speed, and the
 the springs store and what is lost. Grease adds temperature_factor friction_viscous w1.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...mechanics.jenkins import Moved, Sliders
 from ...quantity import Number
 from .drive import Drive
 from .hysteresis import shares
@@ -55,63 +56,35 @@ def stiffness(drive: Drive) -> Number:
 
 
 @dataclass(frozen=True, slots=True)
-class Braked:
-    """Sliders (..., n) after a straight path.
-
-    force  : (..., n) [N.m] of each
-    torque : (...) [N.m] their sum
-    loss   : (...) [J] turned into heat on the way
-    """
-
-    force: Array
-    torque: Array
-    loss: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Friction:
+class Friction(Sliders):
     """The sliders of a drive; `stiffness` (n) [N.m/rad] is all zero without dry friction."""
-
-    stiffness: Array
 
     @classmethod
     def of(cls, drive: Drive) -> "Friction":
         """Of a drive."""
         return cls(float(stiffness(drive)) * SPRINGS)
 
-    @property
-    def acts(self) -> bool:
-        """Whether there is any."""
-        return bool(self.stiffness[-1] > 0.0)
-
     def rest(self) -> Array:
         """Memory (n + 3) before anything moved: forces [N.m], phi1 [rad], limit [N.m], 1 once begun."""
         return np.zeros(self.stiffness.size + 3)
 
-    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: ArrayLike) -> Braked:
+    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: ArrayLike) -> Moved:
         """The sliders on the straight path from a memory (..., n + 3) to angles (...) [rad] and limits [N.m].
 
         The first path of all leads to where the drive is, whatever the angle: it has turned before for as
         long as TURNED at its speed w1, and lost nothing yet.
         """
         begun, now = memory[..., -1] > 0.0, np.asarray(most, dtype=np.float64)
-        way = np.where(begun, np.asarray(phi1) - memory[..., -3], TURNED * np.asarray(w1))[..., None]
-        old, end = memory[..., :-3], now[..., None] * LIMITS
-        trial = old + self.stiffness * way
-        force = np.clip(trial, -end, end)
         if not self.acts:
-            return Braked(force, np.zeros(now.shape), np.zeros(now.shape))
-        start = memory[..., -2, None] * LIMITS
-        beyond = np.abs(trial - force)
-        margin = np.maximum(start - np.copysign(old, old * trial), 0.0)
-        onset = margin / np.where(beyond > 0.0, margin + beyond, 1.0)
-        mean = 0.5 * (start + end + onset * (end - start))  # of the limit, while it slips
-        loss = np.where(begun, np.sum(mean * beyond / self.stiffness, axis=-1), 0.0)
-        return Braked(force, np.sum(force, axis=-1), loss)
+            none = np.zeros(now.shape)
+            return Moved(np.zeros((*now.shape, self.stiffness.size)), none, none)
+        way = np.where(begun, np.asarray(phi1) - memory[..., -3], TURNED * np.asarray(w1))
+        moved = self.along(memory[..., :-3], way, memory[..., -2, None] * LIMITS, now[..., None] * LIMITS)
+        return replace(moved, loss=np.where(begun, moved.loss, 0.0))
 
-    def after(self, braked: Braked, phi1: ArrayLike, most: ArrayLike) -> Array:
+    def after(self, braked: Moved, phi1: ArrayLike, most: ArrayLike) -> Array:
         """The memory (..., n + 3) there; none where nothing acts."""
         if not self.acts:
-            return np.zeros((*braked.torque.shape, self.stiffness.size + 3))
+            return np.zeros((*braked.loss.shape, self.stiffness.size + 3))
         ends = np.broadcast_arrays(phi1, most, 1.0)
         return np.concatenate([braked.force, np.stack(ends, axis=-1)], axis=-1)

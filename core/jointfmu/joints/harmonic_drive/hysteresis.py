@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...contact.interface import MOST_STEPS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
+from ...mechanics.jenkins import Moved, Sliders
 from ...quantity import Number
 from .drive import Drive
 from .law import PairDrive, pair_log_area
@@ -70,30 +71,12 @@ def _travel(left: float, m: Number) -> Number:
 
 
 @dataclass(frozen=True, slots=True)
-class Slid:
-    """Sliders (..., n) after a straight path.
+class Hysteresis(Sliders):
+    """The friction torque of a drive: sliders with springs in N.m/rad.
 
-    force   : (..., n) [N.m] of each
-    torque  : (...) [N.m] their sum
-    loss    : (...) [J] turned into heat on the way
-    tangent : (...) [N.m/rad] derivative of the torque in the wind-up
+    limit : (n) [N.m] of their friction; all zero without hysteresis
     """
 
-    force: Array
-    torque: Array
-    loss: Array
-    tangent: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Hysteresis:
-    """The friction torque of a drive.
-
-    stiffness : (n) [N.m/rad] of the sliders
-    limit     : (n) [N.m] of their friction; all zero without hysteresis
-    """
-
-    stiffness: Array
     limit: Array
 
     @classmethod
@@ -129,22 +112,17 @@ class Hysteresis:
         By Masing's rule. Where it is the midline's torque there, the branches are 2 `half` apart.
         """
         turn = float(self.wind_up(curve, self.rest(), torque))
-        back, there = self.moved(self.rest(), [0.5 * (turn - half), turn]).torque
+        back, there = self.moved(self.rest(), [0.5 * (turn - half), turn]).traction
         return float(2.0 * back - there)
 
     def rest(self) -> Array:
         """Memory (n + 2) of a drive that has not moved: forces [N.m], wind-up [rad], loss [J]."""
         return np.zeros(self.limit.size + 2)
 
-    def moved(self, memory: Array, phi: ArrayLike) -> Slid:
+    def moved(self, memory: Array, phi: ArrayLike) -> Moved:
         """The sliders on the straight path from a memory (..., n + 2) to wind-ups (...) [rad]."""
         way = np.asarray(phi, dtype=np.float64) - memory[..., -2]
-        trial = memory[..., :-2] + self.stiffness * way[..., None]
-        force = np.clip(trial, -self.limit, self.limit)
-        beyond = trial - force
-        loss = np.sum(force * beyond / self.stiffness, axis=-1)
-        tangent = np.sum(np.where(beyond == 0.0, self.stiffness, 0.0), axis=-1)
-        return Slid(force, np.sum(force, axis=-1), loss, tangent)
+        return self.along(memory[..., :-2], way, self.limit, self.limit)
 
     def wind_up(self, curve: Curve, memory: Array, torque: ArrayLike) -> Array:
         """Wind-up (...) [rad] where the way from a memory ends that leads to torques (...) [N.m].
@@ -158,10 +136,10 @@ class Hysteresis:
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
         for _ in range(MOST_STEPS):
             load, stiffness = curve.derivatives(np.abs(phi), 1)
-            slid = self.moved(memory, phi)
-            rest = tau - (np.copysign(load, phi) + slid.torque)
+            moved = self.moved(memory, phi)
+            rest = tau - (np.copysign(load, phi) + moved.traction)
             low, high = np.where(rest > 0.0, phi, low), np.where(rest < 0.0, phi, high)
-            step = phi + rest / (stiffness + slid.tangent)
+            step = phi + rest / (stiffness + moved.tangent)
             with np.errstate(invalid="ignore"):
                 new = np.where((step >= low) & (step <= high), step, 0.5 * (low + high))
             change, phi = np.abs(new - phi), new

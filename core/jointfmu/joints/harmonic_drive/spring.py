@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...mechanics.curve import Curve, assemble, refined
+from ...mechanics.jenkins import Moved
 from ...quantity import Number, check_limits
 from .drive import Drive
 from .friction import Friction, limit, viscous
 from .given import Given
-from .hysteresis import Hysteresis, Slid
+from .hysteresis import Hysteresis
 from .kinematic_error import kinematic_error
 from .law import PairDrive
 from .lost_motion import stiffness_with_play
@@ -99,12 +100,12 @@ class HarmonicDriveSpring:
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         slid, loss, new = self._slid(phi, wound)
         load = np.copysign(load, phi)
-        state = State(phi, load, stiffness, slid.torque, error, slope)
+        state = State(phi, load, stiffness, slid.traction, error, slope)
         most = limit(self.joint, motion[1], transmitted(self.joint, motion, state))
         braked = self.friction.moved(brakes, motion[0], motion[1], most)
         new[..., -1] += braked.loss
         after = self.friction.after(braked, motion[0], most)
-        out = exported(self.joint, motion, state, braked.torque) | {"E_loss": loss + braked.loss}
+        out = exported(self.joint, motion, state, braked.traction) | {"E_loss": loss + braked.loss}
         return out, np.concatenate([new, after], axis=-1)
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
@@ -125,7 +126,7 @@ class HarmonicDriveSpring:
         size = self.hysteresis.limit.size + 2
         return memory[..., :size], memory[..., size:]
 
-    def _slid(self, phi: Array, memory: Array) -> tuple[Slid, Array, Array]:
+    def _slid(self, phi: Array, memory: Array) -> tuple[Moved, Array, Array]:
         """The sliders at wind-ups (...), the loss so far, the memory (..., n + 2)."""
         slid = self.hysteresis.moved(memory, phi)
         loss = memory[..., -1] + slid.loss

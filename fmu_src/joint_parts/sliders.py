@@ -1,0 +1,38 @@
+"""The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
+
+from jointfmu.mechanics.jenkins import beyond, slide, trial
+
+from .graph import Graph, symbols
+
+SLIDERS = ("sliders",)
+"""Shared C of joints that have sliders."""
+
+
+def add_sliders(g: Graph) -> None:
+    """Along one direction, with a limit that changes and with one that stays; in a plane."""
+    force, shift, before, after, stiffness, compliance = symbols("x", 6)
+    tried = trial([force], 1.0, stiffness, [shift])
+    doc = "force, shift, limit, stiffness -> force if it sticks, how far that is beyond the limit"
+    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, beyond(tried, after)])
+    for name, first, moving in (("line", before, [shift, after]), ("steady", after, [shift])):
+        slid = slide([force], tried, first, after, stiffness, compliance)
+        doc = (
+            "force, limit before, stiffness, compliance, shift, limit after if it changes -> force, tangent "
+            "along and across, loss"
+        )
+        x, y = [force, first, stiffness, compliance], [*slid.force, *slid.tangent, slid.loss]
+        g.add_with_seed(f"slide_{name}", doc, [*x, *moving], y, fixed=4)
+    _plane(g)
+
+
+def _plane(g: Graph) -> None:
+    force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
+    before, after, stiffness, compliance = symbols("x", 4)
+    tried = trial(force, keeps, carries, shift)
+    x, doc = [*force, keeps, carries, *shift], "force, part kept, gain, shift"
+    y = [*tried, beyond(tried, after)]
+    g.add("stick_plane", f"{doc}, limit -> force if it sticks, how far beyond the limit", [*x, after], y)
+    slid = slide(force, tried, before, after, stiffness, compliance)
+    doc += ", limits before and after, stiffness, compliance -> force, tangent xx, xy, yy, loss, slip"
+    y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
+    g.add_with_seed("slide_plane", doc, [*x, before, after, stiffness, compliance], y, fixed=2)

@@ -1,0 +1,226 @@
+#include "sliders.h"
+
+#include <string.h>
+
+/* The sums go in lanes, which a processor adds side by side. */
+enum { LANES = 4 };
+
+typedef struct {
+    double x[LANES], y[LANES], xx[LANES], xy[LANES], yy[LANES], loss[LANES];
+} Lanes;
+
+static inline double sum_of(const double *lane)
+{
+    return (lane[0] + lane[2]) + (lane[1] + lane[3]);
+}
+
+static inline SliderSum total(const Lanes *s)
+{
+    return (SliderSum){.force = {sum_of(s->x), sum_of(s->y)},
+                       .tangent = {sum_of(s->xx), sum_of(s->xy), sum_of(s->yy)},
+                       .loss = sum_of(s->loss)};
+}
+
+/* The first pair of which one is beyond its limit. */
+static inline int first_beyond(const double *beyond, int n)
+{
+    int k = 0;
+    while (k < n && !((beyond[k] > beyond[k + 1] ? beyond[k] : beyond[k + 1]) > 0.0))
+        k += 2;
+    return k;
+}
+
+/* Along one direction */
+
+enum { L_FORCE, L_ALONG, L_ACROSS, L_LOSS, N_LINE }; /* results of slide_line and slide_steady */
+
+static inline void one_steady(const Sliders *s, int k, double shift, double *y)
+{
+    const double x[] = {s->force[0][k], s->after[k], s->K[k], s->per_K[k], shift};
+    slide_steady(x, NULL, y);
+}
+
+static inline void one_line(const Sliders *s, int k, double shift, double *y)
+{
+    const double x[] = {s->force[0][k], s->before[k], s->K[k], s->per_K[k], shift, s->after[k]};
+    slide_line(x, NULL, y);
+}
+
+void sliders_line(int n, const Sliders *s, double shift, double *restrict moved, SliderSum *sum)
+{
+    Lanes lanes = {.x = {0.0}};
+    const bool steady = s->before == s->after;
+    for (int i = 0; i < n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            double y[N_LINE];
+            if (steady)
+                one_steady(s, i + l, shift, y);
+            else
+                one_line(s, i + l, shift, y);
+            moved[i + l] = y[L_FORCE];
+            lanes.x[l] += y[L_FORCE];
+            lanes.xx[l] += y[L_ALONG];
+            lanes.loss[l] += y[L_LOSS];
+        }
+    *sum = total(&lanes);
+}
+
+double sliders_force(int n, const Sliders *s, double shift, double *tangent)
+{
+    Lanes lanes = {.x = {0.0}};
+    for (int i = 0; i < n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            double y[N_LINE];
+            one_steady(s, i + l, shift, y);
+            lanes.x[l] += y[L_FORCE];
+            lanes.xx[l] += y[L_ALONG];
+        }
+    *tangent = sum_of(lanes.xx);
+    return sum_of(lanes.x);
+}
+
+/* What sliders from the first beyond its limit on give. */
+typedef struct {
+    double beyond[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+} Each;
+
+static inline void stick_all(int n, const double *restrict K, const double *restrict limit,
+                             const double *restrict force, double shift, double *restrict moved,
+                             double *restrict beyond)
+{
+    for (int k = 0; k < n; k++) {
+        const double x[] = {force[k], shift, limit[k], K[k]};
+        double y[2];
+        stick_line(x, NULL, y);
+        moved[k] = y[0];
+        beyond[k] = y[1];
+    }
+}
+
+static inline void slide_all(int first, int n, const double *restrict K, const double *restrict per_K,
+                             const double *restrict limit, const double *restrict force, double shift,
+                             double *restrict moved, Each *restrict each)
+{
+    for (int k = first; k < n; k++) {
+        const double x[] = {force[k], limit[k], K[k], per_K[k], shift};
+        double y[N_LINE];
+        slide_steady(x, NULL, y);
+        moved[k] = y[L_FORCE];
+        each->xx[k] = y[L_ALONG];
+        each->yy[k] = y[L_ACROSS];
+        each->loss[k] = y[L_LOSS];
+    }
+}
+
+int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum)
+{
+    Each each;
+    Lanes lanes = {.x = {0.0}};
+    stick_all(n, s->K, s->after, s->force[0], shift, moved, each.beyond);
+    const int first = first_beyond(each.beyond, n);
+    slide_all(first, n, s->K, s->per_K, s->after, s->force[0], shift, moved, &each);
+    for (int k = 0; k < n; k += 2)
+        for (int l = 0; l < 2; l++)
+            lanes.x[l] += moved[k + l];
+    for (int k = first; k < n; k += 2)
+        for (int l = 0; l < 2; l++) {
+            lanes.xx[l] += each.xx[k + l];
+            lanes.yy[l] += each.yy[k + l];
+            lanes.loss[l] += each.loss[k + l];
+        }
+    *sum = total(&lanes);
+    return first;
+}
+
+void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
+                       SliderSum *rate)
+{
+    Lanes lanes = {.x = {0.0}};
+    const bool steady = s->before == s->after;
+    for (int i = 0; i < n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            const int k = i + l;
+            const double trial[] = {s->force[0][k], shift, s->after[k], s->K[k]};
+            double y[N_LINE], tried[2];
+            stick_line(trial, NULL, tried);
+            if (steady) {
+                const double x[] = {s->force[0][k], s->after[k], s->K[k], s->per_K[k], shift, shift_rate};
+                slide_steady_seed(x, NULL, y);
+            } else {
+                const double x[] = {s->force[0][k], s->before[k], s->K[k],    s->per_K[k],
+                                    shift,          s->after[k],  shift_rate, after_rate[k]};
+                slide_line_seed(x, NULL, y);
+            }
+            lanes.x[l] += tried[1] > 0.0 ? y[L_FORCE] : s->K[k] * shift_rate;
+            lanes.loss[l] += tried[1] > 0.0 ? y[L_LOSS] : 0.0;
+        }
+    *rate = total(&lanes);
+}
+
+/* In a plane */
+
+static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
+                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
+                                   double *restrict x, double *restrict y, double *restrict beyond)
+{
+    for (int k = 0; k < n; k++) {
+        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, limit[k]};
+        double b[3];
+        stick_plane(a, NULL, b);
+        x[k] = b[0];
+        y[k] = b[1];
+        beyond[k] = b[2];
+    }
+}
+
+static inline void slide_plane_all(int first, int n, const double *restrict K, const double *restrict per_K,
+                                   const double *restrict before, const double *restrict after,
+                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
+                                   double *restrict x, double *restrict y, Each *restrict each)
+{
+    for (int k = first; k < n; k++) {
+        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, before[k], after[k], K[k], per_K[k]};
+        double b[7];
+        slide_plane(a, NULL, b);
+        x[k] = b[0];
+        y[k] = b[1];
+        each->xx[k] = b[2];
+        each->xy[k] = b[3];
+        each->yy[k] = b[4];
+        each->loss[k] = b[5];
+    }
+}
+
+static inline void add_forces(int n, const double *x, const double *y, Lanes *lanes)
+{
+    int i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            lanes->x[l] += x[i + l];
+            lanes->y[l] += y[i + l];
+        }
+    for (; i < n; i++) {
+        lanes->x[i % 2] += x[i];
+        lanes->y[i % 2] += y[i];
+    }
+}
+
+int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
+{
+    Each each;
+    Lanes lanes = {.x = {0.0}};
+    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], each.beyond);
+    const int first = first_beyond(each.beyond, n);
+    slide_plane_all(first, n, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1],
+                    moved[0], moved[1], &each);
+    add_forces(n, moved[0], moved[1], &lanes);
+    for (int k = first; k < n; k += 2)
+        for (int l = 0; l < 2; l++) {
+            lanes.xx[l] += each.xx[k + l];
+            lanes.xy[l] += each.xy[k + l];
+            lanes.yy[l] += each.yy[k + l];
+            lanes.loss[l] += each.loss[k + l];
+        }
+    *sum = total(&lanes);
+    return first;
+}

@@ -1,0 +1,37 @@
+/* Jenkins sliders side by side: loops around the rule of one slider, which is generated. */
+#ifndef JOINTFMU_SLIDERS_H
+#define JOINTFMU_SLIDERS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "law.h"
+
+enum { MOST_SLIDERS = 48 }; /* of one call; an even number each */
+
+/* Sliders before a straight path: springs K and 1/K (0 without), limits at both ends of it, forces. */
+typedef struct {
+    const double *K, *per_K, *before, *after;
+    const double *force[2]; /* in a plane; along one direction the first */
+} Sliders;
+
+/* What they give together: forces, derivatives xx, xy, yy of them in a further shift, heat. Along one direction the
+ * tangents are along and, as yy, across it. */
+typedef struct {
+    double force[2], tangent[3], loss;
+} SliderSum;
+
+/* Along one direction, a multiple of four sliders; `before` and `after` are one array where the limits stay. */
+void sliders_line(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
+/* The same with limits that stay, where most stick: the tangents are those from a slider on that is returned. */
+int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
+/* Force along one direction with limits that stay, and its tangent; a multiple of four sliders. */
+double sliders_force(int n, const Sliders *s, double shift, double *tangent);
+/* Rates of force and heat along one direction, by rates of the shift and of the limits after it. */
+void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
+                       SliderSum *rate);
+
+/* In a plane; the tangents are those from a slider on that is returned, those before it stick. */
+int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum);
+
+#endif

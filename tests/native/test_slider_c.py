@@ -1,0 +1,173 @@
+"""One slider in C against Python: the generated rule and the loops around it, compiled without an FMU."""
+
+from collections.abc import Iterator
+from ctypes import CDLL, POINTER, Structure, byref, c_double, c_int
+
+import casadi as ca
+import numpy as np
+import pytest
+from jointfmu_fmu_src.joint_parts.graph import Graph
+from jointfmu_fmu_src.joint_parts.sliders import add_sliders
+from jointfmu_fmu_src.native import compiler, elementary
+from jointfmu_fmu_src.native.emit import HELPERS, function
+from jointfmu_fmu_src.native.generate import RUNTIME
+
+from jointfmu.mechanics.jenkins import Sliders, beyond, slide, trial
+
+pytestmark = pytest.mark.slow
+
+MOVES, SLIDERS = 100_000, 8
+ROUND_OFF = 1e-13
+"""Of a sum of some products, over the largest of what is compared: C adds in another order."""
+POINTER_TO = POINTER(c_double)
+
+
+class CSliders(Structure):
+    """`Sliders` of sliders.h."""
+
+    _fields_ = [(name, POINTER_TO) for name in ("K", "per_K", "before", "after", "force_x", "force_y")]
+
+
+class Sum(Structure):
+    """`SliderSum`."""
+
+    _fields_ = [("force", c_double * 2), ("tangent", c_double * 3), ("loss", c_double)]
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
+    """The C of the sliders, all functions visible."""
+    g = Graph({}, None, [])
+    before = ca.GlobalOptions.getNumpyMode()
+    ca.GlobalOptions.setNumpyMode(1)
+    try:
+        add_sliders(g)
+    finally:
+        ca.GlobalOptions.setNumpyMode(before)
+    none = ca.SX.sym("none", 0)
+    texts = [
+        function(f.name, f.doc, ca.vertcat(*f.x), none, f.y, f.name.endswith("_seed")) for f in g.functions
+    ]
+    law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
+    files = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in ("sliders.c", "sliders.h")}
+    files |= {name: (RUNTIME / name).read_text(encoding="utf-8") for name in ("elementary.c", "elementary.h")}
+    files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{HELPERS}\n{law}'}
+    files |= {"elementary_tables.h": elementary.tables()}
+    visible = "#pragma GCC visibility push(default)\n"
+    files["sliders.c"] = visible + files["sliders.c"]
+    made = compiler.libraries("sliders", files, ["sliders.c", "elementary.c"], ["x86_64-linux"])
+    path = tmp_path_factory.mktemp("sliders") / "sliders.so"
+    path.write_bytes(made["x86_64-linux"])
+    found = CDLL(str(path))
+    found.sliders_force.restype = c_double
+    return found
+
+
+def pointer(values: np.ndarray) -> "POINTER_TO":
+    return values.ctypes.data_as(POINTER_TO)
+
+
+def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
+    """Springs, limits before and after, forces (2, n) within the former, shift (2): some at the limit, some
+    without limit or spring, many small shifts and none."""
+    rng = np.random.default_rng(1)
+    for _ in range(MOVES // SLIDERS):
+        K = rng.uniform(0.1, 2.0, SLIDERS) * (rng.random(SLIDERS) > 0.1)
+        before, rise = rng.random((2, SLIDERS)) * (rng.random((2, SLIDERS)) > 0.1)
+        after = before if rng.random() < 0.5 else rise
+        angle = rng.uniform(0.0, 2.0 * np.pi, SLIDERS) if plane else np.pi * rng.integers(0, 2, SLIDERS)
+        size = before * np.where(rng.random(SLIDERS) < 0.3, 1.0, rng.random(SLIDERS))
+        shift = rng.normal(size=2) * rng.choice([0.0, 1e-9, 1e-3, 0.3, 3.0])
+        yield K, before, after, size * np.array([np.cos(angle), np.sin(angle) * plane]), shift
+
+
+def in_c(
+    K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndarray
+) -> tuple[CSliders, np.ndarray]:
+    """The struct, and what has to stay alive as long as it."""
+    per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
+    kept = np.stack([K, per_K, before, after, force[0], force[1]])
+    rows = [pointer(row) for row in kept]
+    if after is before:
+        rows[3] = rows[2]
+    return CSliders(*rows), kept
+
+
+def close(found: object, expected: object, size: float) -> None:
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=ROUND_OFF * size)
+
+
+def test_along_one_direction(library: CDLL) -> None:
+    """Forces, sums, tangent and rates of a limit that stays and of one that changes."""
+    moved, slipped = np.empty(SLIDERS), 0
+    for K, before, after, force, (u, _) in moves(plane=False):
+        s, kept = in_c(K, before, after, force)
+        total, rate = Sum(), Sum()
+        library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
+        expected = Sliders(K).along(force[0], u, before, after)
+        size = 1.0 + abs(u) * float(np.sum(K))
+        close(moved, expected.force, size)
+        close([total.force[0], total.loss], [expected.traction, expected.loss], SLIDERS * size**2)
+        assert total.tangent[0] == pytest.approx(float(expected.tangent), abs=ROUND_OFF * SLIDERS)
+        tried = force[0] + K * u
+        slips = np.abs(tried) > after
+        slipped += int(np.sum(slips))
+        ones = pointer(np.ones(SLIDERS))
+        library.sliders_line_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
+        rises = 0.0 if after is before else float(np.sum(np.sign(tried[slips & (after > 0.0)])))
+        if after is before or np.all(after[slips] > 0.0):
+            assert rate.force[0] == pytest.approx(float(expected.tangent) + rises, abs=ROUND_OFF * SLIDERS)
+        assert kept.size
+    assert 0.2 * MOVES < slipped < 0.8 * MOVES
+
+
+def test_in_a_plane(library: CDLL) -> None:
+    """Forces, sums, tangents of those from the first that slips on."""
+    moved = np.empty((2, SLIDERS))
+    out = (POINTER_TO * 2)(pointer(moved[0]), pointer(moved[1]))
+    slipped = 0
+    for K, before, after, force, shift in moves(plane=True):
+        s, kept = in_c(K, before, after, force)
+        total, way = Sum(), (c_double * 2)(*shift)
+        first = library.sliders_plane(SLIDERS, byref(s), way, out, byref(total))
+        tried = trial(list(force), 1.0, K, list(shift[:, None]))
+        slid = slide(list(force), tried, before, after, K, kept[1])
+        size = 1.0 + float(np.hypot(*shift) * np.sum(K))
+        close(moved, slid.force, size)
+        sums = [np.sum(part) for part in (*slid.force, slid.loss)]
+        close([*total.force, total.loss], sums, SLIDERS * size**2)
+        close(list(total.tangent), [np.sum(t[first:]) for t in slid.tangent], SLIDERS)
+        slips = beyond(tried, after) > 0.0
+        assert not np.any(slips[:first])
+        slipped += int(np.sum(slips))
+        assert np.all(np.isfinite(moved)), (K, before, after)
+        assert np.all(np.hypot(*moved) <= after * (1.0 + ROUND_OFF) + ROUND_OFF)
+    assert 0.2 * MOVES < slipped < 0.8 * MOVES
+
+
+def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
+    """Sliders that came back to their limit stick: no heat, no other force, for any direction."""
+    moved = np.empty((2, SLIDERS))
+    out = (POINTER_TO * 2)(pointer(moved[0]), pointer(moved[1]))
+    for K, limit, _, force, shift in moves(plane=True):
+        total = Sum()
+        s, kept = in_c(K, limit, limit, force)
+        library.sliders_plane(SLIDERS, byref(s), (c_double * 2)(*shift), out, byref(total))
+        there = moved.copy()
+        s, kept = in_c(K, limit, limit, there)
+        library.sliders_plane(SLIDERS, byref(s), (c_double * 2)(0.0, 0.0), out, byref(total))
+        np.testing.assert_array_equal(moved, there)
+        assert total.loss == 0.0
+        assert kept.size
+
+
+def test_force_alone(library: CDLL) -> None:
+    """It is that of the whole, with its tangent."""
+    for K, limit, _, force, (u, _) in moves(plane=False):
+        s, kept = in_c(K, limit, limit, force)
+        tangent = c_double()
+        found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
+        expected = Sliders(K).along(force[0], u, limit, limit)
+        size = 1.0 + abs(u) * float(np.sum(K))
+        close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)
+        assert kept.size
