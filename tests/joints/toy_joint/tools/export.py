@@ -14,6 +14,5 @@ def _line(spring, state, error):
     return Table(np.stack([s, spring.c * s, np.full(3, spring.c)], axis=1), (0.0, 0.0), (0.0, 0.0))
 
 
-PULL = Variable("pull", "N", "force that holds it")
-COLUMNS = (KIND.variables["s_rel"], PULL, KIND.variables["K"])
+COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])
 EXPORTS = Exports(curve=LoadCurve(meaning="pull over elongation", columns=COLUMNS, name="force", table=_line))
