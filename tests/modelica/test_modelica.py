@@ -242,7 +242,7 @@ def test_command_takes_the_preload_of_the_file(tmp_path: Path):
 
 def test_a_held_drive_leaves_its_states_to_the_tool():
     """`prefer` sends a tool that has no state to take into a set of states whose Jacobian divides by zero."""
-    text = (COMMITTED / "Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
+    text = (COMMITTED / "JointStiffness/Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
     assert "stateSelect=if use_damping then StateSelect.prefer else StateSelect.default" in text
 
 

@@ -1139,7 +1139,10 @@ def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> 
         ),
         (["bolted_column", "--load", "0"], "load = 0 N: the joint has no stiffness there"),
         (["bolted_column", "--load", "-5"], "preload = -5 N is outside [0, inf)"),
-        (["bolted_column", "--fmus", "nowhere"], "nowhere/BoltedJoint.fmu: there is no such file"),
+        (
+            ["bolted_column", "--fmus", "nowhere"],
+            "--fmus nowhere: has no BoltedJoint.fmu; `jointfmu build --systems` writes it",
+        ),
         (["robot_joint", "--plot", "a.pdf"], "suffix '.pdf' is no picture"),
         (["gearbox"], "system 'gearbox': allowed are bolted_column, robot_joint, six_axis_robot, or a file"),
         (

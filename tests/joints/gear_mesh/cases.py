@@ -45,7 +45,8 @@ MESH = Case(
     ),
     tuning=Tuning(
         base={"rigid_flat": False},  # with a rigid flat the second body does not matter
-        moved={"teeth1": 30.0, "A_0": 1e-6},  # the load decides the spots; A_0 where the table ends
+        # the load decides the spots, A_0 where the table ends; the default wheels are spur ones
+        moved={"teeth1": 30.0, "A_0": 1e-6, "overlap_ratio": 0.3},
         counted={"teeth1": (25, 33)},
         tuned={"surface1.D": 1.5, "K_tooth": 2e8, "contact_ratio": 1.5, "rigid_flat": False, "d": 2e3},
         baked=({"plastic_area": "kogut_etsion", "rigid_flat": False, "e": 0.3, "backlash": 0.0},),
