@@ -21,7 +21,7 @@ def test_law_is_the_exported_one():
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
     spring, law = HarmonicDriveSpring.of(drive), hysteresis.law(drive)
     for u in (1e-6, 1e-4, 2e-3):
-        moved = float(spring.hysteresis.moved(spring.hysteresis.rest(), u).torque)
+        moved = float(spring.hysteresis.moved(spring.hysteresis.rest(), u).traction)
         assert law.friction(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
         assert law.elastic.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
 

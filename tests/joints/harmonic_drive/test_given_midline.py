@@ -141,7 +141,7 @@ def test_hysteresis_of_a_drive_without_a_pair():
     phi = np.linspace(0.0, 3.0 * limit / stiffness, 50)
     rest = np.broadcast_to(hysteresis.rest(), (50, hysteresis.rest().size))
     dahl = limit * (1.0 - np.exp(-stiffness * phi / limit))
-    np.testing.assert_allclose(hysteresis.moved(rest, phi).torque, dahl, atol=2e-3 * limit)
+    np.testing.assert_allclose(hysteresis.moved(rest, phi).traction, dahl, atol=2e-3 * limit)
     memory, wound = hysteresis.rest(), []
     for tau in (31.0, 0.0, -31.0, 0.0):
         state, memory = spring.loaded(tau, memory)
