@@ -17,7 +17,7 @@ import numpy as np
 from jointfmu_fmu_src.building import build
 from jointfmu_tools.mujoco import plugin
 
-from jointfmu.run.host import Instance
+from jointfmu.fmi.host import Instance
 
 NAME = "HarmonicDriveSpring"
 JOINTS, STEPS, REPEATS, PYTHON_STEPS = 6, 2000, 21, 200

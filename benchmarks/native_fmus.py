@@ -25,9 +25,9 @@ import numpy as np
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import compiler, data, generate
 
+from jointfmu.fmi.host import Instance
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
-from jointfmu.run.host import Instance
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"

@@ -13,7 +13,7 @@ import pytest
 from filelock import FileLock
 from hypothesis import settings
 
-from jointfmu.run.host import Instance
+from jointfmu.fmi.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
 settings.load_profile("jointfmu")

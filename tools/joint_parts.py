@@ -22,6 +22,7 @@ TOOLS = (
     "figures",
     "fit",
     "frequencies",
+    "interface",
     "laboratory",
     "modelica",
     "new",

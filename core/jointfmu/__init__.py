@@ -1,3 +1,47 @@
-"""Joint stiffness from fractal surface roughness, as laws, curves and FMUs."""
+"""Joint stiffness from surface roughness, as laws, curves and FMUs.
+
+    import jointfmu
+
+    drive = jointfmu.drive("CSG-25-100")       # a harmonic drive by its name in the catalogue
+    drive.wind_up(48.0)                        # rad under 48 N.m
+    drive.build("dist")                        # FMUs for any simulator
+    jointfmu.load("my_joint.toml").report("my_joint.html")
+
+All numbers are in SI units, unless a drawing states them otherwise.
+"""
+
+from typing import Any
 
 __version__ = "0.1.0"
+
+__all__ = [
+    "Fit",
+    "Frame",
+    "Joint",
+    "Law",
+    "Table",
+    "bolted_joint",
+    "drive",
+    "fit",
+    "gear_contact",
+    "gear_mesh",
+    "law",
+    "load",
+    "run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """The public interface stands above this package and is loaded when it is asked for."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+    from importlib.metadata import entry_points
+
+    (interface,) = entry_points(group="jointfmu", name="interface")
+    value = globals()[name] = getattr(import_module(interface.value), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -76,13 +76,31 @@ def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterato
         axes = figure.subplots()
     """
     check(path)
-    from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    with rc_context(STYLE):
+    with style():
         figure = Figure(figsize=size, layout="constrained")
         yield figure
         save(figure, path)
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The common style, also as a decorator of what draws: `@plots.style()`."""
+    from matplotlib import rc_context
+
+    with rc_context(STYLE):
+        yield
+
+
+def figure(size: tuple[float, float]) -> "Figure":
+    """An empty figure of a size [inch] for a user: matplotlib's own `show` and a notebook know it."""
+    from matplotlib import get_backend, pyplot
+
+    made = pyplot.figure(figsize=size, layout="constrained")
+    if "inline" in get_backend():
+        pyplot.close(made)  # a notebook shows what a cell returns, and once more what is open
+    return made
 
 
 def save(figure: "Figure", path: str | Path) -> None:

@@ -33,10 +33,10 @@ from proofs import BOTH
 from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
+from jointfmu.fmi import ramp
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump
 from jointfmu.published import validation
-from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

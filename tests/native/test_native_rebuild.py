@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
-from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

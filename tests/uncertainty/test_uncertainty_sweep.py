@@ -17,8 +17,8 @@ from jointfmu_tools.uncertainty.problem import pose
 from jointfmu_tools.uncertainty.sweep import plan, sweep
 from jointfmu_tools.uncertainty.worker import Drive
 
+from jointfmu.fmi import ramp
 from jointfmu.parameters import default
-from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

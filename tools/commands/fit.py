@@ -3,7 +3,7 @@
 import argparse
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,9 +21,7 @@ from ..joint_parts import part
 from ..pressing import judge_file
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from ..fitting.outcome import Outcome, Picture
+    from ..fitting.outcome import Outcome
 
 
 def add(commands: Commands) -> None:
@@ -126,11 +124,12 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
 def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
     """Write and print what was found."""
     from ..fitting.outcome import percent
+    from ..fitting.picture import draw
 
     if args.plot:
         pictures = [outcome.picture, *filter(None, (outcome.beside,))]
         with plots.drawing(args.plot, (7.2 if len(pictures) == 1 else 10.8, 5.6)) as figure:
-            _draw(figure, pictures)
+            draw(figure, pictures)
     if args.out:
         write_text(args.out, dump(outcome.parameters))
     if args.json:
@@ -152,23 +151,3 @@ def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
     for path in filter(None, (args.out, args.plot)):
         print(f"wrote {path}")
     return 0
-
-
-def _draw(figure: "Figure", pictures: Sequence["Picture"]) -> None:
-    """Data and law above, residuals below; pictures side by side."""
-    every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
-    for (above, below), picture in zip(every.T, pictures, strict=True):
-        x, y = picture.x, picture.y
-        above.plot(*picture.line, color=plots.BLUE, label="fitted law")
-        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
-            above.plot(*line, "--", color=color, lw=1.0, label=name)
-        above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
-        below.axhline(0.0, color=plots.BLUE, lw=1.0)
-        below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
-        if picture.marks is not None:
-            for axes, values in ((above, y), (below, picture.misfit)):
-                axes.plot(x[picture.marks], values[picture.marks], "o", color=plots.RED, ms=7)
-        above.set_ylabel(picture.labels[1])
-        below.set_xlabel(picture.labels[0])
-        below.set_ylabel(picture.labels[2])
-        above.legend()

@@ -65,7 +65,7 @@ def _expected(fmu: Path, path: Path) -> Expected:
     """
     from jointfmu_fmu_src.proof import proof
 
-    from jointfmu.run.host import unpacked
+    from jointfmu.fmi.host import unpacked
 
     file = load(path)
     with unpacked(fmu, exchange=True) as (_, description):

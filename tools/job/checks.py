@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from jointfmu.fmi import ramp
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.published.reference import Point, points
 from jointfmu.published.validation import Row, compare
-from jointfmu.run import ramp
 
 from ..joint_parts import part
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE

@@ -8,12 +8,12 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import FLAVOURS, build
 
 from jointfmu.files.writing import write_text
+from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 from jointfmu.progress import track
 from jointfmu.proof.outcome import Proof
 from jointfmu.proof.run import prove
 from jointfmu.published import validation
-from jointfmu.run import ramp
 
 from ..laboratory import write_laboratory
 from ..report import write_report

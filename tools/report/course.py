@@ -7,11 +7,11 @@ import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
 from numpy.typing import NDArray
 
+from jointfmu.fmi.loops import Loops, Swing, conjugate, of
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.run.loops import Loops, Swing, conjugate, of
-from jointfmu.run.ramp import RampResult
 
 Array = NDArray[np.float64]
 

@@ -11,12 +11,12 @@ from jointfmu_fmu_src.templates import FRAME, law_terms, template
 from jointfmu import __version__
 from jointfmu.contact.roughness import DECLARED
 from jointfmu.files.writing import write_text
+from jointfmu.fmi.loops import Loops
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import flat_fields
 from jointfmu.quantity.units import factor
-from jointfmu.run.loops import Loops
 
 from ..joint_parts import part
 from ..pressing import judge_file
@@ -74,7 +74,7 @@ def _page(model: Model, file: ParameterFile) -> str:
     here, rows = Path(__file__).parent, _rows(file)
     own = part(KINDS[model.joint], "report")
     loops = course.loops() if model.loop else None
-    figures = [_curves(course), *([_looped(course, loops)] if loops else [])]
+    figures = [curves(course), *([looped(course, loops)] if loops else [])]
     if own and model.name in own.FIGURES:
         figures += own.FIGURES[model.name](model, file)
     return template(asset(model, "page.html"), here, FRAME).render(
@@ -144,7 +144,7 @@ def _scale(values: Any, unit: str) -> tuple[Any, str]:
     return factor(unit, shown) * np.asarray(values), spelled(shown)
 
 
-def _curves(course: Course) -> Figure:
+def curves(course: Course) -> Figure:
     """The load ramp: what the joint's folder says of its page."""
     columns = course.ramp()
     variables = {v.name: v for v in (*course.model.inputs, *course.model.outputs)}
@@ -167,7 +167,7 @@ def _curves(course: Course) -> Figure:
     return Figure("Curves over the load", text, drawn)
 
 
-def _looped(course: Course, loops: Loops) -> Figure:
+def looped(course: Course, loops: Loops) -> Figure:
     """The loops of a joint with memory."""
     units = loops.units
     x_unit, y_unit = (

@@ -9,8 +9,8 @@ import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 from scipy.interpolate import CubicSpline
 
+from jointfmu.fmi import loops
 from jointfmu.progress import track
-from jointfmu.run import loops
 
 from ..fitting import decay
 from ..fitting.hysteresis import Hysteresis

@@ -10,7 +10,7 @@ import numpy as np
 from fmpy.fmi1 import FMICallException
 from numpy.typing import NDArray
 
-from jointfmu.run.host import opened, unpacked
+from jointfmu.fmi.host import opened, unpacked
 
 Array = NDArray[np.float64]
 T = TypeVar("T")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.run import ramp
+from jointfmu.fmi import ramp
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import plots
 from ..files.writing import check_writable, write_text
-from ..run import loops, ramp
+from ..fmi import loops, ramp
 from .common import Commands, command, flag, settings
 
 if TYPE_CHECKING:

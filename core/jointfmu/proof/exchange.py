@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..run.host import Instance, description, opened
+from ..fmi.host import Instance, description, opened
 from .task import FLOOR, Rows, Task, reader
 
 MOST_STEPS = 100_000

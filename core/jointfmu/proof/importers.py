@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..run.host import description, opened
+from ..fmi.host import description, opened
 from . import exchange
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE
 from .task import Execute, Rows, Task, reader

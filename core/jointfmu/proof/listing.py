@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..files.writing import made_folder, write_bytes
-from ..run import host
+from ..fmi import host
 from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE

@@ -10,8 +10,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from ..fmi.host import unpacked
 from ..progress import track
-from ..run.host import unpacked
 from .importers import PACKAGES, VERSIONS, interfaces
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof

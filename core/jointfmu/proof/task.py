@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ..run.host import Instance
+from ..fmi.host import Instance
 from .values import REAL
 
 FLOOR = 1e-6

@@ -11,9 +11,9 @@ from joint_cases import SAME, STATE, TABLE, parameters, random_inputs
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
+from jointfmu.fmi import ramp
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.run import ramp
 
 Host = Callable[..., Fmu]
 

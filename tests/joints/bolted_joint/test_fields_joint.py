@@ -15,6 +15,7 @@ from jointfmu_tools.fields.sums import Sums
 from jointfmu_tools.modelica import library
 
 from jointfmu import plots
+from jointfmu.fmi import ramp
 from jointfmu.joints import register, unregister
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
@@ -25,7 +26,6 @@ from jointfmu.mechanics.footprint.reproducible import rounded
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import flatten
-from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

@@ -11,9 +11,9 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, lines
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
+from jointfmu.fmi import ramp
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import load
-from jointfmu.run import ramp
 
 pytestmark = pytest.mark.slow
 

@@ -10,8 +10,8 @@ from conftest import Fmu
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from scipy.integrate import cumulative_simpson, quad
 
+from jointfmu.fmi import ramp
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
-from jointfmu.run import ramp
 
 Host = Callable[..., Fmu]
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from scipy.integrate import cumulative_simpson
 
+from jointfmu.fmi import ramp
 from jointfmu.published.reference import Point
-from jointfmu.run import ramp
 
 from ...job.checks import deviation
 

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure as Canvas
 
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.bolted_joint.law import bolt_pattern
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
-from jointfmu.run.ramp import RampResult
 
 from ...report.drawing import svg
 from ...report.figure import Figure, Panel, Series

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.integrate import quad
 
 from jointfmu.contact.interface import stiffness_curve
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import default
-from jointfmu.run.ramp import RampResult
 
 from ...job.checks import deviation
 

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu.contact.interface import stiffness_curve
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.gear_mesh.spring import GearMesh
 from jointfmu.parameters import default
-from jointfmu.run.ramp import RampResult
 
 from ...job.checks import deviation
 

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.gear_mesh.pairs import pairs
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 from jointfmu.parameters import default
-from jointfmu.run.ramp import RampResult
 
 from ...report.figure import Figure, Panel, Series
 

@@ -10,6 +10,7 @@ PARTS = Parts(
         "export",
         "figures",
         "fit",
+        "interface",
         "laboratory",
         "modelica",
         "new",

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.fmi.ramp import RampResult
 from jointfmu.published.validation import Row
-from jointfmu.run.ramp import RampResult
 
 from ...report.figure import Figure, Panel, Series, published
 from . import efficiency

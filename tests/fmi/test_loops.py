@@ -9,8 +9,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.fit import loop as shear
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 
+from jointfmu.fmi import loops, ramp
 from jointfmu.parameters import default
-from jointfmu.run import loops, ramp
 
 HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}
 SET = [f"{name}={value}" for name, value in HYSTERESIS.items()]

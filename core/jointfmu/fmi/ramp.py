@@ -77,8 +77,32 @@ def along(
     fmu: str | Path, input_name: str, points: Array, settings: Mapping[str, object] | None = None
 ) -> RampResult:
     """Drive one input along points (n), one step of one second each; all else stays. Raises as `run`."""
+    return drive(fmu, {input_name: points}, None, settings)
+
+
+def drive(
+    fmu: str | Path,
+    inputs: Mapping[str, Array],
+    time: Array | None = None,
+    settings: Mapping[str, object] | None = None,
+) -> RampResult:
+    """Drive inputs along points, each (n) or (1), over time (n) [s] from zero: whole seconds by default.
+
+    Raises as `run`, and ValueError for inputs of different lengths or a time that does not rise from 0.
+    """
+    sizes = {name: points.size for name, points in inputs.items() if points.size != 1}
+    if time is not None:
+        sizes["time"] = time.size
+    if len(set(sizes.values())) > 1:
+        told = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise ValueError(f"{fmu}: inputs of different lengths ({told}), allowed are 1 and one other")
+    count = max(sizes.values(), default=1)
+    clock = np.arange(float(count)) if time is None else time
+    if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
+        raise ValueError(f"{fmu}: time does not rise from 0 s")
+    rows = {name: np.broadcast_to(points, count) for name, points in inputs.items()}
     with unpacked(fmu) as (folder, description):
-        return _drive(folder, description, input_name, points, dict(settings or {}), str(fmu))
+        return _drive(folder, description, rows, clock, dict(settings or {}), str(fmu))
 
 
 def units(fmu: str | Path) -> dict[str, str]:
@@ -88,15 +112,16 @@ def units(fmu: str | Path) -> dict[str, str]:
 
 
 def _drive(
-    folder: str, md: Any, input_name: str, points: Array, settings: dict[str, Any], source: str
+    folder: str, md: Any, inputs: Mapping[str, Array], time: Array, settings: dict[str, Any], source: str
 ) -> RampResult:
     variables = {v.name: v for v in md.modelVariables}
-    inputs = [v.name for v in md.modelVariables if v.causality == "input"]
+    allowed = [v.name for v in md.modelVariables if v.causality == "input"]
     outputs = [v for v in md.modelVariables if v.causality == "output"]
-    if input_name not in inputs:
-        raise ValueError(f"{source}: unknown input {input_name!r}, allowed are {', '.join(inputs)}")
-    if input_name in settings:
-        raise ValueError(f"{source}: {input_name} is driven by the ramp and cannot be set as well")
+    for name in inputs:
+        if name not in allowed:
+            raise ValueError(f"{source}: unknown input {name!r}, allowed are {', '.join(allowed)}")
+        if name in settings:
+            raise ValueError(f"{source}: {name} is driven by the ramp and cannot be set as well")
     settable = [v.name for v in md.modelVariables if v.causality in ("input", "parameter")]
     for name, value in settings.items():
         if name not in settable:
@@ -107,20 +132,21 @@ def _drive(
             raise ValueError(f"{source}: {name} = {value!r} is not {expected}")
     messages: list[str] = []
     rows: list[list[float]] = []
+    points = np.stack([*inputs.values()], axis=-1) if inputs else np.empty((time.size, 0))
     with opened(folder, md, source, messages) as fmu:
         try:
             fmu.begin()
-            fmu.set({**settings, input_name: points[0]})
+            fmu.set({**settings, **dict(zip(inputs, points[0].tolist(), strict=True))})
             fmu.fmu.exitInitializationMode()
-            driven, read = fmu.reals([input_name]), fmu.reals([v.name for v in outputs])
-            for i, value in enumerate(track(points, Path(source).stem, len(points))):
-                driven.set(value)
+            driven, read = fmu.reals([*inputs]), fmu.reals([v.name for v in outputs])
+            for i, values in enumerate(track(points.tolist(), Path(source).stem, len(points))):
+                driven.set(*values)
                 if i:
-                    fmu.advance(float(i - 1), 1.0)
+                    fmu.advance(float(time[i - 1]), float(time[i] - time[i - 1]))
                 rows.append(read.get())
         except Exception as error:
             raise ValueError(f"{source}: {messages[0] if messages else error}") from None
     table = np.asarray(rows).reshape(len(points), len(outputs))
-    columns = {input_name: points} | {v.name: table[:, i] for i, v in enumerate(outputs)}
+    columns = dict(inputs) | {v.name: table[:, i] for i, v in enumerate(outputs)}
     units = {name: variables[name].unit or "1" for name in columns}
     return RampResult(columns, units, tuple(messages))

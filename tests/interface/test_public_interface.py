@@ -1,0 +1,172 @@
+"""`import jointfmu`: what a notebook finds there."""
+
+import doctest
+import subprocess
+import sys
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import jointfmu
+
+MODULES = ("table", "frame", "joint", "law", "make", "run")
+PLATE = {
+    "plate": (200, 100),
+    "bolts": "4xM12",
+    "at": (160, 60),
+    "grip": 40,
+    "material": "steel",
+    "Ra": 0.8,
+    "preload": 30e3,
+}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def test_the_package_shows_its_interface_and_nothing_else():
+    assert {*dir(jointfmu)} == {*jointfmu.__all__, "__version__"}
+    for name in jointfmu.__all__:
+        assert ">>>" in getattr(jointfmu, name).__doc__, name
+
+
+def test_the_interface_is_loaded_when_it_is_asked_for():
+    asked = "import sys, jointfmu; print(any(m.startswith('jointfmu_tools') for m in sys.modules))"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def test_a_name_that_is_not_there():
+    with pytest.raises(AttributeError, match="no attribute 'drives'"):
+        _ = jointfmu.drives
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MODULES)
+def test_examples(name):
+    assert doctest.testmod(import_module(f"jointfmu_tools.interface.{name}")).failed == 0
+
+
+@pytest.mark.parametrize("name", ["drive", "bolted_joint", "gear_contact", "gear_mesh"])
+def test_examples_of_what_makes_joints(name):
+    finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()
+    (found,) = finder.find(getattr(jointfmu, name), name, module=False)
+    assert runner.run(found).failed == 0
+    assert found.examples
+
+
+def test_a_drive_by_name_in_one_line():
+    drive = jointfmu.drive("CSG-25-100")
+    # the catalogue's own lines: 14 N.m at K1, then K2 up to 48 N.m
+    assert drive.wind_up(48.0) == pytest.approx(14.0 / 31000 + 34.0 / 50000, rel=4e-3)
+    T = np.array([-48.0, -1.0, 0.0, 1.0, 48.0])
+    np.testing.assert_allclose(drive.torque(drive.wind_up(T)), T, rtol=1e-9, atol=1e-12)
+    assert drive.torque(1e-3) == pytest.approx(14.0 + 50000 * (1e-3 - 14.0 / 31000), rel=4e-3)
+
+
+def test_a_joint_prints_its_numbers_with_units_and_sources():
+    plate = jointfmu.bolted_joint(**PLATE)
+    for text in (repr(plate), plate._repr_html_()):
+        for part in ("side1.E", "210", "GPa", "EN 1993-1-1", "inputs.preload", "30", "kN", "K_zz"):
+            assert part in text
+
+
+def test_numbers_tuples_and_lists_are_what_the_drawing_has():
+    one = jointfmu.bolted_joint(**PLATE)
+    other = jointfmu.bolted_joint(
+        **PLATE | {"at": [(80, 30), (-80, 30), (-80, -30), (80, -30)], "grip": [20, 20], "Ra": "0.8 um"}
+    )
+    assert other.values["plate.cone_diameter"] == pytest.approx(one.values["plate.cone_diameter"], rel=1e-12)
+    assert sorted(other.values["plate.x"]) == pytest.approx(sorted(one.values["plate.x"]), rel=1e-12)
+
+
+def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest():
+    plate = jointfmu.bolted_joint(**PLATE)
+    far = plate.evaluate(s_rel_x=[0.0, 3e-7])
+    way = plate.follow(s_rel_x=[0.0, 3e-7, 0.0])
+    assert far["f_x"][1] == pytest.approx(way["f_x"][1], rel=1e-9)
+    assert way["f_x"][2] > 0.0  # friction holds it back
+    assert far.units["f_x"] == "N"
+
+
+def test_a_joint_is_saved_and_loaded():
+    plate = jointfmu.bolted_joint(**PLATE).with_values(mu=0.2, **{"inputs.preload": 20e3})
+    again = jointfmu.load(plate.save("plate.toml"))
+    assert again.values == plate.values
+    assert (again.values["mu"], again.values["inputs.preload"]) == (0.2, 20e3)
+    assert again.file.origins["mu"] == "user"
+
+
+@pytest.mark.slow
+def test_a_joint_is_built_run_drawn_and_reported(tmp_path):
+    drive = jointfmu.drive("CSG-17-100", hysteresis=1)
+    built = drive.build("dist", "fmi2", fmu="HarmonicDriveCompliance", name="Shoulder")
+    assert [path.name for path in built] == ["Shoulder.fmu"]
+    T = np.linspace(0.0, 20.0, 5)
+    found = jointfmu.run(built[0], {"tau": T})
+    own = drive.follow("HarmonicDriveCompliance", tau=T)
+    np.testing.assert_allclose(found["phi_rel"], own["phi_rel"], rtol=1e-9, atol=1e-15)
+    drive.plot().savefig(tmp_path / "drive.png")
+    found.plot().savefig(tmp_path / "found.png")
+    assert found.save("found.csv").read_text().startswith("tau [N.m],phi_rel [rad]")
+    assert "<html" in drive.report("drive.html").read_text()
+
+
+@pytest.mark.slow
+def test_several_inputs_over_a_time_of_their_own(native):
+    fmu = native / "fmi3" / "BoltedJoint.fmu"
+    time, s = np.array([0.0, 0.5, 2.0]), np.array([0.0, 1e-7, 2e-7])
+    found = jointfmu.run(fmu, {"preload": 9e3, "s_rel_x": s}, time=time)
+    own = jointfmu.load("BoltedJoint").follow(preload=9e3, s_rel_x=s)
+    np.testing.assert_allclose(found["f_x"], own["f_x"], rtol=1e-9, atol=1e-9)
+    for wrong, message in (({"time": [0.0, 1.0]}, "lengths"), ({"time": [0.0, 2.0, 1.0]}, "rise")):
+        with pytest.raises(ValueError, match=message):
+            jointfmu.run(fmu, {"s_rel_x": s}, **wrong)
+
+
+def test_a_law_evaluates_arrays():
+    law = jointfmu.law("zhao2018")
+    found = law.at_pressure(np.geomspace(1e5, 1e7, 50))
+    assert np.all(np.diff(found["K_N"]) > 0.0)
+    assert found.units["K_N"] == "N/m"
+    assert "surface.D" in repr(law)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: jointfmu.drive("CSG-99"), "'CSG-99' is unknown"),
+        (lambda: jointfmu.drive(ratio=100), "K1, K2, K3, T1, T2 missing"),
+        (lambda: jointfmu.drive("CSG-25-100", efficiency=1.5), r"efficiency = .1.5. is outside \(0, 1\)"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"grip": -40}), r"grip = '-40' is outside \(0, inf\)"),
+        (lambda: jointfmu.bolted_joint(**PLATE | {"head": "round"}), "head = 'round', allowed are"),
+        (lambda: jointfmu.load("nothing"), "'nothing' is no parameter file"),
+        (lambda: jointfmu.load("BoltedJoint").with_values(mu=-1.0), "mu = -1"),
+        (lambda: jointfmu.load("BoltedJoint").with_values(nu=1.0), "unknown name 'nu'"),
+        (lambda: jointfmu.load("BoltedJoint").with_values(**{"inputs.f": 1.0}), "unknown input 'f'"),
+        (lambda: jointfmu.load("BoltedJoint").evaluate(preload=-1.0), "preload = -1 is outside"),
+        (lambda: jointfmu.load("BoltedJoint").evaluate(tau=1.0), "unknown input 'tau'"),
+        (lambda: jointfmu.load("BoltedJoint").evaluate(preload=[1, 2], s_rel_x=[1, 2, 3]), "lengths"),
+        (lambda: jointfmu.load("BoltedJoint").plot("GearMesh"), "fmu = 'GearMesh' is none of"),
+        (lambda: jointfmu.law("nolaw"), "law = 'nolaw', allowed are"),
+        (lambda: jointfmu.law("roughness", q=1.0), "unknown name 'q'"),
+        (lambda: jointfmu.fit("nothing"), "procedure = 'nothing', allowed are"),
+        (lambda: jointfmu.fit("loop", "a.csv"), "of several joints"),
+        (lambda: jointfmu.fit("catalogue", K1=1.0), "missing"),
+        (lambda: jointfmu.fit("catalogue", "a.csv"), "takes no file"),
+        (lambda: jointfmu.run("no.fmu", {}), "no such file"),
+    ],
+)
+def test_a_refusal_is_one_line_that_names_what_is_wrong(call, message):
+    with pytest.raises(ValueError, match=message) as refused:
+        call()
+    assert "\n" not in str(refused.value)
+    assert "--" not in str(refused.value)
+
+
+def test_a_required_name_is_said_by_python():
+    with pytest.raises(TypeError, match="plate"):
+        jointfmu.bolted_joint()

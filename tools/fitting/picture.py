@@ -1,0 +1,31 @@
+"""The picture of a fit."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from jointfmu import plots
+
+from .outcome import Picture
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def draw(figure: "Figure", pictures: Sequence[Picture]) -> None:
+    """Data and law above, residuals below; pictures side by side."""
+    every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
+    for (above, below), picture in zip(every.T, pictures, strict=True):
+        x, y = picture.x, picture.y
+        above.plot(*picture.line, color=plots.BLUE, label="fitted law")
+        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
+            above.plot(*line, "--", color=color, lw=1.0, label=name)
+        above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
+        below.axhline(0.0, color=plots.BLUE, lw=1.0)
+        below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
+        if picture.marks is not None:
+            for axes, values in ((above, y), (below, picture.misfit)):
+                axes.plot(x[picture.marks], values[picture.marks], "o", color=plots.RED, ms=7)
+        above.set_ylabel(picture.labels[1])
+        below.set_xlabel(picture.labels[0])
+        below.set_ylabel(picture.labels[2])
+        above.legend()

@@ -1,0 +1,57 @@
+"""The public interface of `import jointfmu`: joints, laws, fits and FMUs as objects."""
+
+from jointfmu.joints import KINDS
+
+from .frame import Frame
+from .joint import Joint
+from .law import Law, law
+from .make import Fit, fit, load, maker
+from .run import run
+from .table import Table
+
+drive = maker(
+    "drive",
+    KINDS["harmonic_drive"],
+    'jointfmu.drive("CSG-25-100").values["T2"]  # N.m\n48.0',
+    first="catalogue",
+)
+bolted_joint = maker(
+    "bolted_joint",
+    KINDS["bolted_joint"],
+    "plate = jointfmu.bolted_joint(\n"
+    '...     plate=(200, 100), bolts="4xM12", at=(160, 60), grip=40, material="steel", Ra=0.8\n'
+    "... )\n"
+    ">>> f\"{plate.values['inputs.preload']:.0f} N\"\n'43110 N'",
+)
+gear_contact = maker(
+    "gear_contact",
+    KINDS["gear_contact"],
+    "flanks = jointfmu.gear_contact(\n"
+    '...     width=20, radii=[12, 30], load=2000, material="hardened steel", finish="ground"\n'
+    "... )\n"
+    '>>> bool(flanks.evaluate(f=2000.0)["K_N"][0] > 1e9)\nTrue',
+)
+gear_mesh = maker(
+    "gear_mesh",
+    KINDS["gear_mesh"],
+    "mesh = jointfmu.gear_mesh(\n"
+    '...     module=3, teeth=[20, 40], width=25, torque=50, material="steel", finish="ground"\n'
+    "... )\n"
+    '>>> mesh.values["teeth1"]\n20.0',
+)
+
+__all__ = [
+    "Fit",
+    "Frame",
+    "Joint",
+    "Law",
+    "Table",
+    "bolted_joint",
+    "drive",
+    "fit",
+    "gear_contact",
+    "gear_mesh",
+    "law",
+    "load",
+    "run",
+]

@@ -1,0 +1,268 @@
+"""A joint as an object: its numbers, what it does, and what can be made of it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from jointfmu import plots
+from jointfmu.contact.roughness import DECLARED
+from jointfmu.files.writing import write_text
+from jointfmu.joints import KINDS
+from jointfmu.joints.model import Memory, Model, Spring
+from jointfmu.parameters import ParameterFile, dump
+from jointfmu.quantity import flat_fields
+
+from ..pressing import judge_file
+from .frame import Frame
+from .law import Law
+from .table import Table, quantity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Facts = Mapping[str, tuple[float, str, str]]
+"""{name: (value [SI], unit, meaning)}."""
+
+
+@dataclass(frozen=True, repr=False)
+class Joint:
+    """A joint with its parameters. It does not change: `with_values` gives another one.
+
+    file  : its parameter file, with the source of each number
+    facts : what was computed beside the parameters, if it was made of a drawing or a catalogue
+
+    >>> import jointfmu
+    >>> joint = jointfmu.load("GearContact")
+    >>> joint.values["e"]
+    0.2
+    """
+
+    file: ParameterFile
+    facts: Facts = field(default_factory=dict)
+    notes: Sequence[str] = ()
+
+    @property
+    def name(self) -> str:
+        """Name of the parameter set."""
+        return self.file.name
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """{structured name: value [SI]} of the parameters, and of the start values of inputs."""
+        return {**self.file.flat, **{f"inputs.{name}": value for name, value in self.file.inputs.items()}}
+
+    @property
+    def fmus(self) -> dict[str, Model]:
+        """{FMU: its model} that can be built of the joint; where none is named, the first is meant."""
+        return {model.name: model for model in KINDS[self.file.joint].models}
+
+    @property
+    def law(self) -> Law:
+        """Its interface law. ValueError if it has none: a drive given by a table or by catalogue lines."""
+        found = KINDS[self.file.joint].law_of(self.file.values)
+        if found is None:
+            raise ValueError(f"{self.name}: law = {self.file.law!r} is of no interface")
+        return Law(self.file.law, found)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is to be said of its numbers, a line each."""
+        return [*self.notes, *judge_file(self.file).warnings]
+
+    @property
+    def parameters(self) -> Table:
+        """All numbers with unit, meaning, kind and source."""
+        fields = {name: item.metadata for name, item in flat_fields(type(self.file.values))}
+        inputs = {v.name: v for model in self.fmus.values() for v in model.inputs}
+        stated = [(n, v, fields[n].get("unit"), fields[n]["doc"]) for n, v in self.file.flat.items()]
+        stated += [(f"inputs.{n}", v, inputs[n].unit, inputs[n].doc) for n, v in self.file.inputs.items()]
+        known = ((n, v, DECLARED[n].metadata) for n, v in self.file.roughness.items())
+        stated += [(f"roughness.{n}", v, meta["unit"], meta["doc"]) for n, v, meta in known]
+        rows = [
+            (name, *quantity(value, unit), doc, self.file.origins.get(name, "user"), self._source(name))
+            for name, value, unit, doc in stated
+        ]
+        return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
+
+    def _source(self, name: str) -> str:
+        return self.file.sources.get(name, "default choice")
+
+    @property
+    def _title(self) -> str:
+        return f"{self.name}: {KINDS[self.file.joint].title}, law {self.file.law}"
+
+    def _table(self) -> Table:
+        """What is printed: facts and warnings above the parameters, without their meaning."""
+        told = ((name, " ".join(quantity(v, u, 4)), text) for name, (v, u, text) in self.facts.items())
+        facts = [f"{name} = {value.strip()}: {text}" for name, value, text in told]
+        table = self.parameters
+        rows = [(name, value, unit, kind, source) for name, value, unit, _, kind, source in table.rows]
+        lines = [*facts, *(f"warning: {text}" for text in self.warnings)]
+        return Table(table.title, ("name", "value", "unit", "kind", "source"), rows, lines)
+
+    def __repr__(self) -> str:
+        return str(self._table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook."""
+        return self._table()._repr_html_()
+
+    def with_values(self, values: Mapping[str, Any] | None = None, **more: Any) -> "Joint":
+        """The joint with some numbers changed (SI units), names as in `values`.
+
+        Raises ValueError, one line, for an unknown name or a value outside its interval.
+
+        >>> import jointfmu
+        >>> jointfmu.load("GearContact").with_values(e=0.3).values["e"]
+        0.3
+        """
+        changes = {**(values or {}), **more}
+        inputs = {n.removeprefix("inputs."): changes.pop(n) for n in [*changes] if n.startswith("inputs.")}
+        known = {v.name for model in self.fmus.values() for v in model.inputs}
+        if unknown := [name for name in inputs if name not in known]:
+            raise ValueError(f"unknown input {unknown[0]!r}, allowed are {', '.join(sorted(known))}")
+        file = self.file.with_values(changes, "user", "set in Python")
+        stated = {f"inputs.{name}": "user" for name in inputs}
+        file = replace(
+            file,
+            inputs={**file.inputs, **inputs},
+            origins={**file.origins, **stated},
+            sources={**file.sources, **dict.fromkeys(stated, "set in Python")},
+        )
+        return replace(self, file=file, facts={}, notes=())
+
+    def model(self, fmu: str | None = None) -> Model:
+        """What one of its FMUs is: inputs, outputs, units. ValueError if it has none of that name."""
+        if fmu is not None and fmu not in self.fmus:
+            raise ValueError(
+                f"fmu = {fmu!r} is none of a {self.file.joint}, allowed are {', '.join(self.fmus)}"
+            )
+        return self.fmus[fmu or next(iter(self.fmus))].of(self.file.joint, self.file.values)
+
+    @cached_property
+    def spring(self) -> Spring:
+        """The tabulated joint: what all outputs are computed from."""
+        return KINDS[self.file.joint].models[0].spring(self.file.values)
+
+    def evaluate(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
+        """Every output at inputs, each point on the straight way from rest.
+
+        fmu    : which of the joint's FMUs; its first
+        inputs : numbers or arrays (n) [SI]; those that are not named have their start values
+
+        Raises ValueError for an unknown input, or one that no array of the others fits.
+
+        >>> import jointfmu
+        >>> plate = jointfmu.load("BoltedJoint")
+        >>> frame = plate.evaluate(preload=9e3, s_rel_x=[0.0, 1e-6])
+        >>> bool(frame["f_x"][1] < frame["f_x"][0] == 0.0)
+        True
+        """
+        model = self.model(fmu)
+
+        def step(point: Mapping[str, float], memory: Memory) -> tuple[Any, Memory]:
+            return model.evaluate(self.spring, point), memory
+
+        return self._points(model, inputs, step, np.zeros(0))
+
+    def follow(self, fmu: str | None = None, /, **inputs: ArrayLike) -> Frame:
+        """Every output along a path of inputs from rest, with the memory of friction, if there is any.
+
+        >>> import jointfmu
+        >>> plate = jointfmu.load("BoltedJoint")
+        >>> path = plate.follow(preload=9e3, s_rel_x=[0.0, 5e-6, 0.0])
+        >>> bool(path["f_x"][2] > 0.0 and path["E_loss"][2] > 0.0)
+        True
+        """
+        model = self.model(fmu)
+        if model.evolve is None or model.rest is None:
+            return self.evaluate(fmu, **inputs)
+        evolve = model.evolve
+
+        def step(point: Mapping[str, float], memory: Memory) -> tuple[Any, Memory]:
+            return evolve(self.spring, point, memory)
+
+        return self._points(model, inputs, step, model.rest(self.spring))
+
+    def _points(self, model: Model, inputs: Mapping[str, ArrayLike], step: Any, memory: Memory) -> Frame:
+        """One step after the other over the broadcast inputs."""
+        names = [v.name for v in model.inputs]
+        if unknown := [name for name in inputs if name not in names]:
+            raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
+        rest = {name: self.file.start(name) for name in names}
+        columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
+        sizes = {name: column.size for name, column in columns.items() if column.size != 1}
+        if len(set(sizes.values())) > 1:
+            told = ", ".join(f"{name} {size}" for name, size in sizes.items())
+            raise ValueError(
+                f"{model.name}: inputs of different lengths ({told}), allowed are 1 and one other"
+            )
+        for variable in model.inputs:
+            wrong = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
+            if wrong:
+                allowed = f"{variable.interval} {variable.unit}"
+                raise ValueError(f"{model.name}: {variable.name} = {wrong[0]:g} is outside {allowed}")
+        rows: list[dict[str, float]] = []
+        for i in range(max(sizes.values(), default=1)):
+            point = rest | {name: float(c[i if c.size > 1 else 0]) for name, c in columns.items()}
+            outputs, memory = step(point, memory)
+            rows.append(point | {name: float(value) for name, value in outputs.items()})
+        units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}
+        warned = dict.fromkeys(text for row in rows for text in model.warnings(self.spring, row).values())
+        shown = [name for name in rows[0] if name in columns or name not in rest]
+        return Frame({name: [row[name] for row in rows] for name in shown}, units, tuple(warned))
+
+    @plots.style()
+    def plot(self, fmu: str | None = None) -> "Figure":
+        """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
+        from ..report.course import Course
+        from ..report.figure import drawn
+        from ..report.joint import curves, looped
+
+        course = Course(self.model(fmu), self.file)
+        panels = list(curves(course).panels)
+        loops = course.loops() if course.model.loop else None
+        if loops and any(loop.loss for loop in loops.loops):
+            panels += looped(course, loops).panels
+        figure = plots.figure((4.4 * len(panels), 3.8))
+        drawn(figure, panels)
+        return figure
+
+    def save(self, path: str | Path) -> Path:
+        """Write the parameter file (TOML). ValueError if it cannot be written."""
+        write_text(Path(path), dump(self.file))
+        return Path(path)
+
+    def build(
+        self,
+        out: str | Path = "dist",
+        flavour: str | Sequence[str] = ("fmi2", "fmi3"),
+        *,
+        fmu: str | None = None,
+        name: str | None = None,
+    ) -> list[Path]:
+        """Build the joint's FMUs into OUT/FLAVOUR/NAME.fmu; their paths.
+
+        flavour : fmi2, fmi3, python, or several of them
+        fmu     : one of `fmus`; all
+        name    : that the one FMU has instead of its own
+
+        Raises ValueError for an unknown name or flavour, or a folder that cannot be written.
+        """
+        from jointfmu_fmu_src import building
+
+        flavours = [flavour] if isinstance(flavour, str) else [*flavour]
+        names = [*self.fmus] if fmu is None else [self.model(fmu).name]
+        return building.build(names, flavours, self.file, Path(out), alias=name)
+
+    def report(self, path: str | Path, fmu: str | None = None) -> Path:
+        """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers."""
+        from ..report.joint import write_joint_report
+
+        write_joint_report(Path(path), self.file, fmu)
+        return Path(path)

@@ -1,0 +1,126 @@
+"""An interface law as an object."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from jointfmu import plots
+from jointfmu.commands.law import ROW, law_parameters
+from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.laws import LAWS
+from jointfmu.judgement import judge, law_height
+from jointfmu.quantity import flat_fields, flatten
+
+from .frame import Frame
+from .table import Table, quantity
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+UNITS = {
+    **dict.fromkeys(("largest_spot", "A_r"), "m2"),
+    "pressure": "Pa",
+    **dict.fromkeys(("F", "friction_limit"), "N"),
+    **dict.fromkeys(("K_N", "K_T", "K_loading"), "N/m"),
+    **dict.fromkeys(("C_N", "C_T"), "N.s/m"),
+    **dict.fromkeys(("W_NP", "W_NE", "W_d", "W_e", "W"), "J"),
+    **dict.fromkeys(("approach", "slip_length"), "m"),
+    **dict.fromkeys(("eta_n", "eta_t", "elastic_fraction"), "1"),
+}
+"""{what a law gives: unit}."""
+
+
+@dataclass(frozen=True, repr=False)
+class Law:
+    """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
+
+    parameters : the law's parameter set, see `values`
+
+    >>> import jointfmu
+    >>> law = jointfmu.law("roughness", Ra1=0.8e-6, Ra2=0.8e-6)
+    >>> K = law.at_pressure([1e6, 2e6])["K_N"]
+    >>> bool(1.9 < K[1] / K[0] < 2.1)
+    True
+    """
+
+    name: str
+    parameters: Any
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """{structured name: value [SI]}."""
+        return flatten(self.parameters)
+
+    def _table(self) -> Table:
+        fields = {name: item.metadata for name, item in flat_fields(type(self.parameters))}
+        rows = [
+            (name, *quantity(value, fields[name].get("unit")), fields[name]["doc"])
+            for name, value in self.values.items()
+        ]
+        return Table(f"law {self.name}", ("name", "value", "unit", "meaning"), rows)
+
+    def __repr__(self) -> str:
+        return str(self._table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook."""
+        return self._table()._repr_html_()
+
+    def at_pressure(self, pressure: ArrayLike) -> Frame:
+        """The interface under nominal pressures (n) [Pa]: F, K_N, K_T, A_r of the whole nominal area A_0.
+
+        `messages` of the frame say where the law's level or range is in doubt.
+
+        Raises ValueError for a pressure that is negative, NaN, infinite or not representable.
+        """
+        state = at_pressure(self.parameters, np.ravel(np.asarray(pressure, dtype=np.float64)))
+        found = judge(self.parameters, np.ravel(state["pressure"]).tolist(), law_height(self.parameters))
+        return self._frame(state, found.warnings)
+
+    def at_largest_spot(self, area: ArrayLike) -> Frame:
+        """The interface whose largest contact spot has an area (n) [m2]."""
+        return self._frame(at_largest_spot(self.parameters, np.ravel(np.asarray(area, dtype=np.float64))), ())
+
+    def _frame(self, state: Mapping[str, Any], messages: tuple[str, ...]) -> Frame:
+        names = [name for name in (*ROW, *(n for n in state if n not in ROW)) if name in state]
+        known = {name: state[name] for name in names if not np.all(np.isnan(state[name]))}
+        return Frame(known, UNITS, messages)
+
+    @plots.style()
+    def plot(self, pressure: ArrayLike | None = None) -> "Figure":
+        """Draw normal and tangential stiffness per area over the pressure: a matplotlib figure."""
+        p = (
+            np.geomspace(1e5, 1e8, 60)
+            if pressure is None
+            else np.ravel(np.asarray(pressure, dtype=np.float64))
+        )
+        found = self.at_pressure(p)
+        figure = plots.figure((6.4, 4.0))
+        axes = figure.subplots()
+        for name, color in (("K_N", plots.BLUE), ("K_T", plots.RED)):
+            if name in found and np.all(np.isfinite(found[name])):
+                axes.loglog(p / 1e6, found[name] / self.parameters.A_0 * 1e-12, color=color, label=name)
+        axes.set(xlabel="pressure [MPa]", ylabel="stiffness per area [N/(um mm2)]", title=self.name)
+        axes.legend()
+        return figure
+
+
+def law(name: str, **parameters: Any) -> Law:
+    """An interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
+
+    parameters : values [SI] by name, structured ones as `**{"surface.D": 1.42}`; others have the values of
+        the shipped joint with this law.
+        `roughness` takes Ra1, Ra2, Rq1, Rq2 or h.
+
+    Raises ValueError for an unknown law or parameter, or a value outside its interval.
+
+    >>> import jointfmu
+    >>> jointfmu.law("zhao2018", **{"surface.D": 1.42}).values["surface.D"]
+    1.42
+    """
+    if name not in LAWS:
+        raise ValueError(f"law = {name!r}, allowed are {', '.join(LAWS)}")
+    return Law(name, law_parameters(name, None, parameters))

@@ -1,0 +1,251 @@
+"""Joints from names, files, drawings and measurements."""
+
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jointfmu import plots
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.joints.kind import Kind
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import load as load_file
+
+from ..drawing.part import Drawing, NewJoint, Option
+from ..fitting.outcome import Outcome, percent
+from ..fitting.picture import draw
+from ..joint_parts import part
+from .joint import Facts, Joint
+from .table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_HELP = """Make {}.
+
+    Numbers have the unit of the drawing, stated below; a text may carry one: '0.8 um'. A size is a tuple,
+    (200, 100); what is stated of each side or bolt is a list.
+
+{}
+
+    Raises ValueError, one line, for what is missing or cannot be.
+
+    >>> import jointfmu
+    >>> {}
+"""
+_FLAG = re.compile(r"--([A-Za-z][\w-]*)")
+
+
+def joint_of(file: ParameterFile, facts: Facts | None = None, notes: Sequence[str] = ()) -> Joint:
+    """The object of a parameter file, of the joint's own class if it has one."""
+    own = part(KINDS[file.joint], "interface")
+    return (own.CLASS if own else Joint)(file, facts or {}, tuple(notes))
+
+
+def load(source: str | Path) -> Joint:
+    """A joint from a parameter file (TOML), or by name.
+
+    source : path of a file; an FMU (`BoltedJoint`), a joint (`bolted_joint`): the shipped default; or a
+        name of a catalogue (`CSG-25-100`)
+
+    Raises ValueError, one line, for a file that is wrong or a name that is unknown.
+
+    >>> import jointfmu
+    >>> jointfmu.load("BoltedJoint").name
+    'box specimen of Zhao 2018'
+    """
+    name = str(source)
+    if name in MODELS or name in KINDS:
+        return joint_of(default(MODELS[name].joint if name in MODELS else name))
+    if Path(source).suffix == ".toml" or Path(source).is_file():
+        return joint_of(load_file(source))
+    for kind in KINDS.values():
+        own = part(kind, "catalogue")
+        if own and any(item.name.lower() == name.lower() for item in own.CATALOGUE.items()):
+            return made(part(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
+    raise ValueError(
+        f"{name!r} is no parameter file (.toml) and no known name; allowed are "
+        f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
+    )
+
+
+def made(drawing: Drawing, stated: Mapping[str, Any]) -> Joint:
+    """The joint of a drawing. ValueError for an unknown or missing name, or a value that cannot be."""
+    options = {option.name: option for option in drawing.options}
+    if unknown := [name for name in stated if name not in options]:
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
+    if missing := [o.name for o in drawing.options if o.required and stated.get(o.name) is None]:
+        raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].text}")
+    with _named_as_in_python():
+        new: NewJoint = drawing.run({name: _given(o, stated.get(name)) for name, o in options.items()})
+    return joint_of(new.file, new.facts, new.warnings)
+
+
+@contextmanager
+def _named_as_in_python() -> Iterator[None]:
+    """Refusals of the command line with the names that arguments have in Python."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(_FLAG.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
+
+
+def _given(option: Option, value: Any) -> Any:
+    """A value as the command line has it: a number as text, (200, 100) as 200x100, a list as several."""
+    if option.flag:
+        return bool(value)
+    if value is None:
+        return None
+    if option.many:
+        return [_text(v, ",") for v in value] if isinstance(value, list) else [_text(value, "x")]
+    text = _text(value, "x")
+    if option.choices and text not in option.choices:
+        raise ValueError(f"{option.name} = {text!r}, allowed are {', '.join(option.choices)}")
+    return text
+
+
+def _text(value: Any, by: str) -> str:
+    """A number, a text, or several with a sign between them."""
+    if isinstance(value, list | tuple):
+        return by.join(_text(v, by) for v in value)
+    return value if isinstance(value, str) else f"{value:.17g}" if isinstance(value, float) else str(value)
+
+
+def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Callable[..., Joint]:
+    """The function that makes a joint of its drawing; its signature and help are the drawing's options.
+
+    name    : of the function
+    example : a call of it, and what it gives, as in a doctest
+    first   : option that may be given without its name
+    """
+    drawing: Drawing = part(kind, "new").NEW  # type: ignore[union-attr]
+    positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+
+    def make(*args: Any, **stated: Any) -> Joint:
+        bound = signature.bind(*args, **stated).arguments
+        return made(drawing, bound)
+
+    ordered = sorted(drawing.options, key=lambda option: option.name != first)
+    parameters = [
+        inspect.Parameter(
+            option.name,
+            positional if option.name == first else keyword,
+            default=inspect.Parameter.empty if option.required else False if option.flag else None,
+        )
+        for option in ordered
+    ]
+    signature = inspect.Signature(parameters, return_annotation=Joint)
+    make.__name__ = make.__qualname__ = name
+    make.__module__ = "jointfmu"
+    make.__signature__ = signature  # type: ignore[attr-defined]
+    options = "\n".join(f"    {option.name} : {_meaning(option)}" for option in ordered)
+    make.__doc__ = _HELP.format(drawing.text, options, example.replace("\n", "\n    "))
+    return make
+
+
+def _meaning(option: Option) -> str:
+    return f"{option.text}{': ' + ', '.join(option.choices) if option.choices else ''}"
+
+
+@dataclass(frozen=True, repr=False)
+class Fit:
+    """A fit: `joint` has the fitted parameters; prints each of them with its spread.
+
+    >>> import jointfmu
+    >>> fit = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9)
+    >>> fit.joint.build("dist", "python", fmu="HarmonicDriveCompliance")[0].name
+    'HarmonicDriveCompliance.fmu'
+    """
+
+    outcome: Outcome
+
+    @property
+    def joint(self) -> Joint:
+        """The joint with the fitted parameters."""
+        return joint_of(self.outcome.parameters, self.outcome.facts, self.outcome.warnings())
+
+    def _table(self) -> Table:
+        rows = [
+            (
+                row["name"],
+                f"{row['value']:.6g}",
+                row["unit"],
+                "unknown" if row["relative_deviation"] is None else percent(row["relative_deviation"]),
+                "yes" if row["determined"] else "no",
+            )
+            for row in self.outcome.rows()
+        ]
+        lines = [f"note: {line}" for line in self.outcome.warnings()]
+        return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
+
+    def __repr__(self) -> str:
+        return str(self._table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook."""
+        return self._table()._repr_html_()
+
+    @plots.style()
+    def plot(self) -> "Figure":
+        """Draw data, fitted law and residuals: a matplotlib figure."""
+        pictures = [self.outcome.picture, *filter(None, (self.outcome.beside,))]
+        figure = plots.figure((7.2 if len(pictures) == 1 else 10.8, 5.6))
+        draw(figure, pictures)
+        return figure
+
+
+def fit(
+    procedure: str,
+    file: str | Path | None = None,
+    *,
+    joint: str | None = None,
+    start: Joint | None = None,
+    free: Sequence[str] | None = None,
+    **options: Any,
+) -> Fit:
+    """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
+
+    procedure : catalogue, torque-angle, table, loop, preload, ...
+    file      : measured data (CSV; the heading names columns and units), where the procedure has some
+    joint     : `bolted_joint`, ... where procedures of several joints have the name
+    start     : joint to start from
+    free      : names of the parameters to fit
+    options   : of the procedure, numbers in SI units
+
+    Raises ValueError for bad input, RuntimeError if the fit finds no end.
+
+    >>> import jointfmu
+    >>> drive = jointfmu.fit("catalogue", K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9).joint
+    >>> drive.values["K1"]
+    4700.0
+    """
+    known = {
+        (own.name, kind.name): own
+        for kind in KINDS.values()
+        if (fits := part(kind, "fit"))
+        for own in fits.FITS
+    }
+    wanted = joint or (start.file.joint if start else None)
+    found = [own for (name, of), own in known.items() if name == procedure and wanted in (None, of)]
+    if not found:
+        names = dict.fromkeys(name for name, of in known if wanted in (None, of))
+        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(names)}")
+    if len(found) > 1:
+        joints = [of for name, of in known if name == procedure]
+        raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
+    chosen = found[0]
+    if chosen.file == (file is None):
+        raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.file else 'no'} file")
+    by = {option.unit_by for option in chosen.options}  # units of texts; numbers here are SI
+    own = {option.name: option for option in chosen.options if option.name not in by}
+    if unknown := [name for name in options if name not in own]:
+        raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(own)}")
+    if missing := [name for name, option in own.items() if option.required and name not in options]:
+        raise ValueError(f"{', '.join(missing)} missing: {own[missing[0]].text}")
+    taken = {name: options.get(name, option.default) for name, option in own.items()}
+    data = () if file is None else (Path(file),)
+    with _named_as_in_python():
+        return Fit(chosen.run(*data, start and start.file, free, **taken))

@@ -1,0 +1,42 @@
+"""The harmonic drive as an object: wind-up over torque and back."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...interface.joint import Joint
+
+Array = NDArray[np.float64]
+
+
+class Drive(Joint):
+    """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked.
+
+    >>> import jointfmu
+    >>> drive = jointfmu.drive("CSG-25-100")
+    >>> float(drive.torque(drive.wind_up(48.0))).__round__(9)
+    48.0
+    """
+
+    def wind_up(self, torque: ArrayLike) -> Array:
+        """Wind-up (n) [rad] of the output under torques (n) [N.m], odd."""
+        T = np.asarray(torque, dtype=np.float64)
+        return np.asarray(np.copysign(self._curve.inverse(np.abs(T)), T))[()]
+
+    def torque(self, wind_up: ArrayLike) -> Array:
+        """Torque (n) [N.m] at wind-ups (n) [rad], odd."""
+        phi = np.asarray(wind_up, dtype=np.float64)
+        return np.asarray(np.copysign(self._curve.derivatives(np.abs(phi), 1)[0], phi))[()]
+
+    def stiffness(self, torque: ArrayLike) -> Array:
+        """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
+        return np.asarray(self._curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
+
+    @property
+    def _curve(self) -> Any:
+        """Torque over wind-up, from zero on."""
+        return self.spring.curve
+
+
+CLASS = Drive
