@@ -15,8 +15,7 @@ from .xml_parts import VARIABILITIES
 FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str, str], Path]] = {
     "fmi2": build_fmi2,
     "fmi3": build_fmi3,
-    # its parameters are fixed in any case
-    "python": lambda name, parameters, out, _, alias: build_python(name, parameters, out, alias),
+    "python": build_python,
 }
 
 
@@ -30,7 +29,7 @@ def build(
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
 
-    variability : of the parameters of native FMUs, one of VARIABILITIES
+    variability : of the parameters, one of VARIABILITIES
     alias       : the name that one FMU has instead of its own
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is

@@ -183,6 +183,20 @@ def fmu(fmus: Path) -> Iterator[Callable[..., Fmu]]:
     sys.path[:] = path  # pythonfmu puts the resources of every instance in front
 
 
+@pytest.fixture
+def fixed(tmp_path: Path, fmu: Callable[..., Fmu]) -> Callable[..., Fmu]:
+    """The same with parameters that are fixed."""
+    from jointfmu_fmu_src.building import build
+
+    def instance(name: str) -> Fmu:
+        path = tmp_path / "python" / f"{name}.fmu"
+        if not path.exists():
+            build([name], ["python"], None, tmp_path, "fixed")
+        return fmu(name, folder=path.parent)
+
+    return instance
+
+
 @pytest.fixture(params=["fmi2", "fmi3"])
 def version(request: pytest.FixtureRequest) -> str:
     """Every native flavour."""

@@ -13,6 +13,7 @@ from types import ModuleType
 from jointfmu_fmu_src.archive import pack, workshop
 from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.python.imports import imported
+from jointfmu_fmu_src.xml_parts import VARIABILITIES
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
@@ -53,6 +54,7 @@ class {name}(slave.JointSlave):
     kind = KIND
     fmu = "{fmu}"
     content = "{digest}"
+    variability = "{variability}"
 '''
 
 
@@ -87,8 +89,12 @@ def _private(text: str, roots: Collection[str]) -> str:
     return text
 
 
-def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> Path:
+def build(
+    name: str, parameters: ParameterFile, out: Path, variability: str = VARIABILITIES[0], alias: str = ""
+) -> Path:
     """Write `out/name.fmu`, or `out/alias.fmu` with that name; an existing file is replaced in one go.
+
+    variability : of the parameters, one of VARIABILITIES
 
     Raises ValueError if the parameters are of another joint or the folder cannot be written,
     ImportError if pythonfmu is missing, RuntimeError if its libraries are.
@@ -99,12 +105,14 @@ def build(name: str, parameters: ParameterFile, out: Path, alias: str = "") -> P
     model = MODELS[name].of(parameters.joint, parameters.values)
     title = replace(model, alias=alias).title
     sources = runtime_sources(kind) | {"parameters.toml": dump(parameters)}
-    digest = sha256("\0".join(f"{k}\0{v}" for k, v in sources.items()).encode()).hexdigest()[:16]
+    content = [f"{k}\0{v}" for k, v in sources.items()] + [variability]
+    digest = sha256("\0".join(content).encode()).hexdigest()[:16]
     package = f"jointfmu_{digest}"
     target = out / f"{title}.fmu"
     with workshop(target) as work:
         script = work / "src" / f"{title}_{digest}.py"
         entry = {"package": package, "kind": _inside(kind.package), "digest": digest}
+        entry["variability"] = variability
         _write(script, _ENTRY.format(name=title, fmu=name, **entry))
         for inside, text in sources.items():
             root = work / "src" if inside == "parameters.toml" else work / "src" / package

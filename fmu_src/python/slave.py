@@ -64,6 +64,8 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     fmu: ClassVar[str]
     content: ClassVar[str]
     """Digest of everything that runs inside; the GUID comes from it."""
+    variability: ClassVar[str]
+    """Of the parameters, one of `xml_parts.VARIABILITIES`."""
 
     def __init__(self, **kwargs: object) -> None:
         super().__init__(**kwargs)
@@ -103,7 +105,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         return (Boolean if item.boolean else Real)(
             name,
             causality=Fmi2Causality[item.causality],
-            variability=Fmi2Variability.fixed if parameter else Fmi2Variability.continuous,
+            variability=Fmi2Variability[self.variability if parameter else "continuous"],
             description=item.doc,
             getter=(lambda: self.output(name)) if output else (lambda: self.values[name]),
             setter=None if output else (lambda value: self.set(name, value)),
@@ -113,8 +115,10 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
     def set(self, name: str, value: object) -> None:
         """Take a parameter or an input; it is checked when it is used."""
         if name in self.fields:
-            if self.initialized:
+            if self.initialized and self.variability == "fixed":
                 self.refuse(f"{name} is a fixed parameter: it can be set until initialization ends")
+            if self.way is not None:  # the path goes on from the inputs that were accepted
+                self.way = Way(self.way.after, self.way.after, {})
             self._spring = None
         self.values[name] = value
         self._outputs = None
@@ -238,5 +242,5 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                     node[0].set("start", text(item.start))
         structure = root.find("ModelStructure")
         assert structure is not None
-        structure[:] = fmi2_structure(self.model, "fixed")
+        structure[:] = fmi2_structure(self.model, self.variability)
         return root

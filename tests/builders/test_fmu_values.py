@@ -196,12 +196,42 @@ def test_state_as_bytes_goes_into_another_instance(fmu: Host, name: str) -> None
     assert sender.get(*first) == first
 
 
-def test_a_restored_instance_is_past_initialization(fmu: Host) -> None:
-    sender, receiver = fmu("GearContact").start({"f": 500.0}), fmu("GearContact").start()
+def test_a_restored_instance_is_past_initialization(fixed: Host) -> None:
+    sender, receiver = fixed("GearContact").start({"f": 500.0}), fixed("GearContact").start()
     data = sender.fmu.serializeFMUState(sender.fmu.getFMUstate())
     receiver.fmu.setFMUstate(receiver.fmu.deSerializeFMUstate(data))
     assert "fixed parameter" in receiver.refused(receiver.set, {"e": 0.3})
     assert receiver.get() == sender.get()
+
+
+@pytest.mark.parametrize(
+    ("name", "moves", "tuned"),
+    [
+        ("BoltedJoint", ("s_rel_x", (3e-6, -2e-6, -2e-6, 4e-6, 0.0)), {"mu": 0.3, "H": 2e9}),
+        ("HarmonicDriveSpring", ("phi2", (4e-4, -2e-4, -2e-4, 5e-4, 0.0)), {"K_FTS0": 8e3, "mu": 0.12}),
+    ],
+)
+def test_parameters_are_tuned_during_a_run_as_in_the_native_flavour(
+    fmu: Host, native: Path, name: str, moves: tuple[str, tuple[float, ...]], tuned: dict[str, float]
+) -> None:
+    """The path goes on from where it is; the friction of the drive acts too."""
+    acting = {"BoltedJoint": {"preload": 9e3}, "HarmonicDriveSpring": {"hysteresis_loss": 3e-4}}[name]
+    found = []
+    for instance in (fmu(name), fmu(name, folder=native / "fmi2")):
+        instance.start(acting)
+        rows = []
+        for i, value in enumerate(moves[1]):
+            if i == 2:
+                instance.set(tuned)
+                rows.append(instance.get(*instance.outputs))
+            instance.set({moves[0]: value})
+            instance.step()
+            rows.append(instance.get(*instance.outputs))
+        found.append(rows)
+    for own, other in zip(*found, strict=True):
+        for output, value in other.items():
+            scale = max(abs(row[output]) for row in found[1])
+            assert own[output] == pytest.approx(value, rel=1e-9, abs=1e-9 * scale), output
 
 
 def test_reset_restores_the_defaults(fmu: Host, name: str) -> None:

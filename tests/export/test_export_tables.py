@@ -1,15 +1,18 @@
 """Tables of curves: their errors are what they say, and every format is read back by others."""
 
+import json
 import re
 
 import numpy as np
 import pytest
+from jointfmu_tools import cli
 from jointfmu_tools.export import columns, keywords, tables, writing
 from jointfmu_tools.export.units import SI, UNITS
 from jointfmu_tools.joints.bolted_joint.export import State
 from jointfmu_tools.joints.bolted_joint.export.pull import STRONGEST, pull_table
 from scipy.interpolate import PchipInterpolator
 
+import jointfmu
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
@@ -273,3 +276,29 @@ def test_header_is_plain_text():
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
     assert columns.modelica_text(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"
+
+
+def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, capsys):
+    """Also in its corners, smooth or none."""
+    for corner in (0.04, 0.0):
+        file = jointfmu.drive("CSG-25-100", corner=corner).save(tmp_path / "drive.toml")
+        out = tmp_path / "curve.txt"
+        asked = ["export", "modelica", "curve", "--params", str(file), "--out", str(out), "--json"]
+        assert cli.main(asked) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert found["stiffness_error"] <= 0.01
+        assert not [text for text in found["warnings"] if "off the stiffness" in text]
+        lines = (line.split() for line in out.read_text().split("\n"))
+        rows = np.array(
+            [row for row in lines if len(row) == 3 and row[0].lstrip("-")[:1].isdigit()], dtype=float
+        )
+        assert len(rows) == found["rows"]
+        x, y = rows[:, 0], rows[:, 1]
+        there = jointfmu.load(file).stiffness(0.5 * (y[1:] + y[:-1]))
+        np.testing.assert_allclose(np.diff(y) / np.diff(x), there, rtol=0.0101)
+
+
+def test_a_slope_that_is_off_is_a_warning(tmp_path, capsys):
+    out = tmp_path / "curve.csv"
+    assert cli.main(["export", "csv", "curve", "--joint", "gear_contact", "--out", str(out)]) == 0
+    assert "slope is up to 4.6 % off the stiffness by straight lines" in capsys.readouterr().err

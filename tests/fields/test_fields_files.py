@@ -266,6 +266,18 @@ def test_surface_mesh_in_another_plane(tmp_path, suffix, monkeypatch):
         Reading(**UNITS, data="p", format="mesh").field(path)
 
 
+@pytest.mark.parametrize("normal", ["y", "z"])
+def test_a_result_of_two_dimensions_is_refused_by_a_line_that_says_so(tmp_path, normal):
+    points, quads = grid(8, 4)
+    place = np.column_stack([points, np.zeros(len(points))])
+    p = np.where(points[:, 1] == 0.0, 5.0, np.nan)
+    path = tmp_path / "plane.vtu"
+    meshio.write(path, meshio.Mesh(place, {"quad": quads}, {"p": p}))
+    reading = Reading(length="mm", pressure="MPa", data="p", plane=Plane(normal))
+    with pytest.raises(ValueError, match="lie on one line, as in a two-dimensional or axisymmetric model"):
+        reading.field(path)
+
+
 def test_unreadable_mesh_is_one_line(tmp_path):
     path = tmp_path / "a.vtu"
     path.write_text("no mesh\nat all")

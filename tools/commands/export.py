@@ -93,7 +93,7 @@ def _export(args: argparse.Namespace) -> int:
     _refuse_idle(args, file)
     written = _written(args, file)
     write_text(args.out, written.text)
-    found = _judged(args, file)
+    found = _judged(args, file).with_warnings(written.warnings)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
     if args.json:
         print(json.dumps({**facts, **written.facts, **found.document()}))

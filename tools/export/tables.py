@@ -14,10 +14,14 @@ from ..thinning import kept
 
 Array = NDArray[np.float64]
 
+STIFFNESS = 0.01
+"""Error of the stiffness [1] above which a table's reader should know."""
 _DENSE = 64
 """Points per segment of a curve at which errors are measured."""
 _LEAST = 10_000
 """The same of a whole curve at least: some have few segments."""
+_FINE = 4 * _LEAST
+"""The same where slopes are kept too: the corners of a catalogue's lines are short."""
 _FEWEST = 12
 """Fewest of them on a line: a parabola's top is then met within a per cent."""
 
@@ -57,9 +61,12 @@ def load_table(curve: Curve, area: float, error: float) -> Table:
 
 
 def odd_table(curve: Curve, error: float) -> Table:
-    """A curve through zero with its mirror image."""
-    half = _dense(curve)
-    rows = thinned(*half, error).rows
+    """A curve through zero with its mirror image; the stiffness within STIFFNESS, if it has no jump."""
+    half = _dense(curve, _FINE)
+    try:
+        rows = thinned(*half, error, stiffness=STIFFNESS).rows
+    except ValueError:
+        rows = thinned(*half, error).rows
     rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
     x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
     return Table(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
@@ -72,12 +79,16 @@ def thinned(
     error: float,
     floor: tuple[float, float] = (0.0, 0.0),
     keep: Collection[int] = (),
+    stiffness: float = np.inf,
 ) -> Table:
     """The fewest of the points (n) of a curve, taken one after the other, whose lines keep to it.
 
     error : [1] largest error of y by straight lines, relative to y or floor[0], the larger
     floor : load and stiffness to which errors refer at least
     keep  : points that stay
+    stiffness : [1] largest error of a line's slope
+
+    Raises ValueError for errors that a table cannot keep.
     """
     if not 0.0 < error < 0.5:
         raise ValueError(f"error = {error:g} is outside (0, 0.5)")
@@ -85,11 +96,15 @@ def thinned(
     size = np.where(size > 0.0, size, np.inf)
 
     def off(i: int, j: int) -> float:
-        line = y[i] + (y[j] - y[i]) / (x[j] - x[i]) * (x[i : j + 1] - x[i])
-        return float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1]))
+        slope = (y[j] - y[i]) / (x[j] - x[i])
+        line = y[i] + slope * (x[i : j + 1] - x[i])
+        loads = float(np.max(np.abs(line - y[i : j + 1]) / size[i : j + 1])) / error
+        if not np.isfinite(stiffness):
+            return loads
+        return max(loads, float(np.max(np.abs(slope / k[i : j + 1] - 1.0))) / stiffness)
 
     stops = {*keep, x.size - 1}
-    index = kept(stops, lambda i, j: off(i, j) <= error)
+    index = kept(stops, lambda i, j: off(i, j) <= 1.0)
     between = np.diff(index)[~np.isin(index[1:], list(stops))]
     if np.any(between < _FEWEST):
         raise ValueError(
@@ -116,10 +131,10 @@ def _errors(
     return straight, (worst(cubic(x), y, floor[0]), worst(cubic(x, 1), k, floor[1]))
 
 
-def _dense(curve: Curve) -> tuple[Array, Array, Array]:
+def _dense(curve: Curve, least: int = _LEAST) -> tuple[Array, Array, Array]:
     """The curve at many points."""
     nodes = curve.displacement
-    dense = max(_DENSE, _LEAST // (nodes.size - 1))
+    dense = max(_DENSE, least // (nodes.size - 1))
     part = np.arange(dense) / dense
     x = np.append((nodes[:-1, None] + np.diff(nodes)[:, None] * part).ravel(), nodes[-1])
     load, stiffness = curve.derivatives(x, 1)

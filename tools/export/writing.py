@@ -18,6 +18,7 @@ class Written:
 
     text: str
     facts: dict[str, object]
+    warnings: tuple[str, ...] = ()
 
 
 def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, placing: Placing) -> Written:
@@ -103,10 +104,20 @@ def curve(form: str, file: ParameterFile, state: object, units: Units, error: fl
         f"{table.monotone[1]:.2g}",
     ]
     if form == "modelica":
-        return Written(
-            columns.modelica_text(table.rows, load.name, about), {"table": load.name, **_facts(table)}
-        )
-    return Written(columns.table_csv(table.rows, heads, units, about), _facts(table))
+        facts = {"table": load.name, **_facts(table)}
+        return Written(columns.modelica_text(table.rows, load.name, about), facts, _warnings(table))
+    return Written(columns.table_csv(table.rows, heads, units, about), _facts(table), _warnings(table))
+
+
+def _warnings(table: tables.Table) -> tuple[str, ...]:
+    """What a reader of the slope should know."""
+    straight, cubic = table.straight[1], table.monotone[1]
+    if straight <= tables.STIFFNESS:
+        return ()
+    return (
+        f"the table's slope is up to {100.0 * straight:.2g} % off the stiffness by straight lines and "
+        f"{100.0 * cubic:.2g} % by a monotone cubic; a smaller --error has more rows",
+    )
 
 
 def _facts(table: tables.Table) -> dict[str, object]:

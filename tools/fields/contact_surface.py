@@ -116,6 +116,7 @@ def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
     touched = np.flatnonzero(np.nan_to_num(result.pressure) != 0.0)
     if not touched.size:
         raise ValueError(f"{result.path}: no node has a pressure")
+    _refuse_line(result, touched)
     axis = plane.axes()[2]
     height, size = result.place[:, axis], float(np.max(np.ptp(result.place, axis=0)))
     level = float(np.median(height[touched]))
@@ -137,6 +138,19 @@ def _faces(result: NodalResult, plane: Plane) -> list[Nodes]:
     if lost.size:
         raise ValueError(f"{result.at(int(lost[0]))}: has a pressure and is on no face of the contact")
     return faces
+
+
+def _refuse_line(result: NodalResult, touched: Nodes) -> None:
+    """Refuse a result of two dimensions, in which the contact is a line."""
+    place = result.place[touched] - result.place[touched[0]]
+    far = place[np.argmax(np.sum(place**2, axis=1))]
+    size = float(np.linalg.norm(far))
+    off = np.linalg.norm(np.cross(place, far), axis=1) if size else np.zeros(1)
+    if np.max(off) <= FLAT * size**2:
+        raise ValueError(
+            f"{result.path}: all nodes with pressure lie on one line, as in a two-dimensional or "
+            "axisymmetric model; expected a three-dimensional one, whose contact is a surface"
+        )
 
 
 def _body(result: NodalResult) -> NDArray[np.int64]:

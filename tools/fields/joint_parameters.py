@@ -7,6 +7,7 @@ import numpy as np
 from jointfmu.mechanics.footprint.shape import PressureShape, growing, mean_squares
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import build
+from jointfmu.quantity.refusal import Refusal
 
 from .clamped import Clamped, clamping
 from .contact import Array, ContactField
@@ -29,6 +30,7 @@ def with_field(
     tilted: ContactField | None = None,
     moment: float | None = None,
     bolts: Array | None = None,
+    tolerance: float = FORCE_ERROR,
 ) -> tuple[ParameterFile, Reduction]:
     """A joint with the pressure of a field instead of a pattern of bolts, and its contact area.
 
@@ -43,15 +45,16 @@ def with_field(
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
     bolts   : (n, 2) [m] places of the bolts, for what their stiffness adds to rotations; None: nothing
+    tolerance : [1] by which a field's force may differ from that of the bolts, to which it is scaled
 
     Raises ValueError if the joint's pressure cannot be a field, if a field's force differs from that of the
-    bolts by more than FORCE_ERROR, if the two fields do not fit each other, or if the pressures' own moment
+    bolts by more than the tolerance, if the two fields do not fit each other, or if the pressures' own moment
     is far from the stated one.
     """
     pressures = clamping(file.joint).pressures
     if origin not in ORIGINS:
         raise ValueError(f"origin = {origin!r} is not one of {', '.join(ORIGINS)}")
-    shape = pressure_shape(file.values, field, preload, tilted, moment)
+    shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     points = reduction.shape
     lists = {
@@ -91,6 +94,7 @@ def pressure_shape(
     preload: float,
     tilted: ContactField | None = None,
     moment: float | None = None,
+    tolerance: float = FORCE_ERROR,
 ) -> PressureShape:
     """All nodes of a field as the shape of a joint's pressure; arguments as in `with_field`.
 
@@ -98,7 +102,7 @@ def pressure_shape(
     mean equal + M/(L_a A_0) tilt. Equilibrium asks for a sum of share tilt y of L_a. Without a second
     field tilt = L_a equal (y - y_p)/sum(share equal (y - y_p)^2), y_p the centre of pressure.
     """
-    scale = _force(joint, field, preload, "the field")
+    scale = _force(joint, field, preload, "the field", tolerance)
     area = float(np.sum(field.area))
     share, position = field.area / area, field.position - field.centroid
     mean = preload * joint.n_bolts / area
@@ -108,7 +112,7 @@ def pressure_shape(
         return PressureShape(share, position, equal, tilt)
     if moment is None or not np.isfinite(moment) or moment == 0.0:
         raise ValueError(f"moment = {moment} N.m is outside (-inf, 0) and (0, inf): of the second field")
-    scale = _force(joint, tilted, preload, "the field with a moment")
+    scale = _force(joint, tilted, preload, "the field with a moment", tolerance)
     _same_nodes(field, tilted)
     added = scale * tilted.pressure - mean * equal
     part = area * float(share @ (added * position[:, 1])) / moment
@@ -121,15 +125,19 @@ def pressure_shape(
     return PressureShape(share, position, equal, added * joint.row_distance * area / moment)
 
 
-def _force(joint: Clamped, field: ContactField, preload: float, name: str) -> float:
-    """The bolts' force over the field's [1], near 1."""
+def _force(joint: Clamped, field: ContactField, preload: float, name: str, tolerance: float) -> float:
+    """The bolts' force over the field's [1], 1 within the tolerance."""
+    if not 0.0 < tolerance < 1.0:
+        raise Refusal(f"force_tolerance = {tolerance:g} is outside (0, 1)", "force_tolerance")
     if not 0.0 < preload < np.inf:
         raise ValueError(f"preload = {preload:g} N is outside (0, inf)")
     expected = preload * joint.n_bolts
-    if not abs(field.force / expected - 1.0) <= FORCE_ERROR:
-        raise ValueError(
-            f"the force of {name} is {field.force:.6g} N, expected {expected:.6g} N within 1 %: "
-            f"{joint.n_bolts:g} bolts of {preload:g} N"
+    if not abs(field.force / expected - 1.0) <= tolerance:
+        raise Refusal(
+            f"the force of {name} is {field.force:.6g} N, expected {expected:.6g} N within "
+            f"{100.0 * tolerance:.3g} %: {joint.n_bolts:g} bolts of {preload:g} N; a larger tolerance scales "
+            "it to theirs",
+            "force_tolerance",
         )
     return expected / field.force
 

@@ -283,6 +283,25 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
     assert "unknown name 'pattern.decay_length', allowed are" in capsys.readouterr().err
 
 
+def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(tmp_path, capsys):
+    """Nodal pressures of some solvers do not sum up to the contact force."""
+    path = tmp_path / "field.csv"
+    path.write_text(csvfile.text(replace(FIELD, pressure=0.8 * FIELD.pressure)))
+    line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
+    assert cli.main(line) == 2
+    assert "(--force-tolerance)" in capsys.readouterr().err
+    for wrong in ("0", "1.5", "nan"):
+        assert cli.main([*line, "--force-tolerance", wrong]) == 2
+        assert f"force_tolerance = {wrong} is outside (0, 1)" in capsys.readouterr().err
+    out = tmp_path / "joint.toml"
+    assert cli.main([*line, "--force-tolerance", "0.3", "--out", str(out)]) == 0
+    assert "scaled by +25 % to the force of the bolts" in capsys.readouterr().err
+    right, _ = with_field(FILE, FIELD, PRELOAD, "test")
+    found = BoltedJointSpring.of(load(out).values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    exact = BoltedJointSpring.of(right.values).motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    assert found["K_zz"] == pytest.approx(exact["K_zz"], rel=1e-6)  # the points of both, 1e-6
+
+
 def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
     monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)

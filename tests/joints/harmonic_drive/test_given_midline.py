@@ -114,9 +114,9 @@ def test_parts_and_pressure_of_a_given_midline():
         ({"K1": 0.0}, r"K1 = 0 N.m/rad is outside \(0, inf\): stiffness below T1"),
         (
             {"corner": 0.5},
-            r"corner = 0.5 is outside \[0.001, 0.425868\): corners must",
+            r"corner = 0.5 is outside \[0, 0.425868\): corners must",
         ),
-        ({"corner": 0.0}, r"corner = 0 is outside \[0.001, 1\)"),
+        ({"corner": -0.1}, r"corner = -0.1 is outside \[0, 1\)"),
     ],
 )
 def test_lines_that_cannot_be_are_refused(changes, text):

@@ -59,6 +59,13 @@ def _import(steps: Commands) -> None:
     step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
     beside = "further listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=beside)
+    step.add_argument(
+        "--force-tolerance",
+        type=float,
+        metavar="P",
+        help="part by which the force of the pressures may differ from that of the bolts, to which they are "
+        "scaled (0.01)",
+    )
     step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
     step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
     step.set_defaults(options=OPTIONS)
@@ -72,14 +79,22 @@ def _bring(args: argparse.Namespace) -> int:
     if args.plot:
         plots.check(args.plot)
     from ...fields import figure
-    from ...fields.joint_parameters import with_field
+    from ...fields.joint_parameters import FORCE_ERROR, with_field
 
     start = joint_file(args.params)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:
         source += f" and {args.moment_file.name}"
-    file, reduction = with_field(start, field, args.preload, source, tilted=tilted, moment=args.moment)
+    file, reduction = with_field(
+        start,
+        field,
+        args.preload,
+        source,
+        tilted=tilted,
+        moment=args.moment,
+        tolerance=FORCE_ERROR if args.force_tolerance is None else args.force_tolerance,
+    )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     if args.plot:
         figure.draw(field, reduction, args.plot)
@@ -89,6 +104,10 @@ def _bring(args: argparse.Namespace) -> int:
     found = judge(
         KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
     )
+    scaled = facts["force_of_the_bolts"] / field.force - 1.0
+    if abs(scaled) > FORCE_ERROR:
+        text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
+        found = found.with_warnings([f"{text}: ask the run's own contact force which of the two is wrong"])
     if args.json:
         print(json.dumps(facts | found.document()))
     else:

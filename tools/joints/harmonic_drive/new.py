@@ -38,6 +38,11 @@ def _drive(given: Given) -> NewJoint:
         printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
     brakes = _brakes(given, printed)
     printed = {name: number for name, number in printed.items() if name not in QUOTED}
+    if given["corner"] is not None:
+        if given["law"] == "hu2023":
+            raise ValueError("--corner is of the catalogue's lines; --law hu2023 has no corners")
+        corner = number("corner", given["corner"], "1", "1", None)
+        printed["corner"] = Printed(corner, "user", "stated" if corner else "stated: the lines, with kinks")
     return (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
 
 
@@ -111,7 +116,12 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
         facts["efficiency"] = (efficiency(file.values), "1", "at rated torque and 2000 rev/min")
     kinds = {name: number.kind for name, number in printed.items() if name in file.flat}
     guessed = ", ".join(sorted(name for name, kind in kinds.items() if kind == "estimate"))
-    return NewJoint(file, facts, [f"estimates, not of the catalogue's row: {guessed}"])
+    said = [f"estimates, not of the catalogue's row: {guessed}"]
+    if file.values.corner == 0.0:
+        said.append(
+            "corner = 0: the torque has kinks at T1 and T2, where the stiffness jumps without an event"
+        )
+    return NewJoint(file, facts, said)
 
 
 def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
@@ -182,6 +192,11 @@ NEW = Drawing(
         ),
         Option(name="efficiency", text="at rated torque and 2000 rev/min [1]", metavar="E"),
         Option(name="source", text="where the row is printed", metavar="TEXT"),
+        Option(
+            name="corner",
+            text="half-width of the smooth corners at T1 and T2 over their wind-up [1], 0 for none (0.04)",
+            metavar="C",
+        ),
         Option(
             name="law",
             text="catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",

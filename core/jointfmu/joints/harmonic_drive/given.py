@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 CORNER = 0.04
 """Usual half-width of a corner over its wind-up [1]: at the corners of catalogue drives the angle then is
 within 0.4 % of the lines."""
+SHARPEST = 1e-6
+"""Half-width [1] that stands for none: the angle at a corner then is within 1e-7 of the lines."""
 MOST_POINTS = 1000
 """Most points of a measured table."""
 LEAST_SLOPE, LARGEST_SLOPE = 1.0 / 3.0, 3.0
@@ -75,7 +77,8 @@ class CatalogueDrive(Given):
     The angle is theta(T) = T/K1 up to T1, then grows by 1/K2 and beyond T2 by 1/K3. Around its corner at
     wind-up theta_i the stiffness goes from one line's to the next by the smooth step 3 t^2 - 2 t^3 over
     theta_i (1 +- corner): outside of it torque and angle are exactly those of the lines, and the torque is
-    twice continuously differentiable everywhere.
+    twice continuously differentiable everywhere. Without a corner (0) the printed angles are met everywhere
+    and the stiffness jumps at T1 and T2, within SHARPEST: a kink of the torque, of which no event tells.
     """
 
     K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0)
@@ -84,7 +87,11 @@ class CatalogueDrive(Given):
     T1: float = quantity("N.m", "torque at the first corner", gt=0.0)
     T2: float = quantity("N.m", "torque at the second corner", gt=0.0)
     corner: float = quantity(
-        "1", "half-width of the two smooth corners over their wind-up", ge=1e-3, lt=1.0, default=CORNER
+        "1",
+        "half-width of the two smooth corners over their wind-up; 0: the lines themselves, with kinks",
+        ge=0.0,
+        lt=1.0,
+        default=CORNER,
     )
     max_torque: float = quantity("N.m", "end of the tabulated law, at least past the second corner", gt=0.0)
 
@@ -96,7 +103,7 @@ class CatalogueDrive(Given):
             Limit("T2", Interval.of(gt=self.T1), "it must exceed T1"),
             Limit(
                 "corner",
-                Interval.of(ge=1e-3, lt=(second - first) / (second + first)),
+                Interval.of(ge=0.0, lt=(second - first) / (second + first)),
                 "corners must not meet",
             ),
             Limit(
@@ -113,9 +120,14 @@ class CatalogueDrive(Given):
         return first, first + (self.T2 - self.T1) / self.K2
 
     @property
+    def half_width(self) -> Number:
+        """Of the corners over their wind-up [1]."""
+        return np.maximum(self.corner, SHARPEST)
+
+    @property
     def reach(self) -> Number:
         """max_torque, or twice as far beyond T2 as its corner reaches."""
-        return np.maximum(self.max_torque, self.T2 + 2.0 * self.corner * self.corners[1] * self.K3)
+        return np.maximum(self.max_torque, self.T2 + 2.0 * self.half_width * self.corners[1] * self.K3)
 
     @property
     def K_FTS(self) -> Number:
@@ -125,13 +137,13 @@ class CatalogueDrive(Given):
     @property
     def _straight(self) -> Number:
         """Torque [N.m] at the end of the first line, where its corner begins."""
-        return self.T1 - self.K1 * self.corner * self.corners[0]
+        return self.T1 - self.K1 * self.half_width * self.corners[0]
 
     def nodes(self) -> list[Node]:
         """Those of the play on the first line, then five: of the corners, where the stiffness does not bend,
         and of the end."""
         (first, second), (K1, K2, K3) = self.corners, (self.K1, self.K2, self.K3)
-        one, two, end = self.corner * first, self.corner * second, self.reach
+        one, two, end = self.half_width * first, self.half_width * second, self.reach
         far = play(self, self._straight)[0]
         return [
             *self._with_play(),
