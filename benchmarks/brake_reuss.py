@@ -14,8 +14,7 @@ from brake_reuss_cases import Curves, beam, data, laws, published, solid_bar
 from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
-from validity_pictures import IMAGES
-from validity_tables import heading, row
+from validity_tables import IMAGES, heading, row
 
 from jointfmu import plots
 from jointfmu.mechanics.curve import approach_curve

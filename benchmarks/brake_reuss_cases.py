@@ -2,17 +2,16 @@
 
 from dataclasses import dataclass, replace
 
-import interface_laws as compare
 import numpy as np
-import roughness_cases as cases
 from lap_beam import LapBeam
+from measured_joints import joint_law, level, measured
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 
 def data():
     """The entries of models/reference/brake_reuss.toml."""
-    return compare.measured("brake_reuss")
+    return measured("brake_reuss")
 
 
 def beam():
@@ -25,10 +24,10 @@ def beam():
 def laws():
     """{name: law}: from the deviation of the gap, and the same form at the published level."""
     entries = data()
-    ours = cases.joint_law(entries | {"Rq": entries["h"] / np.sqrt(2.0)}, H=entries["H"])
+    ours = joint_law(entries | {"Rq": entries["h"] / np.sqrt(2.0)}, H=entries["H"])
 
     def excess(h):
-        return cases.level(replace(ours, h=h), entries["pressure"]) / entries["normal"] - 1.0
+        return level(replace(ours, h=h), entries["pressure"]) / entries["normal"] - 1.0
 
     return {"roughness": ours, "published": replace(ours, h=brentq(excess, 0.5 * ours.h, 2.0 * ours.h))}
 

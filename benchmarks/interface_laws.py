@@ -1,8 +1,6 @@
 """What benchmarks/validity.py compares: the interface laws, boundary elements, measured joints."""
 
-import tomllib
 from dataclasses import dataclass, replace
-from importlib.resources import files
 
 import numpy as np
 from boundary_element import bonded, press, refined, slope
@@ -168,12 +166,6 @@ def resolution(factors=(1, 2, 4), loads=(0.01, 0.03, 0.1)):
         contacts = press(z, np.array(loads) * slope(z))
         rows.append([(c.stiffness * z.std() / c.p, c.area * slope(z) / c.p) for c in contacts])
     return np.moveaxis(np.array(rows), 2, 0)
-
-
-def measured(name="measured_joints"):
-    """Measured joints, or another file of models/reference."""
-    text = (files("jointfmu_models") / "reference" / f"{name}.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
 
 
 def measured_stiffness(joint, pressure):

@@ -124,10 +124,11 @@ def frequency(state):
 
 
 def masing(states):
-    """Losses [J] of cycles by Masing's rules from the states of a backbone: 8 (integral of a dq - a q/2)."""
-    load, q = (np.array([0.0, *(getattr(s, name) for s in states)]) for name in ("load", "q"))
-    area = np.concatenate([[0.0], np.cumsum(0.5 * (load[1:] + load[:-1]) * np.diff(q))])
-    return (8.0 * (area - 0.5 * load * q))[1:]
+    """Losses [J] of cycles by Masing's rules from the states of a backbone: four times that of first loading.
+
+    The area under the backbone would take an elastic stiffening of the contact for a negative loss.
+    """
+    return 4.0 * np.cumsum([state.loss for state in states])
 
 
 def damping(loss, state):

@@ -11,6 +11,7 @@ from dataclasses import replace
 import interface_laws as compare
 import numpy as np
 from boundary_element import press, slope
+from measured_joints import FRICTION, GAMMA, joint_law, level, measured
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.contact.laws.roughness import Roughness
@@ -27,13 +28,9 @@ LOADS = {1: (0.1, 0.3, 0.5, 0.9, 1.5), 4: (0.02, 0.06, 0.18, 0.5, 1.5), 16: (0.0
 """Loads y [1] of the surfaces with waves up to side/1, side/4 and side/16."""
 FEWEST, LIGHTEST, FLATTENED, FULLEST = 0.3, 0.01, 1.5, 0.15
 """Least x, least and largest y, largest real area where the law is meant to hold [1]."""
-HARDNESS, SLOPE, FRICTION, NO_HARDNESS = 2e9, 0.15, 0.15, 1e30
-"""[Pa, 1, 1, Pa] of the joints: no stiffness of small motions depends on them."""
+NO_HARDNESS = 1e30
+"""[Pa]."""
 MEASURED = np.array([0.1e6, 0.5e6, 1e6, 2e6, 8e6])
-GAMMA = 0.45
-"""Of the law [1]."""
-LONGEST, MACHINED = 1e-3, 0.8
-"""Longest wave [m] that machining leaves and Hurst exponent [1] of the joints, both estimates."""
 
 
 def without_units(H, roll_off, h, gradient, hardness=NO_HARDNESS):
@@ -105,33 +102,9 @@ def plastic(H, roll_off, hardness, load, seeds, points=64):
     return np.array(rows).T
 
 
-def joint_law(joint, **changes):
-    """The law for an entry of models/reference with the roughness `Rq` of each of its two sides."""
-    body = Elastic(E=joint["E"], nu=joint["nu"])
-    law = Roughness(
-        h=np.sqrt(2.0) * joint["Rq"],
-        gamma=GAMMA,
-        longest_wave=LONGEST,
-        hurst=MACHINED,
-        slope=SLOPE,
-        side1=body,
-        side2=body,
-        H=HARDNESS,
-        mu=FRICTION,
-        traction_ratio=0.1,
-        A_0=joint["A_0"],
-    )
-    return replace(law, **changes)
-
-
-def level(law, p):
-    """Stiffness per area [N/m3] of a law at pressures [Pa]."""
-    return at_pressure(law, p)["K_N"] / law.A_0
-
-
 def rough():
     """The measured joints whose roughness is stated."""
-    return [joint for joint in compare.measured()["normal"] if "Rq" in joint]
+    return [joint for joint in measured()["normal"] if "Rq" in joint]
 
 
 def filtered_wave(sigma):
@@ -141,7 +114,7 @@ def filtered_wave(sigma):
 
 def brake_reuss(**changes):
     """{name: law over published} for the contact law of the Brake-Reuss beam; changes of the law."""
-    data = compare.measured("brake_reuss")
+    data = measured("brake_reuss")
     law = joint_law(data | {"Rq": data["h"] / np.sqrt(2.0)}, H=data["H"], **changes)
     state = at_pressure(law, data["pressure"])
     names = {"normal": "K_N", "loading": "K_loading", "tangential": "K_T"}

@@ -8,6 +8,7 @@ from dataclasses import replace
 import interface_laws as compare
 import numpy as np
 import roughness_cases as cases
+from measured_joints import LONGEST, joint_law, level, measured
 from scipy.optimize import least_squares
 from validity_laws import CHOICES
 from validity_tables import heading, row, spread
@@ -76,11 +77,11 @@ def joints():
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness", "joint", "h [µm]", "law", *pressures)
     for joint in cases.rough():
-        law = cases.joint_law(joint)
+        law = joint_law(joint)
         middle = compare.measured_middle(joint, cases.MEASURED)
         height = f"{law.h * 1e6:.2f}"
         row(joint["id"], height, "p/(0.45 h)", *ratios(cases.MEASURED / (law.gamma * law.h) / middle))
-        row(joint["id"], height, "roughness", *ratios(cases.level(law, cases.MEASURED) / middle))
+        row(joint["id"], height, "roughness", *ratios(level(law, cases.MEASURED) / middle))
     zhao, hu, yu = (case.law for case in compare.cases().values())
     others = {
         f"zhao2018 {area} {spot}": replace(zhao, critical_area=area, spot_stiffness=spot)
@@ -88,7 +89,7 @@ def joints():
         if spot == "hertz" or area == "continuity"
     }
     heading("the same of the other laws, whatever the finish", "joint", "law", *pressures)
-    for joint in compare.measured()["normal"]:
+    for joint in measured()["normal"]:
         middle = compare.measured_middle(joint, cases.MEASURED)
         for text, law in {**others, "hu2023": hu, "yu2022": yu}.items():
             k = stiffness_curve(law, cases.MEASURED)[0]
@@ -100,10 +101,10 @@ def second_scale():
     pressures = [f"{p / 1e6:g} MPa" for p in cases.MEASURED]
     heading("law over measured stiffness, longer waves and a second scale", "joint", "law", *pressures)
     for joint in cases.rough():
-        law = cases.joint_law(joint)
+        law = joint_law(joint)
         middle = compare.measured_middle(joint, cases.MEASURED)
         for wave in WAVES:
-            k = cases.level(replace(law, longest_wave=wave), cases.MEASURED)
+            k = level(replace(law, longest_wave=wave), cases.MEASURED)
             row(joint["id"], f"longest wave {wave * 1e3:g} mm", *ratios(k / middle))
         row(joint["id"], "with the tail of the heights", *ratios(cases.tail(law, cases.MEASURED) / middle))
         for h in HEIGHTS:
@@ -122,7 +123,7 @@ def best(joint, middle):
 
     def stiffness(logs):
         h, second = np.exp(logs)
-        return cases.wavy(cases.joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
+        return cases.wavy(joint_law(joint, h=h), cases.MEASURED, second, WAVES[-1])
 
     def miss(logs):
         return np.log(stiffness(logs) / middle)[FITTED]
@@ -133,9 +134,9 @@ def best(joint, middle):
 
 def brake_reuss():
     """The published contact law of the Brake-Reuss beam; the usual longest wave, and that of its filter."""
-    published = compare.measured("brake_reuss")
+    published = measured("brake_reuss")
     heading("law over published, Brake-Reuss beam", "longest wave [mm]", *cases.brake_reuss())
-    for wave in (cases.LONGEST, cases.filtered_wave(published["filter_sigma"])):
+    for wave in (LONGEST, cases.filtered_wave(published["filter_sigma"])):
         row(f"{wave * 1e3:.3g}", *ratios(cases.brake_reuss(longest_wave=wave).values()))
 
 

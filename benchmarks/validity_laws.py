@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import interface_laws as compare
 import numpy as np
+from measured_joints import measured
 from validity_pictures import GAMMA
 from validity_tables import heading, row
 
@@ -84,7 +85,7 @@ def levels():
 
 def _near(k):
     """At how many of the measured rows k is within a factor of 2 of the middle of the printed range."""
-    ends = [compare.measured_stiffness(one, JUDGED) for one in compare.measured()["normal"]]
+    ends = [compare.measured_stiffness(one, JUDGED) for one in measured()["normal"]]
     middle = [np.sqrt(low * high) for low, high in ends]
     off = [(k >= 0.5 * one) & (k <= 2.0 * one) for one in middle]
     return "/".join(str(count) for count in np.sum(off, axis=0)) + f" of {len(off)}"
@@ -93,7 +94,7 @@ def _near(k):
 def joints():
     """Measured joints beside the laws."""
     pressures = [f"{p / 1e6:g} MPa" for p in MEASURED]
-    data = compare.measured()
+    data = measured()
     for kind in ("normal", "tangential"):
         heading(f"measured {kind} stiffness [N/m3]", "joint", *pressures, "exponent")
         for joint in data[kind]:

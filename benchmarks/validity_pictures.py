@@ -1,15 +1,15 @@
 """Pictures of benchmarks/validity.py, into docs/images."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import interface_laws as compare
 import numpy as np
+from measured_joints import measured
+from validity_tables import IMAGES
 
 from jointfmu import plots
 from jointfmu.contact.interface import stiffness_curve
 
-IMAGES = Path(__file__).resolve().parent.parent / "docs" / "images"
 GAMMA = 0.48
 """k = p/(GAMMA h_rms): Persson 2007, with the number of Akarapu, Sharp and Robbins 2011."""
 HURST = (0.3, 0.58, 0.8)
@@ -55,7 +55,7 @@ def joints():
     """Picture of the measured joints and of the laws."""
     with plots.drawing(IMAGES / "validity_measured.svg", (7.6, 5.0)) as figure:
         axes = figure.subplots()
-        for i, joint in enumerate(compare.measured()["normal"]):
+        for i, joint in enumerate(measured()["normal"]):
             p = np.geomspace(0.1, joint["to"] * joint["pressure_unit"] / 1e6)
             low, high = compare.measured_stiffness(joint, p * 1e6)
             material = joint["id"].replace(".", ", ").replace("_", " ")

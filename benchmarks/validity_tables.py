@@ -1,6 +1,10 @@
 """Markdown tables of benchmarks/validity.py."""
 
+from pathlib import Path
+
 import numpy as np
+
+IMAGES = Path(__file__).resolve().parent.parent / "docs" / "images"
 
 
 def row(*cells):

@@ -10,6 +10,7 @@ import pytest
 pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
 import interface_laws
 import roughness_cases as cases
+from measured_joints import GAMMA, joint_law, level, measured
 
 SEEDS = {1: range(400, 416), 4: range(400, 403)}
 """Of surfaces with waves up to side/1 and side/4: the few hills of the first differ more."""
@@ -89,7 +90,7 @@ def test_every_cast_iron_joint_of_known_roughness_is_met_within_a_factor():
     assert len(joints) == 3
     p = np.geomspace(0.5e6, 2e6, 5)
     for joint in joints:
-        ratio = cases.level(cases.joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+        ratio = level(joint_law(joint), p) / interface_laws.measured_middle(joint, p)
         assert np.all((ratio > 1.0 / 2.5) & (ratio < 2.5)), joint["id"]
 
 
@@ -99,7 +100,7 @@ def test_the_plain_line_has_the_published_ratios():
     expected = {"cast_iron.ground": 1.04, "cast_iron.scraped_fine": 0.66, "cast_iron.scraped_medium": 0.63}
     for joint in cases.rough():
         if joint["id"] in expected:
-            line = p / (cases.GAMMA * cases.joint_law(joint).h)
+            line = p / (GAMMA * joint_law(joint).h)
             ratio = line / interface_laws.measured_middle(joint, p)
             assert ratio == pytest.approx(expected[joint["id"]], abs=0.005)
 
@@ -108,7 +109,7 @@ def test_the_steel_joints_are_missed_sixfold():
     p = np.array([1e6])
     for joint in cases.rough():
         if joint["material"].startswith("steel"):
-            ratio = cases.level(cases.joint_law(joint), p) / interface_laws.measured_middle(joint, p)
+            ratio = level(joint_law(joint), p) / interface_laws.measured_middle(joint, p)
             assert 1 / 9 < ratio[0] < 1 / 4
 
 
@@ -116,7 +117,7 @@ def test_every_roughness_says_how_it_is_known():
     for joint in cases.rough():
         assert joint["Rq_read"]
         assert joint["A_0"] > 0.0
-    data = interface_laws.measured("brake_reuss")
+    data = measured("brake_reuss")
     assert data["source"]
     assert data["read"]
 
@@ -136,8 +137,8 @@ def test_a_second_scale_in_series_does_not_explain_light_load():
     """A series element only softens, and the joints are stiffer than the law at 0.1 MPa."""
     p = cases.MEASURED[:1]
     for joint in cases.rough():
-        law = cases.joint_law(joint)
-        alone = cases.level(law, p)
+        law = joint_law(joint)
+        alone = level(law, p)
         assert alone < 0.5 * interface_laws.measured_middle(joint, p)
         for height in (0.1e-6, 1e-6, 10e-6):
             assert cases.wavy(law, p, height, 40e-3) < alone

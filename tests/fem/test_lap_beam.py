@@ -1,5 +1,8 @@
 """The lapped beam (benchmarks/brake_reuss.py): closed forms, and friction over amplitude on a coarse mesh."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import brake_reuss
@@ -74,3 +77,19 @@ def test_a_whole_cycle_closes_and_its_area_is_its_loss(joint):
     assert q[8] == pytest.approx(-q[0], rel=1e-3)
     assert np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(q)) == pytest.approx(loss, rel=0.05)
     assert masing(states)[-1] == pytest.approx(loss, rel=0.2)
+
+
+def test_the_benchmark_needs_no_boundary_elements():
+    """tamaas has wheels for one platform only."""
+    asked = "import sys; sys.modules['tamaas'] = None; import brake_reuss"
+    path = os.pathsep.join(sys.path)
+    done = subprocess.run(
+        [sys.executable, "-c", asked], env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_damping_by_masing_is_never_negative(joint):
+    """With much friction little slips; the contact then stiffens under the load, which is no loss."""
+    states = brake_reuss.rubbing(joint, 0.6).backbone(brake_reuss.AMPLITUDES)
+    assert np.all(masing(states) > 0.0)

@@ -374,3 +374,12 @@ def test_places_that_cannot_be_written(tmp_path):
         assert "\n" not in str(error.value)
     assert sorted(os.listdir(tmp_path)) == ["folder", "plain"]
     assert os.listdir(tmp_path / "folder") == []
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path):
+    """Editors on Windows write one."""
+    given = default("gear_contact")
+    path = tmp_path / "joint.toml"
+    path.write_text(dump(given), encoding="utf-8-sig")
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf")
+    assert load(path).flat == given.flat

@@ -16,6 +16,7 @@ from jointfmu.contact.interface import at_pressure, stiffness_curve
 pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")
 import boundary_element
 import interface_laws
+from measured_joints import measured
 
 pytestmark = pytest.mark.slow
 
@@ -118,7 +119,7 @@ def test_the_law_has_no_stiffness_on_a_small_area_where_boundary_elements_have()
 
 def test_zhaos_continuous_choice_alone_lies_among_measured_cast_iron():
     p = np.array([1e6])
-    joints = [j for j in interface_laws.measured()["normal"] if j["material"].startswith("cast iron")]
+    joints = [j for j in measured()["normal"] if j["material"].startswith("cast iron")]
     bands = [interface_laws.measured_stiffness(j, p) for j in joints]
     low, high = min(b[0][0] for b in bands), max(b[1][0] for b in bands)
     law = interface_laws.cases()["zhao2018"].law
@@ -143,7 +144,7 @@ def test_only_the_hertz_stiffness_keeps_the_tangential_ratio():
 
 
 def test_every_measured_number_has_its_source():
-    data = interface_laws.measured()
+    data = measured()
     for joint in (*data["normal"], *data["tangential"]):
         assert joint["source"]
         assert joint["read"]

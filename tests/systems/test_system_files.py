@@ -323,3 +323,9 @@ def test_curves_of_the_arm_are_the_inverse_dynamics() -> None:
         left = inertia * acceleration[:, k] - torque[:, k]
         assert np.max(np.abs(values - left)) < 5e-4 * np.max(np.abs(torque[:, k]))
     assert re.search(r"J = .*", ARM) is None  # computed, not stated
+
+
+def test_ring_without_fmus_says_what_writes_them(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    said = refused_line(capsys, "ring", "robot_joint")
+    assert "has no HarmonicDriveSpring.fmu; `jointfmu build --systems` writes it" in said

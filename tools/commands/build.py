@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, tell, without_package
+from jointfmu.files.writing import check_folder
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 
@@ -47,6 +48,7 @@ def add(commands: Commands) -> None:
 def _build(args: argparse.Namespace) -> int:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
+    check_folder(args.out)
     file = load(args.params) if args.params else None
     try:
         from jointfmu_fmu_src import building

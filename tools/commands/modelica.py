@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, flag, tell, without_package
+from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
@@ -31,6 +32,7 @@ def add(commands: Commands) -> None:
 
 
 def _modelica(args: argparse.Namespace) -> int:
+    check_folder(args.out)
     file = load(args.params) if args.params else None
     points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
     try:

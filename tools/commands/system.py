@@ -7,7 +7,7 @@ from pathlib import Path
 from jointfmu import plots
 from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files import columns
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import check_folder, check_writable, write_text
 
 from ..systems.system import names, system
 
@@ -29,6 +29,7 @@ def add(commands: Commands) -> None:
 
 def _system(args: argparse.Namespace) -> int:
     found = system(args.file)
+    check_folder(args.out)
     if args.csv:
         check_writable(args.csv)
     if args.plot:

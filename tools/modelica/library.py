@@ -14,7 +14,7 @@ from jointfmu_fmu_src.partners.laws import POINTS
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
-from jointfmu.files.writing import write_text
+from jointfmu.files.writing import write_files
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
@@ -68,11 +68,7 @@ def write(folder: Path, file: ParameterFile | None = None, points: Points | None
     file   : parameters of one joint, in place of its default
     points : of some joints, in place of their own
     """
-    written = []
-    for name, content in library(file, points).items():
-        write_text(folder / NAME / name, content)
-        written.append(folder / NAME / name)
-    return written
+    return write_files(folder / NAME, library(file, points))
 
 
 def library(file: ParameterFile | None = None, points: Points | None = None) -> dict[str, str]:

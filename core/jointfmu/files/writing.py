@@ -2,8 +2,9 @@
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
+from errno import ENOTDIR
 from pathlib import Path
 
 
@@ -52,14 +53,57 @@ def made_folder(path: Path) -> Iterator[None]:
         raise
 
 
+def write_files(folder: Path, files: Mapping[str, str]) -> list[Path]:
+    """Write text files, {path in the folder: text}, all of them or none: beside the folder, then moved.
+
+    Raises ValueError naming the folder if they cannot be written; a folder that was made for them goes again.
+    """
+    with made_folder(folder.parent):
+        try:
+            with tempfile.TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as work:
+                for name, text in files.items():
+                    file = Path(work) / name
+                    file.parent.mkdir(parents=True, exist_ok=True)
+                    file.write_text(text, encoding="utf-8", newline="\n")
+                for name in files:
+                    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                    (Path(work) / name).replace(folder / name)
+        except OSError as error:
+            raise _unwritable(folder, error) from None
+    return [folder / name for name in files]
+
+
 def check_writable(path: str | Path) -> None:
-    """Raise ValueError naming the path if `write_text` could not write it; makes nothing."""
+    """Raise ValueError naming the path if `write_text` could not write it; leaves nothing.
+
+    To be called before long work.
+    """
     path = Path(path)
     if path.is_dir():
         raise ValueError(f"{path}: is a folder; expected a file to write")
-    parent = next(folder for folder in path.absolute().parents if folder.exists())
-    if not parent.is_dir() or not os.access(parent, os.W_OK):
-        raise ValueError(f"{path}: cannot be written ({parent} is not writable); expected a writable place")
+    _check_place(path, next(folder for folder in path.absolute().parents if folder.exists()))
+
+
+def check_folder(path: str | Path) -> None:
+    """Raise ValueError naming the path if no files could be written into this folder; leaves nothing.
+
+    To be called before long work.
+    """
+    path = Path(path).absolute()
+    _check_place(Path(path), next(folder for folder in (path, *path.parents) if folder.exists()))
+
+
+def _check_place(path: Path, folder: Path) -> None:
+    """Try to make a file in a folder that exists."""
+    try:
+        if not folder.is_dir():
+            raise OSError(ENOTDIR, os.strerror(ENOTDIR))
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ValueError(
+            f"{path}: cannot be written ({folder}: {error.strerror}); expected a writable place"
+        ) from None
 
 
 def _beside(path: Path) -> Path:

@@ -25,7 +25,9 @@ def _drive(given: Given) -> NewJoint:
     printed = _bought(given["catalogue"]) if given["catalogue"] else {}
     for name, unit in _UNITS.items():
         if given[name] is not None:
-            value = number(name, given[name], _unit(given, name), unit)
+            value = number(name, given[name], _unit(given, name), unit, None if name == "ratio" else 0.0)
+            if value == 0.0:
+                raise ValueError("--ratio = 0 is outside (-inf, 0) and (0, inf)")
             printed[name] = _stated(given, value)
     if given["hysteresis"] is not None:
         printed["hysteresis_loss"] = _stated(
@@ -158,7 +160,7 @@ NEW = Drawing(
     example="--catalogue CSG-17-100",
     options=(
         Option(name="catalogue", text="its name, see jointfmu catalogue", metavar="NAME"),
-        Option(name="ratio", text="speed ratio [1]", metavar="R"),
+        Option(name="ratio", text="speed ratio [1], negative where output and motor turn apart", metavar="R"),
         Option(name="K1", text="stiffness below T1 [N.m/rad]", metavar="K"),
         Option(name="K2", text="stiffness between T1 and T2 [N.m/rad]", metavar="K"),
         Option(name="K3", text="stiffness above T2 [N.m/rad]", metavar="K"),

@@ -94,7 +94,7 @@ class Drive(ABC):
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
         any_sign = Interval.of(gt=np.minimum(2.0 * self.ratio, 0.0))
-        return [Limit("ratio", any_sign, "it may be negative, not zero")]
+        return [Limit("ratio", any_sign, "allowed are (-inf, 0) and (0, inf)")]
 
     def table_limits(self) -> list[Limit]:
         """Intervals that the tabulated law needs beside."""

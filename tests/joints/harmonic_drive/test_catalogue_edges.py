@@ -1,4 +1,4 @@
-"""A catalogue's lines without smooth corners: the printed angles, and kinks that are said to be kinks."""
+"""Edges of a catalogue drive: lines without smooth corners, which are said to have kinks, and the ratio."""
 
 import numpy as np
 import pytest
@@ -59,3 +59,11 @@ def test_all_flavours_have_the_kinks(tmp_path):
 )
 def test_what_is_no_corner(options, said, capsys):
     assert said in refused_line(capsys, "new", "harmonic-drive", "--catalogue", DRIVE, *options)
+
+
+def test_a_ratio_of_zero_is_refused_and_a_negative_one_taken(capsys):
+    asked = ("new", "harmonic-drive", "--catalogue", DRIVE, "--ratio")
+    assert "--ratio = 0 is outside (-inf, 0) and (0, inf)" in refused_line(capsys, *asked, "0")
+    assert jointfmu.drive(DRIVE, ratio=-100).values["ratio"] == -100.0
+    with pytest.raises(ValueError, match=r"ratio = 0 is outside .* allowed are \(-inf, 0\) and \(0, inf\)"):
+        jointfmu.drive(DRIVE).with_values(ratio=0.0)

@@ -1,0 +1,82 @@
+"""Files and folders that are written whole or not at all, and refused before the work."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+
+from jointfmu.files.writing import check_folder, check_writable, write_files
+
+FILES = {"package.mo": "one\n", "Data/package.mo": "two\n", "Data/order": "three\n"}
+
+
+def everything(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+def test_files_are_written_below_a_folder(tmp_path):
+    folder = tmp_path / "new" / "Library"
+    assert write_files(folder, FILES) == [folder / name for name in FILES]
+    assert {name: (folder / name).read_text() for name in FILES} == FILES
+    (folder / "own.txt").write_text("kept")
+    write_files(folder, FILES | {"package.mo": "again\n"})
+    assert (folder / "package.mo").read_text() == "again\n"
+    assert everything(tmp_path / "new") == [
+        "Library",
+        *sorted(f"Library/{p}" for p in ("Data", "own.txt", *FILES)),
+    ]
+
+
+@pytest.mark.parametrize("there", [False, True])
+def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch, there):
+    folder = tmp_path / "new" / "Library"
+    if there:
+        write_files(folder, FILES)
+    before, write = everything(tmp_path), Path.write_text
+
+    def full(self, *args, **options):
+        if self.name == "order":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return write(self, *args, **options)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(ValueError, match=r"Library: cannot be written \(No space left on device\)"):
+        write_files(folder, dict.fromkeys(FILES, "changed\n"))
+    assert everything(tmp_path) == before
+    assert not there or (folder / "package.mo").read_text() == "one\n"
+
+
+def test_a_check_leaves_nothing_and_refuses_what_is_in_the_way(tmp_path):
+    check_writable(tmp_path / "a" / "b.csv")
+    check_folder(tmp_path / "a" / "b")
+    assert everything(tmp_path) == []
+    (tmp_path / "file").write_text("")
+    for check, path in ((check_writable, "file/a.csv"), (check_folder, "file"), (check_folder, "file/a")):
+        with pytest.raises(ValueError, match=r"cannot be written \(.*file: Not a directory\)"):
+            check(tmp_path / path)
+
+
+@pytest.mark.parametrize(
+    ("command", "work"),
+    [
+        (["build", "GearContact"], "jointfmu_fmu_src.building.build"),
+        (["modelica"], "jointfmu_tools.modelica.library.library"),
+        (["system", "robot_joint"], "jointfmu_tools.modelica.library.system_text"),
+    ],
+)
+def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
+    tmp_path, monkeypatch, capsys, command, work
+):
+    (tmp_path / "file").write_text("")
+
+    def never(*args, **options):
+        raise AssertionError("worked before the check")
+
+    monkeypatch.setattr(work, never)
+    said = refused_line(capsys, *command, "--out", tmp_path / "file" / "out")
+    assert "cannot be written" in said
+    with pytest.raises(AssertionError):
+        cli.main([*command, "--out", str(tmp_path / "out")])
