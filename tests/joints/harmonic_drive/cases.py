@@ -21,6 +21,7 @@ FRICTION = {
     "stribeck_speed": 2.0,
     "friction_viscous": 1e-3,
     "load_loss": 0.1,
+    "load_loss_back": 0.25,
     "presliding": 0.02,
     "temperature_factor": 1.2,
 }
@@ -29,6 +30,7 @@ UNITS = {
     "friction_stribeck": "N.m",
     "friction_viscous": "N.m.s/rad",
     "load_loss": "1",
+    "load_loss_back": "1",
 }
 ERROR = {
     "error_1": 2e-5,
