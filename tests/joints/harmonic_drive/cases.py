@@ -21,7 +21,6 @@ FRICTION = {
     "stribeck_speed": 2.0,
     "friction_viscous": 1e-3,
     "load_loss": 0.1,
-    "load_loss_back": 0.25,
     "presliding": 0.02,
     "temperature_factor": 1.2,
 }
@@ -42,7 +41,7 @@ ERROR = {
 }
 BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
 """With all that is off by default, so that what it costs matters."""
-MOVED = {"bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
+MOVED = {"load_loss_back": 0.3, "bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
 """The softer body counts."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
 """All spots are elastic: their size and strength limit what the law holds for. The traction ratio is given

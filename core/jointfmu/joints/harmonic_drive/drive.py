@@ -44,7 +44,7 @@ class Drive(ABC):
         "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
     )
     load_loss_back: float = quantity(
-        "1", "the same where the load drives the motor; -1: as load_loss", ge=-1.0, default=-1.0
+        "1", "the same where the load drives the motor; negative: as load_loss", default=-1.0
     )
     presliding: float = quantity(
         "rad",

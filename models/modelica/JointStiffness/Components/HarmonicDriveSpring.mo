@@ -18,7 +18,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Real load_loss(min=0, unit="1") = data.load_loss "dry friction at the wave generator over the torque transmitted to it"
     annotation (Dialog(tab="Friction"));
-  parameter Real load_loss_back(min=-1, unit="1") = data.load_loss_back "the same where the load drives the motor; -1: as load_loss"
+  parameter Real load_loss_back(unit="1") = data.load_loss_back "the same where the load drives the motor; negative: as load_loss"
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "angle of the wave generator over which dry friction builds up to 1 - 1/e"
     annotation (Dialog(tab="Friction"));

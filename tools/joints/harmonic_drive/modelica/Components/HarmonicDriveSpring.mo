@@ -18,7 +18,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Real load_loss(min=0, unit="1") = data.load_loss "<< meta.load_loss >>"
     annotation (Dialog(tab="Friction"));
-  parameter Real load_loss_back(min=-1, unit="1") = data.load_loss_back "<< meta.load_loss_back >>"
+  parameter Real load_loss_back(unit="1") = data.load_loss_back "<< meta.load_loss_back >>"
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "<< meta.presliding >>"
     annotation (Dialog(tab="Friction"));
