@@ -14,6 +14,7 @@ from pathlib import Path
 import box_specimen_lengths as box
 import numpy as np
 from numpy.typing import NDArray
+from published_marks import published_mark
 
 from jointfmu import plots
 from jointfmu.parameters import default
@@ -102,7 +103,7 @@ def levelling(assembly: box.Assembly, plot: Path | None) -> None:
             axes.plot(PRELOADS / 1e3, found[:, 0], color=plots.BLUE, label="computed field")
             axes.plot(PRELOADS / 1e3, even[:, 0], "--", color=plots.GREY, label="uniform pressure")
             for x, f, role in ((9, target[0, 0], "calibration"), (15, target[1, 0], "prediction")):
-                axes.plot(x, f, **plots.published_mark(role, plots.RED))
+                axes.plot(x, f, **published_mark(role, plots.RED))
             axes.set(xlabel="preload per bolt in kN", ylabel="f1 in Hz")
             axes.legend()
 

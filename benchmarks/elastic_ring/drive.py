@@ -21,10 +21,10 @@ from scipy import sparse
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import HarmonicDrive
 from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.mechanics.footprint.nodes import Footprint
 
 from .contact import Contact, ContactLaw, Spring, equilibrium, hertz_contact
 from .data import Rings, Traction, ball_stiffness, contact_length
+from .nodes import Footprint
 from .ring import Circle, Ring
 
 Array = NDArray[np.float64]

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .files.writing import check_writable, write_bytes
-from .published.reference import ROLES
 from .quantity.units import UNITS, display_unit
 
 if TYPE_CHECKING:
@@ -30,12 +29,6 @@ STYLE: Any = {
     "axes.axisbelow": True,
     "legend.frameon": False,
 }
-_MARKERS = {
-    "calibration": {"marker": "o", "mfc": "white"},
-    "circular": {"marker": "x"},
-    "interpolation": {"marker": "D", "mfc": "white"},
-    "prediction": {"marker": "o"},
-}
 RESOLUTION = 150
 """Dots per inch of a PNG."""
 
@@ -54,12 +47,6 @@ def check(path: str | Path) -> None:
         raise ValueError(
             "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
         ) from None
-
-
-def published_mark(role: str, colour: str = "black") -> dict[str, object]:
-    """How a published number of a role is drawn, and its legend; filled points are predictions alone."""
-    shape = _MARKERS.get(role, {"marker": "+"})
-    return {"linestyle": "none", "color": colour, "ms": 5, "label": f"published, {ROLES[role]}"} | shape
 
 
 def shown(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:

@@ -48,6 +48,18 @@ def law():
 # two blocks pressed uniformly: p is the load over the area, each block shortens by p h / E
 
 
+def imbalance(solution):
+    """Forces (n) [N] on each body that nothing balances: the reactions of the supports, and round-off."""
+    model = solution.model
+    nodal = (
+        model.interface.values.T
+        @ (model.interface.area * solution.pressure)
+        * (0.5 if model.mirrored else 1.0)
+    )
+    parts = zip(model.bodies, solution.loads, model.traces(), solution.displacement, strict=True)
+    return [load - body.stiffness @ u - trace.T @ nodal for body, load, trace, u in parts]
+
+
 def test_two_blocks_pressed_uniformly(law):
     lines, depths, moduli, p = np.linspace(0.0, 0.05, 4), (0.03, 0.05), (1.1e11, 2.1e11), 2e6
     bodies = []
@@ -73,7 +85,7 @@ def test_two_blocks_pressed_uniformly(law):
     ]
     shortening = p * depths[0] / moduli[0] + p * depths[1] / moduli[1]
     assert ends[0] - ends[1] == pytest.approx(float(law.inverse(p)) - solution.offset + shortening, rel=1e-7)
-    for out, load in zip(solution.imbalance(), loads, strict=True):
+    for out, load in zip(imbalance(solution), loads, strict=True):
         assert np.abs(out).max() < ROUND_OFF * np.abs(load).sum()  # the supports carry nothing
 
 
@@ -152,7 +164,7 @@ def test_contact_carries_the_bolts(plates, law):
     assert np.abs((field.area * field.pressure) @ field.position).max() < ROUND_OFF * 8e3 * 0.06
     assert np.all(field.area > 0.0)
     assert solution.peak >= field.pressure.max()
-    for out in solution.contact.imbalance():
+    for out in imbalance(solution.contact):
         assert np.abs(out).max() < ROUND_OFF * 8e3
 
 

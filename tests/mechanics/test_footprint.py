@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from elastic_ring.nodes import Footprint
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from jointfmu.joints.bolted_joint.law import pressures, row_forces
 from jointfmu.mechanics.footprint.bolts import BoltPattern, cells, pressure_shape, unit_pressures
-from jointfmu.mechanics.footprint.nodes import Footprint
 from jointfmu.mechanics.footprint.shape import ALIKE
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten

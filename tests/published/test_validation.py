@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.lines import Line2D
+from published_marks import published_mark
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.published import published
 from jointfmu.parameters import default
-from jointfmu.plots import published_mark
 from jointfmu.published import calibration
 from jointfmu.published.calibration import calibrate
 from jointfmu.published.reference import CALIBRATION_TOLERANCE, GUESSED, ROLES, Guess, Point, guesses, points

@@ -210,13 +210,6 @@ class ContactSolution:
         """(q) [Pa/m] of the interface at the quadrature points."""
         return self.model.law.derivatives(self.approach, 1)[1]
 
-    def imbalance(self) -> tuple[Array, ...]:
-        """Forces (n) [N] on each body that nothing balances: the reactions of the supports, and round-off."""
-        share = 0.5 if self.model.mirrored else 1.0
-        nodal = share * (self.model.interface.values.T @ (self.model.interface.area * self.pressure))
-        parts = zip(self.model.bodies, self.loads, self.model.traces(), self.displacement, strict=True)
-        return tuple(load - body.stiffness @ u - trace.T @ nodal for body, load, trace, u in parts)
-
     @cached_property
     def at_nodes(self) -> Array:
         """Approach [m] at the nodes of the contact."""
