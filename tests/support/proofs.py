@@ -64,5 +64,5 @@ def proved(capsys: pytest.CaptureFixture[str], fmu: Path, *words: str, status: i
     """What `jointfmu prove --json` prints, with the exit status that it must have."""
     found = cli.main(["prove", str(fmu), *words, "--json"])
     out, err = capsys.readouterr()
-    assert (found, err) == (status, ""), out[-2000:]
+    assert (found, err) == (status, ""), (err, out[-2000:])
     return dict(json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON")))

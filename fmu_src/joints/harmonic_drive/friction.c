@@ -1,4 +1,4 @@
-/* Repeats `Friction` of the package; the limit of the friction is generated. */
+/* Repeats `Friction` of the package; the limits of the friction are generated. */
 #include "friction.h"
 
 _Static_assert(BRAKES % 4 == 0, "as sliders_line needs them");
@@ -18,22 +18,26 @@ static double way(const double *memory, Turn turn)
     return memory[AT_BEGUN] > 0.0 ? turn.angle - memory[AT_ANGLE] : TURNED * turn.speed;
 }
 
-static void limits_at(double limit, double *each)
+/* Each slider is held by the limit on the side of the force that it would have if it stuck. */
+static void limits_at(const Friction *friction, const double *memory, double shift, const double *limit,
+                      double *each)
 {
     for (int i = 0; i < BRAKES; i++)
-        each[i] = limit * BRAKE_LIMITS[i];
+        each[i] = limit[memory[i] + friction->K[i] * shift < 0.0] * BRAKE_LIMITS[i];
 }
 
 SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after)
 {
     double start[BRAKES], end[BRAKES];
-    limits_at(memory[AT_LIMIT], start);
-    limits_at(turn.limit, end);
+    const double shift = way(memory, turn);
+    limits_at(friction, memory, shift, memory + AT_LIMIT, start);
+    limits_at(friction, memory, shift, turn.limit, end);
     const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
     SliderSum sum;
-    sliders_line(BRAKES, &s, way(memory, turn), after, &sum);
+    sliders_line(BRAKES, &s, shift, after, &sum);
     after[AT_ANGLE] = turn.angle;
-    after[AT_LIMIT] = turn.limit;
+    after[AT_LIMIT] = turn.limit[0];
+    after[AT_LIMIT + 1] = turn.limit[1];
     after[AT_BEGUN] = 1.0;
     if (!(memory[AT_BEGUN] > 0.0))
         sum.loss = 0.0;
@@ -44,12 +48,13 @@ SliderSum friction_rate(const Friction *friction, const double *memory, Turn tur
 {
     const bool begun = memory[AT_BEGUN] > 0.0;
     double start[BRAKES], end[BRAKES], rises[BRAKES];
-    limits_at(memory[AT_LIMIT], start);
-    limits_at(turn.limit, end);
-    limits_at(rate.limit, rises);
+    const double shift = way(memory, turn);
+    limits_at(friction, memory, shift, memory + AT_LIMIT, start);
+    limits_at(friction, memory, shift, turn.limit, end);
+    limits_at(friction, memory, shift, rate.limit, rises);
     const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
     SliderSum sum;
-    sliders_line_rate(BRAKES, &s, way(memory, turn), begun ? rate.angle : TURNED * rate.speed, rises, &sum);
+    sliders_line_rate(BRAKES, &s, shift, begun ? rate.angle : TURNED * rate.speed, rises, &sum);
     if (!begun)
         sum.loss = 0.0;
     return sum;

@@ -1,6 +1,7 @@
 /* Dry friction with memory at the wave generator: sliders in parallel, spring and friction each.
  *
- * Memory: their forces, the wave generator's angle, the limit of the friction, 1 once it has begun. */
+ * Memory: their forces, the wave generator's angle, the limits of positive and of negative friction, 1 once
+ * it has begun. */
 #ifndef JOINTFMU_FRICTION_H
 #define JOINTFMU_FRICTION_H
 
@@ -8,16 +9,16 @@
 
 #include "sliders.h"
 
-enum { AT_ANGLE = BRAKES, AT_LIMIT, AT_BEGUN, N_BRAKES }; /* of the memory */
+enum { AT_ANGLE = BRAKES, AT_LIMIT, AT_BEGUN = AT_LIMIT + 2, N_BRAKES }; /* of the memory */
 
 typedef struct {
     bool acts;
     double K[BRAKES], per_K[BRAKES]; /* of each slider */
 } Friction;
 
-/* Angle and speed of the wave generator, and the limit of its friction; or rates of them. */
+/* Angle and speed of the wave generator, and the limits of its friction; or rates of them. */
 typedef struct {
-    double angle, speed, limit;
+    double angle, speed, limit[2];
 } Turn;
 
 void friction_of(Friction *friction, double stiffness);

@@ -176,10 +176,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     x[ERROR] = error[0];
     x[SLOPE] = error[1];
     if (kind->friction.acts) {
-        double given[N_TURN], y[3];
+        double given[N_TURN], y[4];
         to_turn(x, given);
         turn(given, joint->c, y);
-        kind->turn = (Turn){y[0], y[1], y[2]};
+        kind->turn = (Turn){y[0], y[1], {y[2], y[3]}};
         kind->braked = friction_at(&kind->friction, memory + BRAKED, kind->turn, after + BRAKED);
     }
     x[DRY] = kind->braked.force[0];
@@ -216,12 +216,12 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(x + PHI, given, sizeof given);
     memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
     if (kind->friction.acts) {
-        double turning[2 * N_TURN], drift[3];
+        double turning[2 * N_TURN], drift[4];
         to_turn(x, turning);
         to_turn(x + N_GIVEN, turning + N_TURN);
         turn_seed(turning, joint->c, drift);
         const SliderSum brakes =
-            friction_rate(&kind->friction, memory + BRAKED, kind->turn, (Turn){drift[0], drift[1], drift[2]});
+            friction_rate(&kind->friction, memory + BRAKED, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
         x[N_GIVEN + DRY] = brakes.force[0];
         x[N_GIVEN + LOSS] += brakes.loss;
     }

@@ -37,18 +37,18 @@ def _functions(g: Graph, model: Model) -> None:
     x, load, stiffness, slid, loss, error, slope, dry = symbols("found", 8)
     turn: Symbols
     if locked:
-        argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0]
+        argument, brake, turn = inputs[0], 0.0, [0.0, 0.0, 0.0, 0.0]
         out = {"phi_rel": x, **spring.parts(drive, load, stiffness)}
     else:
         state = spring.State(x, load, stiffness, slid, error, slope)
         argument, brake = spring.wind_up(drive, inputs, error), friction.stiffness(drive)
-        most = friction.limit(drive, inputs[1], spring.transmitted(drive, inputs, state))
-        turn = [*inputs[:2], most]
+        most = friction.limits(drive, inputs[1], spring.transmitted(drive, inputs, state))
+        turn = [*inputs[:2], *most]
         out = spring.exported(drive, inputs, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
     g.add_with_seed("argument", doc, [*inputs, error], [argument])
     g.add("brake", "-> stiffness of the friction while all stick", [], [brake])
-    doc = "inputs, torques of curve and hysteresis, slope of the error -> phi1, w1, limit of the friction"
+    doc = "inputs, torques of curve and hysteresis, slope of the error -> phi1, w1, limits of the friction"
     g.add_with_seed("turn", doc, [*inputs, load, slid, slope], turn)
     out["E_loss"] = loss
     y = [out[o.name] for o in model.outputs]

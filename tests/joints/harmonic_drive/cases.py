@@ -29,6 +29,7 @@ UNITS = {
     "friction_stribeck": "N.m",
     "friction_viscous": "N.m.s/rad",
     "load_loss": "1",
+    "load_loss_back": "1",
 }
 ERROR = {
     "error_1": 2e-5,
@@ -40,7 +41,7 @@ ERROR = {
 }
 BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
 """With all that is off by default, so that what it costs matters."""
-MOVED = {"bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
+MOVED = {"load_loss_back": 0.3, "bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
 """The softer body counts."""
 ELASTIC = frozenset({"mu", "surface.s_min", "flexspline.sigma_y", "bearing.sigma_y"})
 """All spots are elastic: their size and strength limit what the law holds for. The traction ratio is given

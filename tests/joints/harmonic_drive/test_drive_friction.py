@@ -1,11 +1,12 @@
 """Friction at the wave generator: its torque, its energy, and that it holds what stands still."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from jointfmu.joints.harmonic_drive.friction import SPRINGS, Friction, limit
+from jointfmu.joints.harmonic_drive.friction import SPRINGS, Friction, limits
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 
@@ -59,7 +60,7 @@ def test_without_friction_nothing_acts_and_nothing_is_remembered():
     law = spring()
     out, memory = law.driven((3.0, 100.0, 0.0305, 1.0), law.rest())
     assert float(out["tau_friction"]) == 0.0
-    assert not np.any(memory[-11:])
+    assert not np.any(memory[-12:])
     assert float(out["tau1"]) == float(out["tau"]) / 100.0
 
 
@@ -68,7 +69,7 @@ def test_a_drive_begins_where_it_is():
     law = spring(**DRY)
     for speed, share in ((0.0, 0.0), (2.0, 1.0), (-2.0, -1.0)):
         out, memory = law.driven((500.0, speed, 5.0, speed / 100.0), law.rest())
-        most = float(limit(law.joint, speed, 0.0))
+        most = float(limits(law.joint, speed, 0.0)[0])
         assert float(out["tau_friction"]) == pytest.approx(share * most, rel=ROUND_OFF)
         assert float(out["E_loss"]) == 0.0
         after = law.driven((500.0, speed, 5.0, speed / 100.0), memory)[0]
@@ -81,20 +82,20 @@ def test_a_drive_begins_where_it_is():
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
     """One step against very many, of which each is nearly a trapezium."""
     brake, rng = Friction(5.0 * SPRINGS), np.random.default_rng(4)
-    memory = brake.after(brake.moved(brake.rest(), 0.0, 0.0, 0.05), 0.0, 0.05)
+    memory = brake.after(brake.moved(brake.rest(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08))
     for _ in range(30):
         before = memory
-        phi, most = before[-3] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1)
+        phi, most = before[-4] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1, 2)
         once = brake.moved(before, phi, 0.0, most)
         steps, work, loss = 1000, 0.0, 0.0
         for part in np.linspace(0.0, 1.0, steps + 1)[1:]:
-            at = before[-3] + part * (phi - before[-3]), before[-2] + part * (most - before[-2])
+            at = before[-4] + part * (phi - before[-4]), before[-3:-1] + part * (most - before[-3:-1])
             few = brake.moved(memory, at[0], 0.0, at[1])
-            work += 0.5 * (np.sum(memory[:-3]) + float(few.traction)) * (at[0] - memory[-3])
+            work += 0.5 * (np.sum(memory[:-4]) + float(few.traction)) * (at[0] - memory[-4])
             loss += float(few.loss)
             memory = brake.after(few, *at)
-        stored = [float(np.sum(m[:-3] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]
-        assert once.force == pytest.approx(memory[:-3], abs=ROUND_OFF)
+        stored = [float(np.sum(m[:-4] ** 2 / (2.0 * brake.stiffness))) for m in (before, memory)]
+        assert once.force == pytest.approx(memory[:-4], abs=ROUND_OFF)
         assert float(once.loss) == pytest.approx(loss, rel=1e-9, abs=ROUND_OFF)
         # a corner of a slider's force lies within one of the steps
         assert work == pytest.approx(stored[1] - stored[0] + float(once.loss), abs=8 * 0.1 * 0.08 / steps)
@@ -102,7 +103,7 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
 
 def test_no_path_gives_energy_back_from_heat():
     law, rng = (
-        spring(**DRY, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4),
+        spring(**DRY, load_loss_back=0.4, friction_viscous=1e-4, hysteresis_loss=2e-4, error_2=1e-4),
         np.random.default_rng(5),
     )
     memory, previous = started(law, 0.0, 0.0, 0.0, 0.0), 0.0
@@ -114,10 +115,38 @@ def test_no_path_gives_energy_back_from_heat():
         previous = float(out["E_loss"])
 
 
+@pytest.mark.parametrize("ratio", [100.0, -100.0])
+def test_the_load_costs_its_share_by_who_drives(ratio):
+    """Starting against a load, and being turned by it: both senses of turning, both signs of the ratio."""
+    start, given = 0.02, {"friction_coulomb": 0.02, "load_loss": 0.1, "load_loss_back": 0.3, "d": 0.0}
+    law, T = spring(**given, friction_stribeck=0.0, ratio=ratio), 5.0
+    for sense in (1.0, -1.0):
+        for drives, share in ((True, 0.1), (False, 0.3)):
+            # torque of the spring that turns the wave generator with or against its motion
+            tau = math.copysign(T, ratio) * sense * (-1.0 if drives else 1.0)
+            wound = math.copysign(float(law.curve.inverse(T)), tau)
+            _, memory = law.driven((0.0, 0.0, wound, 0.0), law.rest())
+            far = sense * 40.0 * PRESLIDING
+            out, _ = law.driven((far, 0.0, far / ratio + wound, 0.0), memory)
+            assert float(out["tau_friction"]) == pytest.approx(sense * (start + share * T / 100.0), rel=1e-9)
+
+
+def test_one_share_is_both_unless_another_is_stated():
+    one, both = (spring(**DRY | {"load_loss_back": back}) for back in (-1.0, DRY["load_loss"]))
+    rng, memories = np.random.default_rng(1), [law.rest() for law in (one, both)]
+    for _ in range(50):
+        phi1 = rng.normal(0.0, 0.05)
+        motion = (phi1, rng.normal(0.0, 20.0), phi1 / 100.0 + rng.normal(0.0, 8e-4), rng.normal())
+        found = [law.driven(motion, memory) for law, memory in zip((one, both), memories, strict=True)]
+        memories = [memory for _, memory in found]
+        assert all(float(found[0][0][name]) == float(found[1][0][name]) for name in found[0][0])
+
+
 @pytest.mark.slow  # many steps
 def test_input_work_is_stored_or_lost():
     """All mechanisms but the viscous ones, along a smooth path of both flanges; trapezia of both torques."""
-    law = spring(**DRY, d=0.0, hysteresis_loss=2e-4, lost_motion=1e-4, error_2=1e-4, ratio=-80.0)
+    given = {"load_loss_back": 0.4, "hysteresis_loss": 2e-4, "lost_motion": 1e-4, "error_2": 1e-4}
+    law = spring(**DRY, **given, d=0.0, ratio=-80.0)
     t = np.linspace(0.0, 6.0, 24001)
     phi1, w1 = 0.3 * np.sin(3.0 * t), 0.9 * np.cos(3.0 * t)
     wound = 1.2e-3 * np.sin(7.3 * t)
@@ -139,7 +168,7 @@ def test_input_work_is_stored_or_lost():
 def stored(law, memory, out):
     """Energy [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
     n = law.hysteresis.limit.size
-    parts = ((memory[:n], law.hysteresis.stiffness), (memory[n + 2 : -3], law.friction.stiffness))
+    parts = ((memory[:n], law.hysteresis.stiffness), (memory[n + 2 : -4], law.friction.stiffness))
     sliders = sum(float(np.sum(force**2 / (2.0 * K))) for force, K in parts)
     return float(law.curve.energy(abs(float(out["phi_rel"])))) + sliders
 

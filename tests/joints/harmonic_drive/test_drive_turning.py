@@ -56,7 +56,8 @@ def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
 
 def test_the_error_comes_twice_a_turn_and_takes_no_work(shown: Browser) -> None:
     amplitude = 1.5e-4
-    without = {"friction_coulomb": 0.0, "friction_viscous": 0.0, "load_loss": 0.0, "hysteresis_loss": 0.0}
+    losses = ("friction_coulomb", "friction_viscous", "load_loss", "load_loss_back", "hysteresis_loss")
+    without = dict.fromkeys(losses, 0.0)
     given = without | {"error_2": amplitude}
     found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
     arcmin = math.degrees(1.0) * 60.0

@@ -21,7 +21,7 @@ SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
 LOOP = {"hysteresis_loss": 3e-4}
 ALL = LOOP | {
     "lost_motion": 1e-4, "error_2": 1e-4, "error_2_phase": 0.3, "error_4": 2e-5, "ratio": -80.0,
-    "load_loss": 0.2,
+    "load_loss": 0.2, "load_loss_back": 0.45,
     "friction_coulomb": 0.03, "friction_stribeck": 0.02, "stribeck_speed": 0.3, "friction_viscous": 1e-3,
 }  # fmt: skip
 SETS = pytest.mark.parametrize(
@@ -29,7 +29,7 @@ SETS = pytest.mark.parametrize(
     [(SPRING, LOOP), (COMPLIANCE, LOOP), (SPRING, ALL)],
     ids=["spring", "compliance", "all"],
 )
-MEMORY = SLIDERS + 2 + BRAKES + 3
+MEMORY = SLIDERS + 2 + BRAKES + 4
 TINY = 1e-15
 """Sums of sliders in another order, where what is left is zero: [N.m], [rad], [J]."""
 TURNS = (7e-4, 2e-4, 6e-4, -9e-4, -9e-4, 1e-4, 12e-4, 0.0)

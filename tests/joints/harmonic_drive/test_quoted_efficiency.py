@@ -115,14 +115,15 @@ def test_the_page_has_what_is_published_of_the_drive(tmp_path):
     """Which number set a parameter is told by the parameter's source; estimates of friction are left out."""
     rows = rows_of("RT1-H-17-100")
     roles = {name: row.role for name, row in rows.items()}
-    set_by_it = ("starting_torque", "running_torque", "efficiency", "wind-up at T1, 3.9 N m")
+    turned = ("starting_torque", "running_torque", "efficiency", "back_driving_torque")
+    set_by_it = (*turned, "wind-up at T1, 3.9 N m")
     assert all(roles[name] == SET for name in set_by_it)
-    assert all(roles[name] == PREDICTED for name in ("back_driving_torque", "lost_motion"))
+    assert roles["lost_motion"] == PREDICTED
     assert roles["hysteresis_loss"] == OWN
-    assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-9) for name in set_by_it[:3])
+    assert all(rows[name].computed == pytest.approx(rows[name].published, rel=1e-6) for name in turned)
     assert {"lost_motion", "hysteresis_loss"} == {name for name, row in rows.items() if row.bound}
     measured = rows_of("RT1-H-17-100", starting_torque="0.04", back_driving_torque="5")
-    assert measured["efficiency"].role == measured["starting_torque"].role == PREDICTED
+    assert measured["starting_torque"].role == measured["back_driving_torque"].role == PREDICTED
     assert not {"starting_torque", "efficiency"} & set(rows_of("CSG-17-100"))
     assert beside(SPRING, default("harmonic_drive")) == []
     write_joint_report(tmp_path / "drive.html", replace(made("RT1-H-17-100"), name="Shoulder"))

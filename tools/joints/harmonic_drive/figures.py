@@ -36,8 +36,8 @@ def figures(outcome: Any) -> list[Figure]:
             "By the FMU with the friction of catalogue drives: efficiency over load, with what is published "
             "at rated torque and 2000 rev/min, and the torque at the output that moves a drive without "
             "motor. Starting and running torque fix friction_coulomb and friction_viscous, the efficiency "
-            "load_loss. Of the CSF drives the running torque is an estimate, and the back-driving torque "
-            "fixes load_loss where that is not below 0.",
+            "load_loss, the back-driving torque load_loss_back. Of the CSF drives the running torque is an "
+            "estimate, and the back-driving torque fixes both where that is not below 0.",
             friction(_spring(outcome)),
         ),
     ]

@@ -16,6 +16,7 @@ _SPANS = {
     "friction_stribeck": (0.0, 0.1),
     "friction_viscous": (0.0, 1e-3),
     "load_loss": (0.0, 0.5),
+    "load_loss_back": (-1.0, 0.5),
     "temperature_factor": (0.5, 5.0),
     "phi1": (-0.1, 0.1),
     **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},

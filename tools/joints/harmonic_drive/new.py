@@ -60,11 +60,9 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
                 f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts"
             )
         return {}
-    if {"efficiency", "back_driving_torque"} <= set(stated):
-        raise ValueError("--efficiency and --back-driving-torque both fix load_loss; expected one of them")
-    dropped = {"efficiency"} if "back_driving_torque" in stated else set()
+    dropped: set[str] = set()
     if stated:
-        dropped |= {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
+        dropped = {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
     return friction({name: number for name, number in printed.items() if name not in dropped})
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import limit, viscous
+from jointfmu.joints.harmonic_drive.friction import limits, viscous
 
 from ...catalogue import Printed
 
@@ -15,21 +15,21 @@ QUOTED = ("starting_torque", "running_torque", "back_driving_torque", "efficienc
 SET_BY: Mapping[str, tuple[str, str]] = {
     "starting_torque": ("friction_coulomb", "starting torque of "),
     "running_torque": ("friction_viscous", "rise from starting to running torque "),
-    "back_driving_torque": ("load_loss", "back-driving torque "),
+    "back_driving_torque": ("load_loss_back", "back-driving torque "),
     "efficiency": ("load_loss", "efficiency at rated torque "),
 }
 """{column: parameter that it sets, how the source of that begins then}."""
 
 
 def friction(printed: Mapping[str, Printed]) -> dict[str, Printed]:
-    """friction_coulomb, friction_viscous and load_loss of a drive; nothing without a starting torque.
+    """friction_coulomb, friction_viscous and both load losses of a drive; nothing without a starting torque.
 
     printed : QUOTED, ratio and rated_torque, as far as they are known
 
     The starting torque is the dry friction at rest, and the rise to the running torque at SPEED is viscous.
     load_loss is what the efficiency at rated torque leaves, 1/efficiency - 1 - running torque ratio/rated
-    torque; without an efficiency what the back-driving torque tells, 1 - ratio starting torque/back-driving
-    torque; at least 0.
+    torque, load_loss_back what the back-driving torque tells, 1 - ratio starting torque/back-driving torque;
+    at least 0. Where one of the two is known it stands for both.
     """
     if "starting_torque" not in printed:
         return {}
@@ -42,7 +42,7 @@ def friction(printed: Mapping[str, Printed]) -> dict[str, Printed]:
     if (output := printed.get("efficiency")) is not None:
         loss = 1.0 / output.value - 1.0 - (running or start).value * ratio / rated
         values["efficiency"] = (loss, f"{output.value:g}, less the running torque; ")
-    elif (back := printed.get("back_driving_torque")) is not None:
+    if (back := printed.get("back_driving_torque")) is not None:
         loss = 1.0 - ratio * start.value / back.value
         values["back_driving_torque"] = (loss, f"{back.value:g} N.m over ratio times starting torque; ")
     found = {}
@@ -50,11 +50,14 @@ def friction(printed: Mapping[str, Printed]) -> dict[str, Printed]:
         (parameter, beginning), number = SET_BY[column], printed[column]
         kind = "derived" if text and number.kind != "estimate" else number.kind
         found[parameter] = Printed(max(value, 0.0), kind, beginning + text + number.source)
+    if "load_loss_back" in found and "load_loss" not in found:
+        found["load_loss"] = found["load_loss_back"]
     return found
 
 
 def efficiency(drive: Drive) -> float:
     """Output power over motor power [1] of a drive at rated torque and SPEED, without hysteresis."""
     carried = drive.rated_torque / abs(drive.ratio)
-    braked = limit(drive, SPEED, drive.rated_torque) + viscous(drive, SPEED)
+    against = -math.copysign(drive.rated_torque, drive.ratio)
+    braked = limits(drive, SPEED, against)[0] + viscous(drive, SPEED)
     return float(carried / (carried + braked))

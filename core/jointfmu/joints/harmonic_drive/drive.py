@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...quantity import Interval, Limit, Number, check, check_limits, quantity
+from ...quantity import Interval, Limit, Number, check, check_limits, quantity, where
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +42,9 @@ class Drive(ABC):
     )
     load_loss: float = quantity(
         "1", "dry friction at the wave generator over the torque transmitted to it", ge=0.0, default=0.0
+    )
+    load_loss_back: float = quantity(
+        "1", "the same where the load drives the motor; negative: as load_loss", default=-1.0
     )
     presliding: float = quantity(
         "rad",
@@ -85,6 +88,11 @@ class Drive(ABC):
     @abstractmethod
     def pressure(self, torque: Number) -> Number:
         """Peak pressure (...) [Pa] of the contact pair at a torque; 0 of a law without a pair."""
+
+    @property
+    def loss_back(self) -> Number:
+        """load_loss_back [1], or load_loss where that is negative."""
+        return where(self.load_loss_back < 0.0, self.load_loss, self.load_loss_back)
 
     @property
     def pair_units(self) -> Number:

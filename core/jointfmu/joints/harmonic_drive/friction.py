@@ -3,15 +3,20 @@ r"""Friction at the wave generator of a harmonic drive: sliders between it and t
 Dry friction holds up to a limit that speed lowers and load raises,
 
     M = temperature_factor [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2)
-                            + load_loss |tau/ratio|],
+                            + loss |tau/ratio|],
 
-and builds up over the angle phi1: sliders in parallel, spring and friction each, of which every one takes its
-share of M. From rest it is M (1 - exp(-phi1/presliding)) (Dahl 1968) at a steady limit, as far as so few
-sliders follow it; after a reversal by Masing's rule. The springs stay while the limit changes. So a drive at
-rest holds any torque below M where it is, without a threshold of speed, and the work of every path is what
-the springs store and what is lost. Grease adds temperature_factor friction_viscous w1.
+where loss is load_loss if the friction, and so a slip, is against the load (the motor drives), and
+load_loss_back if it holds the load (the load drives the motor). So the limit has two sides, that of positive
+and that of negative friction, and a slider may not leave what lies between.
+
+Friction builds up over the angle phi1: sliders in parallel, spring and friction each, of which every one
+takes its share of M. From rest it is M (1 - exp(-phi1/presliding)) (Dahl 1968) at a steady limit, as far as
+so few sliders follow it; after a reversal by Masing's rule. The springs stay while the limit changes. So a
+drive at rest holds any torque below M where it is, without a threshold of speed, and the work of every path
+is what the springs store and what is lost. Grease adds temperature_factor friction_viscous w1.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,14 +40,22 @@ TURNED = 0.1
 """Time [s] for which a drive that turns at initialization has turned before."""
 
 
-def limit(drive: Drive, w1: Number, tau: Number) -> Number:
-    """M (...) [N.m] at speeds (...) [rad/s] of the wave generator and torques (...) [N.m] at the output.
+def limits(drive: Drive, w1: Number, tau: Number) -> tuple[Number, Number]:
+    """M (...) [N.m] of positive and of negative friction, at speeds (...) [rad/s] of the wave generator and
+    torques (...) [N.m] at the output.
 
-    |tau| is tau tanh(tau/t) with t WIDTH times the rated torque, smooth through zero.
+    |tau| is tau tanh(tau/t) with t WIDTH times the rated torque, and the load counts as driving the motor by
+    (1 + tanh)/2: smooth through zero. tau/ratio is what the load turns the wave generator with.
     """
-    size = tau * np.tanh(tau / (WIDTH * drive.rated_torque)) / np.abs(drive.ratio)
+    turned = np.tanh(tau / (WIDTH * drive.rated_torque))
+    size = tau * turned / np.abs(drive.ratio)
     stribeck = drive.friction_stribeck * np.exp(-((w1 / drive.stribeck_speed) ** 2))
-    return drive.temperature_factor * (drive.friction_coulomb + stribeck + drive.load_loss * size)
+    more = drive.loss_back - drive.load_loss
+    back = 0.5 * (1.0 + turned * drive.ratio / np.abs(drive.ratio))
+    sides = (drive.load_loss + more * part for part in (back, 1.0 - back))
+    held = drive.friction_coulomb + stribeck
+    positive, negative = (drive.temperature_factor * (held + loss * size) for loss in sides)
+    return positive, negative
 
 
 def viscous(drive: Drive, w1: Number) -> Number:
@@ -52,7 +65,7 @@ def viscous(drive: Drive, w1: Number) -> Number:
 
 def stiffness(drive: Drive) -> Number:
     """[N.m/rad] of the sliders while all of them stick: M at rest and rated torque over presliding."""
-    return limit(drive, 0.0, drive.rated_torque) / drive.presliding
+    return np.maximum(*limits(drive, 0.0, drive.rated_torque)) / drive.presliding
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,26 +78,34 @@ class Friction(Sliders):
         return cls(float(stiffness(drive)) * SPRINGS)
 
     def rest(self) -> Array:
-        """Memory (n + 3) before anything moved: forces [N.m], phi1 [rad], limit [N.m], 1 once begun."""
-        return np.zeros(self.stiffness.size + 3)
+        """Memory (n + 4) before anything moved: forces [N.m], phi1 [rad], limits [N.m], 1 once begun."""
+        return np.zeros(self.stiffness.size + 4)
 
-    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: ArrayLike) -> Moved:
-        """The sliders on the straight path from a memory (..., n + 3) to angles (...) [rad] and limits [N.m].
+    def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: Sequence[ArrayLike]) -> Moved:
+        """The sliders on the straight path from a memory (..., n + 4) to angles (...) [rad] with `limits`.
+
+        Each is held by the limit on the side of the force that it would have if it stuck.
 
         The first path of all leads to where the drive is, whatever the angle: it has turned before for as
         long as TURNED at its speed w1, and lost nothing yet.
         """
-        begun, now = memory[..., -1] > 0.0, np.asarray(most, dtype=np.float64)
+        begun, now = memory[..., -1] > 0.0, np.stack(np.broadcast_arrays(*most), axis=-1)
         if not self.acts:
-            none = np.zeros(now.shape)
-            return Moved(np.zeros((*now.shape, self.stiffness.size)), none, none)
-        way = np.where(begun, np.asarray(phi1) - memory[..., -3], TURNED * np.asarray(w1))
-        moved = self.along(memory[..., :-3], way, memory[..., -2, None] * LIMITS, now[..., None] * LIMITS)
+            none = np.zeros(now.shape[:-1])
+            return Moved(np.zeros((*none.shape, self.stiffness.size)), none, none)
+        way = np.where(begun, np.asarray(phi1) - memory[..., -4], TURNED * np.asarray(w1))
+        force = memory[..., :-4]
+        negative = force + self.stiffness * way[..., None] < 0.0
+        before, after = (
+            np.where(negative, ends[..., 1, None], ends[..., 0, None]) * LIMITS
+            for ends in (memory[..., -3:-1], now)
+        )
+        moved = self.along(force, way, before, after)
         return replace(moved, loss=np.where(begun, moved.loss, 0.0))
 
-    def after(self, braked: Moved, phi1: ArrayLike, most: ArrayLike) -> Array:
-        """The memory (..., n + 3) there; none where nothing acts."""
+    def after(self, braked: Moved, phi1: ArrayLike, most: Sequence[ArrayLike]) -> Array:
+        """The memory (..., n + 4) there; none where nothing acts."""
         if not self.acts:
-            return np.zeros((*braked.loss.shape, self.stiffness.size + 3))
-        ends = np.broadcast_arrays(phi1, most, 1.0)
+            return np.zeros((*braked.loss.shape, self.stiffness.size + 4))
+        ends = np.broadcast_arrays(phi1, *most, 1.0)
         return np.concatenate([braked.force, np.stack(ends, axis=-1)], axis=-1)

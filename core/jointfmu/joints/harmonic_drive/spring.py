@@ -10,7 +10,7 @@ from ...mechanics.curve import Curve, assemble, refined
 from ...mechanics.jenkins import Moved
 from ...quantity import Number, check_limits
 from .drive import Drive
-from .friction import Friction, limit, viscous
+from .friction import Friction, limits, viscous
 from .given import Given
 from .hysteresis import Hysteresis
 from .kinematic_error import kinematic_error
@@ -101,7 +101,7 @@ class HarmonicDriveSpring:
         slid, loss, new = self._slid(phi, wound)
         load = np.copysign(load, phi)
         state = State(phi, load, stiffness, slid.traction, error, slope)
-        most = limit(self.joint, motion[1], transmitted(self.joint, motion, state))
+        most = limits(self.joint, motion[1], transmitted(self.joint, motion, state))
         braked = self.friction.moved(brakes, motion[0], motion[1], most)
         new[..., -1] += braked.loss
         after = self.friction.after(braked, motion[0], most)

@@ -9,6 +9,7 @@ record CD_14_100_of_Hu_2023 "CD-14-100 of Hu 2023"
     final stribeck_speed=10,
     final friction_viscous=0,
     final load_loss=0,
+    final load_loss_back=-1,
     final presliding=0.01,
     final temperature_factor=1,
     final error_1=0,

@@ -12,6 +12,7 @@ record HarmonicDrive "A harmonic drive"
   parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small)=10 "speed of the wave generator that leaves 1/e of friction_stribeck";
   parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0)=0 "friction at the wave generator over its speed";
   parameter Real load_loss(min=0, unit="1")=0 "dry friction at the wave generator over the torque transmitted to it";
+  parameter Real load_loss_back(unit="1")=-1 "the same where the load drives the motor; negative: as load_loss";
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small)=0.01 "angle of the wave generator over which dry friction builds up to 1 - 1/e";
   parameter Real temperature_factor(min=0, unit="1")=1 "friction over that of the reference temperature";
   parameter Modelica.Units.SI.Angle error_1=0 "kinematic error at the output, amplitude, one period per turn of the wave generator";

@@ -24,6 +24,7 @@ _OWN = (
     "stribeck_speed",
     "friction_viscous",
     "load_loss",
+    "load_loss_back",
     "presliding",
     "temperature_factor",
     *(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")),

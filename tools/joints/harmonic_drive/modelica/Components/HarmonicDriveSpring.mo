@@ -18,6 +18,8 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Real load_loss(min=0, unit="1") = data.load_loss "<< meta.load_loss >>"
     annotation (Dialog(tab="Friction"));
+  parameter Real load_loss_back(unit="1") = data.load_loss_back "<< meta.load_loss_back >>"
+    annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "<< meta.presliding >>"
     annotation (Dialog(tab="Friction"));
   parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "<< meta.temperature_factor >>"
@@ -68,9 +70,12 @@ protected
   Real rate_h[n](each unit="N.m/s") "Their rates";
   Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
   parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
-  parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + load_loss*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
+  parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Share of the load where it drives the motor";
+  parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + max(load_loss, loss_back)*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
   parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
-  Modelica.Units.SI.Torque M_w "Limit of dry friction at the wave generator";
+  Real back(unit="1") "How far positive friction holds the load, 0 to 1";
+  Modelica.Units.SI.Torque M_p "Limit of positive dry friction at the wave generator";
+  Modelica.Units.SI.Torque M_n "Limit of negative dry friction at the wave generator";
   Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
   Modelica.Units.SI.Torque held_w[m] "What of it friction holds";
   Real rate_w[m](each unit="N.m/s") "Their rates";
@@ -82,7 +87,7 @@ initial equation
     q_h[i] = if use_damping then min(max(K_h[i]*phi_rel, -M_h[i]), M_h[i]) else 0;
   end for;
   for i in 1:m loop
-    q_w[i] = min(max(turned*K_w[i]*w1, -M_w*brakes[i, 2]), M_w*brakes[i, 2]);
+    q_w[i] = min(max(turned*K_w[i]*w1, -M_n*brakes[i, 2]), M_p*brakes[i, 2]);
   end for;
 equation
   assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
@@ -106,9 +111,11 @@ equation
     heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
   tau_h = sum(held_h);
-  M_w = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + load_loss*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  back = 0.5*(1 + tanh(tau/(width*data.rated_torque))*ratio/abs(ratio));
+  M_p = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  M_n = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
   for i in 1:m loop
-    held_w[i] = noEvent(min(max(q_w[i], -M_w*brakes[i, 2]), M_w*brakes[i, 2]));
+    held_w[i] = noEvent(min(max(q_w[i], -M_n*brakes[i, 2]), M_p*brakes[i, 2]));
     rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
     der(q_w[i]) = rate_w[i];
     heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);

@@ -12,6 +12,7 @@ record HarmonicDrive "A harmonic drive"
   parameter Modelica.Units.SI.AngularVelocity stribeck_speed(min=Modelica.Constants.small)=10 "<< meta.stribeck_speed >>";
   parameter Modelica.Units.SI.RotationalDampingConstant friction_viscous(min=0)=0 "<< meta.friction_viscous >>";
   parameter Real load_loss(min=0, unit="1")=0 "<< meta.load_loss >>";
+  parameter Real load_loss_back(unit="1")=-1 "<< meta.load_loss_back >>";
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small)=0.01 "<< meta.presliding >>";
   parameter Real temperature_factor(min=0, unit="1")=1 "<< meta.temperature_factor >>";
   parameter Modelica.Units.SI.Angle error_1=0 "<< meta.error_1 >>";
