@@ -13,6 +13,7 @@ from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
+from . import checksum
 from .series import Series, parse
 
 NAME = "org.fmi-standard.fmi-ls-ref"
@@ -107,12 +108,23 @@ class Related:
             raise ValueError(f"{self.fmu}: {MANIFEST} is of {found!r}, expected {NAME!r}")
         read = []
         for related in root.iter("Related"):
+            self._unchanged(related)
             role, _, purpose = related.get("role", "").partition("/")
             if role == "experiment":
                 read += self._experiments(related, purpose or PURPOSES[0])
         if not read:
             raise ValueError(f"{self.fmu}: {MANIFEST} names no experiment; expected one at least")
         return read
+
+    def _unchanged(self, related: Element) -> None:
+        """Compare a related file of the layered standard's folder with its checksum, if one is stated."""
+        source = related.get("source", "")
+        if urlsplit(source).scheme or (path := self._path(MANIFEST, source)) not in self.members:
+            return
+        try:
+            checksum.check(related, self.members[path])
+        except ValueError as error:
+            raise ValueError(f"{self.fmu}: {path} {error}") from None
 
     def _experiments(self, related: Element, purpose: str) -> list[Experiment]:
         """The experiments of a file; one as its name if it cannot be read here."""

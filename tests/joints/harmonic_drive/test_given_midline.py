@@ -59,7 +59,7 @@ def test_every_row_keeps_its_angles(row):
     K = {
         n: float(row[k]) for n, k in (("K1", "K1_Nm_per_rad"), ("K2", "K2"), ("T1", "T1_Nm"), ("T2", "T2_Nm"))
     }
-    K["K3"] = float(row["K3"] or row["K2"])
+    K["K3"] = catalogue.find(name_of(row)).numbers["K3"].value
     d = named(name_of(row)).values
     spring = HarmonicDriveSpring.of(d)
     for T in (d.T1, d.T2, d.rated_torque, d.max_torque, -d.rated_torque):

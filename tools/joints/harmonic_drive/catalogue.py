@@ -36,6 +36,8 @@ COLUMNS = (
 )
 RATIOS = ("80", "100", "120", "160")
 """What a row for ratio 80 and more stands for, where any series has a torque at that size."""
+ACTUATORS = ("CHA", "FHA", "RSF")
+"""Drives with a motor, whose torques are not those of the gear alone."""
 STRONG = ("CSG", "SHG")
 """Series of higher torque, by STRONGER."""
 STRONGER = 1.3
@@ -89,7 +91,7 @@ def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
     printed = {name: row[column] for name, column in _STIFFNESS.items()}
     lines = {name: Printed(float(text), "catalogue", source) for name, text in printed.items() if text}
     if "K3" not in lines:
-        lines["K3"] = Printed(lines["K2"].value, "estimate", f"not printed; K2 of {source}")
+        lines["K3"] = _last_line(row, source)
     for series in group.split("/"):
         own = series if group == series else f"{series}-{row['size']}"
         for ratio in ratios:
@@ -98,9 +100,20 @@ def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
                 "ratio": Printed(float(ratio), "catalogue", f"{name}: {source}"),
                 **lines,
                 **_torque(torques, series, row["size"], ratio),
-                **_limits(row["size"], float(ratio)),
+                **_limits(series, row["size"], float(ratio)),
             }
             yield Item(name, numbers)
+
+
+def _last_line(row: Mapping[str, str], source: str) -> Printed:
+    """K3 where it is not printed: of a drive with the same lines below T2, else K2."""
+    known = [heading for column, heading in _STIFFNESS.items() if column != "K3"]
+    for other in _table("stiffness"):
+        if other["K3"] and all(float(other[h]) == float(row[h]) for h in known):
+            what = f"{other['series']}, size {other['size']}, ratio {other['ratio']}"
+            text = f"not in the source; that of {what}, of the same T1, T2, K1 and K2 ({other['source']})"
+            return Printed(float(other["K3"]), "estimate", text)
+    return Printed(float(row["K2"]), "estimate", f"not in the source; K2 of {source}")
 
 
 _STIFFNESS = {"K1": "K1_Nm_per_rad", "K2": "K2", "K3": "K3", "T1": "T1_Nm", "T2": "T2_Nm"}
@@ -123,7 +136,7 @@ _SINGLE = {
 
 def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, Printed]:
     """Rated and repeated peak torque of a drive: as printed, else of a series alike; none if none has it."""
-    if series.startswith("RSF"):
+    if series.startswith(ACTUATORS):
         return {}
     for other in (series, *ALIKE):
         if row := torques.get((other, size, ratio)):
@@ -140,7 +153,7 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
     return {}
 
 
-def _limits(size: str, ratio: float) -> dict[str, Printed]:
+def _limits(drive: str, size: str, ratio: float) -> dict[str, Printed]:
     """Upper limits of hysteresis and lost motion: of actuators with the same stiffness, else of them all."""
     step = "30" if ratio < 50.0 else "50" if ratio == 50.0 else "50+"
     rows = [row for row in _table("accuracy") if row["ratio"] == step]
@@ -148,11 +161,15 @@ def _limits(size: str, ratio: float) -> dict[str, Printed]:
     found = {}
     for column, head in _LIMITS.items():
         row = max(alike or rows, key=lambda row: float(row[head]))
-        text = f"limit for the actuators {row['series']}-{row['size']}A, whose stiffness is the same"
+        actuator = f"{row['series']}-{row['size']}A"
+        kind = "catalogue" if drive == actuator else "estimate"
+        text = f"limit for the actuators {actuator}"
+        if drive != actuator:
+            text += ", whose stiffness is the same"
         if not alike:
             text = f"limit for all actuators {row['series']}, none of which has this size"
         value = float(row[head]) * factor("arcmin", "rad")
-        found[column] = Printed(value, "estimate", f"{text} ({row['source']})", bound=True)
+        found[column] = Printed(value, kind, f"{text} ({row['source']})", bound=True)
     return found
 
 

@@ -96,7 +96,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
         peak = Printed(PEAK * rated, "estimate", f"{PEAK:g} times rated_torque")
     printed["max_torque"] = peak
     facts = {}
-    if "hysteresis_loss" in printed and printed["hysteresis_loss"].kind == "estimate":
+    if "hysteresis_loss" in printed and printed["hysteresis_loss"].bound:
         bound = printed["hysteresis_loss"]
         text = f"{_short(bound)}; off unless --hysteresis is stated"
         facts["hysteresis_bound"] = (bound.value, "rad", text)

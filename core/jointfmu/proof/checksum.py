@@ -1,0 +1,26 @@
+"""Checksums of related files: the attributes `checksum` and `checksumType` of FMI-LS-REF."""
+
+import hashlib
+from xml.etree.ElementTree import Element
+
+DEFAULT = "SHA3-256"
+ALGORITHMS = {
+    f"{family}-{bits}": f"{name}{bits}"
+    for family, name in (("SHA3", "sha3_"), ("SHA", "sha"))
+    for bits in (224, 256, 384, 512)
+}
+"""{checksumType: its name in hashlib}."""
+
+
+def check(related: Element, content: bytes) -> None:
+    """Compare a file with the checksum that the manifest states of it, if it does.
+
+    Raises ValueError where they differ, or the algorithm is none of ALGORITHMS.
+    """
+    if (stated := related.get("checksum")) is None:
+        return
+    kind = related.get("checksumType", DEFAULT)
+    if kind not in ALGORITHMS:
+        raise ValueError(f"has checksumType = {kind!r}, allowed are {', '.join(ALGORITHMS)}")
+    if (found := hashlib.new(ALGORITHMS[kind], content).hexdigest()) != stated.strip().lower():
+        raise ValueError(f"is not the file of the manifest: its {kind} is {found}, stated is {stated}")
