@@ -1,5 +1,6 @@
 """What describes a native FMU: XML of FMI 2.0 and 3.0, terminals, icons and the page."""
 
+import csv
 import io
 import json
 import os
@@ -679,6 +680,18 @@ def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> N
             "/NaN|Infinity/.test([...document.querySelectorAll('svg.plot')].map((s) => s.innerHTML))"
         )
         assert shown.run("document.documentElement.scrollWidth") <= 390
+        header, *rows = csv.reader(io.StringIO(shown.run("charts[0][0].csv()")))
+        panel = json.loads(found[0])[0]
+        assert header[0] == "series"
+        saved = [(s["name"], x, y) for s in panel["series"] for x, y in zip(s["x"], s["y"], strict=True)]
+        assert [(label, float(x), float(y)) for label, x, y in rows] == saved
+        picture = shown.run(
+            "charts[0][0].png().then((blob) => blob.arrayBuffer()).then((b) => [...new Uint8Array(b)])"
+        )
+    colours = Image.open(io.BytesIO(bytes(picture))).convert("RGB").getcolors(1 << 24)
+    assert colours is not None
+    assert max(colours)[1] == (255, 255, 255)  # paper
+    assert (31, 95, 168) in [colour for _, colour in colours]  # the first line's blue
 
 
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:
