@@ -13,7 +13,7 @@ FRAME = Path(__file__).with_name("native")
 
 
 def template(path: Path, *shared: Path) -> jinja2.Template:
-    """A template; what it prints is escaped, an unknown name is an error.
+    """A template; what it prints is escaped, an unknown name is an error; `number` prints a value.
 
     shared : folders of templates that it extends or imports, beside its own
     """
@@ -24,7 +24,15 @@ def template(path: Path, *shared: Path) -> jinja2.Template:
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.globals["number"] = _number
     return environment.get_template(path.name)
+
+
+def _number(value: float | str) -> str:
+    """A value as all pages print it: six digits."""
+    if isinstance(value, bool | str):
+        return str(value).lower() if isinstance(value, bool) else value
+    return f"{value:.6g}"
 
 
 def law_terms(parameters: ParameterFile) -> dict[str, Any]:

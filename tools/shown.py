@@ -16,8 +16,3 @@ def shown_unit(unit: str, typical: float) -> str:
 def spelled(unit: str) -> str:
     """A unit as it is read: N m, µm; nothing for 1."""
     return "" if unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", unit.replace(".", " "))
-
-
-def spelled_label(label: str) -> str:
-    """An axis label with its unit in brackets spelled so."""
-    return re.sub(r"\[([^\]]*)\]", lambda match: f"[{spelled(match[1])}]", label)

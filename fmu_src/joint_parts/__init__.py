@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from . import chart
 from .data import DataPart
 from .page import Panel
-from .plot import Plot
 from .terminals import Terminal
 
 if TYPE_CHECKING:
     from .native import NativePart
 
-Drawing = Callable[..., Sequence[Plot]]
-"""(spring, end of the ramp) -> plots in a row."""
+Drawing = Callable[..., Sequence[chart.Panel]]
+"""(spring, end of the ramp) -> panels side by side."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,8 +28,8 @@ class Parts:
     native    : gives how it becomes C; called only then, as it needs CasADi. None: the native flavours refuse
     data      : which of its parameters are data
     terminals : flanges; none: signals are connected one by one
-    panels    : of the page's plot; none: the first output over the ramped input
-    drawings  : {name: further plots} of the page
+    panels    : of the page's charts of the ramp; none: the first output over the ramped input
+    drawings  : {name: further charts} of the page
     """
 
     folder: Path

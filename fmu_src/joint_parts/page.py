@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Panel(NamedTuple):
-    """One panel of the plot of the ramp: quantities of one unit over an input or output."""
+    """One chart of the ramp: quantities of one unit over an input or output."""
 
     over: str
     quantities: tuple[str, ...]

@@ -10,13 +10,12 @@ from jinja2 import Template
 from jointfmu import __version__
 from jointfmu.joints.model import Model, Spring
 from jointfmu.parameters import ParameterFile
-from jointfmu.plots import BLUE, GREEN, RED
 from jointfmu.quantity import flat_fields, problem
 from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
+from ..joint_parts import chart
 from ..joint_parts.page import Panel
-from ..joint_parts.plot import Plot, svg
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
@@ -81,6 +80,8 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         messages=_messages(model, spring, rest),
         figure=_figure(model, spring, rest),
         drawings=drawings(model, spring),
+        style=chart.style(),
+        script=chart.script("figures"),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
     )
 
@@ -147,7 +148,7 @@ def evaluated(model: Model, spring: Spring, inputs: Mapping[str, float]) -> dict
 
 
 def panels(model: Model) -> tuple[Panel, ...]:
-    """What the plot shows; of a joint that does not say it, the first output over the driven input."""
+    """What is drawn of the ramp; of a joint that does not say it, the first output over the driven input."""
     own = parts_of(model).panels.get(model.name)
     return own or (Panel(model.ramp.input, (model.outputs[0].name,)),)
 
@@ -163,17 +164,16 @@ def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:
         factor = UNITS[variables[name].unit].display[shown]
         return [factor * row[name] for row in rows]
 
-    plots = []
+    charts = []
     for over, names in panels(model):
         x, y = (display_unit(variables[n].unit, variables[n].nominal) for n in (over, names[0]))
-        plot = Plot(f"{over} [{x}]", f"{', '.join(names)} [{y}]")
-        for name, color in zip(names, (BLUE, RED, GREEN), strict=False):
-            plot.add(column(over, x), column(name, y), color, name)
-        plots.append(plot)
-    return svg(plots)
+        lines = [chart.Series(name, column(over, x), column(name, y)) for name in names]
+        shown = ", ".join(names)
+        charts.append(chart.Panel(f"{shown} over {over}", f"{over} [{x}]", f"{shown} [{y}]", lines))
+    return chart.element(charts)
 
 
 def drawings(model: Model, spring: Spring) -> dict[str, str]:
-    """Further ones, as SVG by name."""
+    """Further ones, as elements of the page by name."""
     named = parts_of(model).drawings.get(model.name, {})
-    return {name: svg(plots(spring, model.ramp.end)) for name, plots in named.items()}
+    return {name: chart.element(panels(spring, model.ramp.end)) for name, panels in named.items()}

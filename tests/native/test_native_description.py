@@ -1,7 +1,10 @@
 """What describes a native FMU: XML of FMI 2.0 and 3.0, terminals, icons and the page."""
 
+import csv
 import io
+import json
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -14,6 +17,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from browser import PROGRAM, browser
 from fmpy.model_description import read_build_description
 from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES
@@ -650,14 +654,44 @@ def test_the_page_draws_the_ramp_of_its_own_parameters() -> None:
     usual, other = pages(model.name)["index.html"].decode(), documentation(model, file)["index.html"].decode()
 
     def figure(text: str) -> str:
-        return text[text.index("<svg") : text.index("</svg>") + 6]
+        return re.findall(r'<script type="application/json">(.*?)</script>', text)[0]
 
-    etree.fromstring(figure(usual))
-    for axis in ("f [kN]", "s_rel [um]", "K_N [N/um]"):
-        assert axis in figure(usual)
+    axes = [(panel["x"], panel["y"]) for panel in json.loads(figure(usual))]
+    assert axes == [("f [kN]", "s_rel [um]"), ("f [kN]", "K_N [N/um]")]
     assert figure(other) != figure(usual)
     assert next(r[:4] for r in Page(other).rows if r[0] == "lambda") == ["lambda", "0.5", "1", "(0, 1]"]
     assert "my own" in other
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+def test_a_browser_draws_every_chart_of_the_page(tmp_path: Path, name: str) -> None:
+    """As many lines as the page has series, no number missing, on a phone's width too."""
+    text = pages(name)["index.html"].decode()
+    found = re.findall(r'<script type="application/json">(.*?)</script>', text)
+    lines = [len(panel["series"]) for panels in found for panel in json.loads(panels)]
+    (tmp_path / "index.html").write_text(text, encoding="utf-8")
+    with browser() as shown:
+        shown.shape(390, 800, phone=True)
+        shown.open(tmp_path / "index.html")
+        drawn = "[...document.querySelectorAll('svg.plot')].map((s) => s.querySelectorAll('svg path').length)"
+        assert shown.run(drawn) == lines
+        assert not shown.run(
+            "/NaN|Infinity/.test([...document.querySelectorAll('svg.plot')].map((s) => s.innerHTML))"
+        )
+        assert shown.run("document.documentElement.scrollWidth") <= 390
+        header, *rows = csv.reader(io.StringIO(shown.run("charts[0][0].csv()")))
+        panel = json.loads(found[0])[0]
+        assert header[0] == "series"
+        saved = [(s["name"], x, y) for s in panel["series"] for x, y in zip(s["x"], s["y"], strict=True)]
+        assert [(label, float(x), float(y)) for label, x, y in rows] == saved
+        picture = shown.run(
+            "charts[0][0].png().then((blob) => blob.arrayBuffer()).then((b) => [...new Uint8Array(b)])"
+        )
+    colours = Image.open(io.BytesIO(bytes(picture))).convert("RGB").getcolors(1 << 24)
+    assert colours is not None
+    assert max(colours)[1] == (255, 255, 255)  # paper
+    assert (31, 95, 168) in [colour for _, colour in colours]  # the first line's blue
 
 
 def test_a_joint_may_say_nothing_of_flanges_and_plot() -> None:

@@ -9,6 +9,7 @@ import struct
 from base64 import b64encode
 from pathlib import Path
 
+from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
@@ -20,10 +21,10 @@ from .modules import compiled, modules
 
 _FOLDER = Path(__file__).with_name("web")
 _SCRIPTS = (
-    *("engine", "text", "chart", "sight", "controls"),
+    *("engine", "sight", "controls"),
     *("curves", "path", "turn", "contact", "body", "files", "main"),
 )
-"""Files of the page, in the order in which they are run."""
+"""Files of the page, in the order in which they are run, after the charts."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),
     "m": ("m", "mm", "um", "nm"),
@@ -55,12 +56,12 @@ def page() -> str:
     content = gzip.compress(b"".join([struct.pack("<I", len(text)), text, *binaries]), 9, mtime=0)
     return template(_FOLDER / "page.html").render(
         version=__version__,
-        style=web_file("style.css"),
-        script="\n".join(web_file(f"{name}.js") for name in _SCRIPTS),
+        style=chart.style() + web_file("style.css"),
+        script=chart.script() + "\n".join(web_file(f"{name}.js") for name in _SCRIPTS),
         content=b64encode(content).decode(),
     )
 
 
 def web_file(name: str) -> str:
-    """A file of the page as text; the report takes its charts from here."""
+    """A file of the page as text; the report takes the style from here."""
     return (_FOLDER / name).read_text(encoding="utf-8")

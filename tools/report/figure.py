@@ -1,42 +1,17 @@
 """A figure of the report; `figures(outcome)` in the file of a joint returns a list of them."""
 
-import json
 from collections.abc import Sequence
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
-import numpy as np
+from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 from matplotlib.figure import Figure as Canvas
-from numpy.typing import NDArray
 
 from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.published.reference import PROVES_NOTHING, ROLES, Point
 
-from ..shown import spelled_label
+__all__ = ["Figure", "Panel", "Series", "drawn", "published"]
 
-Values: TypeAlias = Sequence[float] | NDArray[np.float64]
-_DIGITS = 7
-"""Of the numbers of a curve: more than a screen shows."""
 _COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
-
-
-class Series(NamedTuple):
-    """A line, or marks, full or empty; `titles` names each mark."""
-
-    name: str
-    x: Values
-    y: Values
-    marks: str = ""
-    dashed: bool = False
-    titles: Sequence[str] = ()
-
-
-class Panel(NamedTuple):
-    """One pair of axes: title, their labels, what is drawn."""
-
-    title: str
-    x: str
-    y: str
-    series: Sequence[Series]
 
 
 class Figure(NamedTuple):
@@ -77,24 +52,3 @@ def drawn(canvas: Canvas, panels: Sequence[Panel]) -> None:
         axes.set_ylabel(panel.y)
         if len(panel.series) > 1:
             axes.legend(fontsize=8)
-
-
-def as_json(figure: Figure) -> str:
-    """The panels as JSON, for the page's charts."""
-
-    def numbers(values: Any) -> list[float]:
-        return [float(f"{x:.{_DIGITS}g}") for x in np.asarray(values, dtype=np.float64).tolist()]
-
-    panels = [
-        {
-            "title": panel.title,
-            "x": spelled_label(panel.x),
-            "y": spelled_label(panel.y),
-            "series": [
-                s._asdict() | {"x": numbers(s.x), "y": numbers(s.y), "titles": list(s.titles) or None}
-                for s in panel.series
-            ],
-        }
-        for panel in figure.panels
-    ]
-    return json.dumps(panels, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")

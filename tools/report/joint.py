@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.folders import asset
+from jointfmu_fmu_src.joint_parts.chart import as_json
 from jointfmu_fmu_src.native.page import drawings, panels
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
@@ -23,7 +24,7 @@ from ..pressing import judge_file
 from ..shown import shown_unit, spelled
 from .beside import Beside
 from .course import Course, kinds_of
-from .figure import Figure, Panel, Series, as_json
+from .figure import Figure, Panel, Series
 from .looks import script, style
 
 MEANT = {
@@ -84,19 +85,17 @@ def _page(model: Model, file: ParameterFile) -> str:
         **law_terms(file),
         file=file,
         version=__version__,
-        figures=[(figure, as_json(figure)) for figure in figures],
+        figures=[(figure, as_json(figure.panels)) for figure in figures],
         loops=_loop_rows(loops) if loops else [],
         beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
-        drawings={
-            name: f'<div class="wide">{svg}</div>' for name, svg in drawings(model, course.spring).items()
-        },
+        drawings=drawings(model, course.spring),
         rows=rows,
         origins=[(kind, MEANT[kind], [r.name for r in rows if r.kind == kind]) for kind in ORIGINS],
         judgement=judge_file(file),
         range=_range(course),
         topics=TOPICS,
         style=style(),
-        script=script("figures.js") + "drawAll();",
+        script=script() + "drawAll();",
     )
 
 

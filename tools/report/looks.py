@@ -1,18 +1,20 @@
-"""Style and scripts of the pages of this folder, which take their charts from the laboratory."""
+"""Style and scripts of the pages of this folder."""
 
 from pathlib import Path
+
+from jointfmu_fmu_src.joint_parts import chart
 
 from ..laboratory import web_file
 
 
 def style() -> str:
     """The style sheet."""
-    return web_file("style.css") + _own("report.css")
+    return chart.style() + web_file("style.css") + _own("report.css")
 
 
 def script(*names: str) -> str:
-    """The charts, and scripts of this folder that use them."""
-    return web_file("text.js") + web_file("chart.js") + "".join(map(_own, names))
+    """The charts of the figures, and scripts of this folder that use them."""
+    return chart.script("figures") + "".join(map(_own, names))
 
 
 def _own(name: str) -> str:

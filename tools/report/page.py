@@ -4,6 +4,7 @@ import platform
 from pathlib import Path
 from typing import Any
 
+from jointfmu_fmu_src.joint_parts.chart import as_json
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
@@ -16,7 +17,6 @@ from jointfmu.published.validation import shown_claim, shown_error, shown_tolera
 
 from ..joint_parts import part
 from ..systems.system import systems
-from .figure import as_json
 from .looks import script, style
 from .motion import motions
 from .systems import resonances, ring_downs
@@ -37,7 +37,7 @@ def write_report(path: Path, outcome: Any) -> None:
         fmu_values={(r.point.paper, r.point.id): r for r in outcome.fmu_rows},
         tabs=[_tab(kind, outcome) for kind in KINDS.values()],
         style=style(),
-        script=script("figures.js", "tabs.js"),
+        script=script("tabs.js"),
     )
     write_text(path, page)
 
@@ -54,7 +54,7 @@ def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     return {
         "name": kind.name,
         "title": kind.title,
-        "figures": [(figure, as_json(figure)) for figure in figures],
+        "figures": [(figure, as_json(figure.panels)) for figure in figures],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
         "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],

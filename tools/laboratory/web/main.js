@@ -187,9 +187,7 @@ class Laboratory {
   }
 
   save() {
-    const link = element("a", { href: URL.createObjectURL(new Blob([this.toml()], { type: "application/toml" })), download: `${this.about.joint}.toml` });
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+    download(new Blob([this.toml()], { type: "application/toml" }), `${this.about.joint}.toml`);
     this.say("The parameters are saved; jointfmu build --params takes the file.");
   }
 

@@ -7,9 +7,12 @@ for (const place of document.querySelectorAll(".figure")) {
   for (const panel of panels) charts.push([new Chart(made, panel.title), panel]);
 }
 
+/** A label with its unit in brackets as it is read. */
+const labelled = (text) => text.replace(/ \[([^\]]*)\]/, (_, unit) => withUnit("", unit));
+
 /** Charts of the tab that is shown; a hidden one has no width. */
 function drawAll() {
-  for (const [chart, panel] of charts) if (!chart.figure.closest("[hidden]")) chart.draw(panel.series, { label: panel.x }, { label: panel.y });
+  for (const [chart, panel] of charts) if (!chart.figure.closest("[hidden]")) chart.draw(panel.series, { label: labelled(panel.x), log: panel.log }, { label: labelled(panel.y) });
 }
 addEventListener("resize", drawAll);
 

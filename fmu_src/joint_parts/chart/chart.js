@@ -3,6 +3,9 @@
 const COLOURS = ["blue", "red", "green", "violet", "ochre", "grey"].map((name) => `var(--${name})`);
 const MARGIN = { left: 72, right: 14, top: 10, bottom: 44 };
 
+/** What a picture takes along of the page's style. */
+const SHOWN = ["fill", "stroke", "stroke-width", "font-size", "font-family", "visibility"];
+
 /** About n round numbers from low to high. */
 function ticks(low, high, n) {
   const raw = (high - low) / n;
@@ -51,7 +54,9 @@ class Chart {
     const id = `chart${Chart.count = (Chart.count || 0) + 1}`;
     this.svg = element("svg", { class: "plot", role: "img", tabindex: 0, "aria-labelledby": id });
     this.reading = element("output", { class: "reading", "aria-live": "polite" });
-    this.rows = element("details", { class: "values", ontoggle: () => this.tabulate() }, element("summary", {}, "Values as a table"));
+    this.rows = element("details", { class: "values", ontoggle: () => this.tabulate() }, element("summary", {}, "Values as a table, CSV or PNG"),
+      element("button", { type: "button", onclick: () => download(new Blob([this.csv()], { type: "text/csv" }), `${title}.csv`) }, "Save CSV"), " ",
+      element("button", { type: "button", onclick: async () => download(await this.png(), `${title}.png`) }, "Save PNG"));
     this.legend = element("ul", { class: "legend" });
     this.title = title;
     this.note = element("p", { class: "note" }, text);
@@ -175,6 +180,34 @@ class Chart {
     dot.setAttribute("cy", this.scale.y(first.y[i]));
     const alike = this.series.filter((s) => !s.marks && s.x.length === first.x.length);
     this.reading.textContent = `${this.axes[0].label}: ${digits(first.x[i])}; ` + alike.map((s) => `${s.name} ${digits(s.y[i])}`).join(", ");
+  }
+
+  /** All points of all series, with the axes' labels. */
+  csv() {
+    const cell = (x) => (typeof x === "number" ? String(x) : `"${x.replaceAll('"', '""')}"`);
+    const rows = this.series.flatMap((s) => s.x.map((v, i) => [s.titles ? s.titles[i] : s.name, v, s.y[i]]));
+    return [["series", ...this.axes.map((axis) => axis.label)], ...rows].map((row) => row.map(cell).join(",") + "\n").join("");
+  }
+
+  /** A promise of the picture as it is shown, with title and legend, in twice its size. */
+  async png() {
+    const copy = this.svg.cloneNode(true), { width, height } = this.scale, top = 24 + 18 * this.legend.children.length;
+    const parts = copy.querySelectorAll("*");
+    this.svg.querySelectorAll("*").forEach((shown, i) => { for (const name of SHOWN) parts[i].style.setProperty(name, getComputedStyle(shown)[name]); });
+    for (const [name, value] of Object.entries({ xmlns: this.svg.namespaceURI, width: 2 * width, height: 2 * height })) copy.setAttribute(name, value);
+    const image = new Image();
+    image.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
+    await image.decode();
+    const canvas = element("canvas", { width: 2 * width, height: 2 * (height + top) }), pen = canvas.getContext("2d"), page = getComputedStyle(document.body);
+    pen.scale(2, 2);
+    pen.fillStyle = page.getPropertyValue("--paper");
+    pen.fillRect(0, 0, width, height + top);
+    pen.font = `12px ${page.fontFamily}`;
+    const write = (text, left, down, colour) => { pen.fillStyle = colour; pen.fillText(text, left, down); };
+    write(this.title, MARGIN.left, 16, page.getPropertyValue("--ink"));
+    [...this.legend.children].forEach((row, k) => write(`\u25a0 ${row.textContent}`, MARGIN.left, 34 + 18 * k, getComputedStyle(row.firstChild).borderTopColor));
+    pen.drawImage(image, 0, top, width, height);
+    return new Promise((done) => canvas.toBlob(done, "image/png"));
   }
 
   /** Fill the table if it is open, about 20 rows of each line and all marks. */

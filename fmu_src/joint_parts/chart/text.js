@@ -33,3 +33,10 @@ function table(caption, heads, rows) {
       element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
       element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((x) => cell("td", x)))))));
 }
+
+/** Hand a file to the reader. */
+function download(blob, name) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
