@@ -1,12 +1,13 @@
 """The parser of the commands."""
 
+import argparse
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
 from jointfmu import __version__
-from jointfmu.commands.common import IMPLIED, Parser
+from jointfmu.commands.common import IMPLIED, Parser, nearest
 
 COMMANDS = (
     "new",
@@ -38,8 +39,23 @@ class CommandLine(Parser):
     """The parser of commands; a sub-command may be left out."""
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """As argparse does, with the sub-command that the words imply."""
-        return super().parse_args(_explicit(list(sys.argv[1:] if args is None else args)), namespace)
+        """As argparse does, with the sub-command that the words imply, and the nearest of its options."""
+        words = _explicit(list(sys.argv[1:] if args is None else args))
+        found, rest = super().parse_known_args(words, namespace)
+        if rest:
+            hint = nearest(rest[0].partition("=")[0], _options(self, words))
+            self.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
+        return found
+
+
+def _options(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
+    """Long options of the command that words begin with."""
+    for word in words:
+        subs = [a for a in parser._actions if isinstance(a, argparse._SubParsersAction) and word in a.choices]
+        if not subs:
+            break
+        parser = subs[0].choices[word]
+    return [name for action in parser._actions for name in action.option_strings if name.startswith("--")]
 
 
 def _explicit(words: list[str]) -> list[str]:

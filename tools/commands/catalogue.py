@@ -2,6 +2,8 @@
 
 import argparse
 import json
+import re
+from collections.abc import Sequence
 from typing import Any
 
 from jointfmu.commands.common import Commands, command
@@ -15,7 +17,8 @@ from ..joint_parts import part
 def add(commands: Commands) -> None:
     """Declare the command."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
-    sub.add_argument("word", nargs="?", default="", metavar="WORD", help="part of a name, as CSG-17 or 100")
+    text = "parts of a name, as CSG-17, csg25-100 or csg 25 100"
+    sub.add_argument("words", nargs="*", metavar="WORD", help=text)
 
 
 def _catalogue(args: argparse.Namespace) -> int:
@@ -25,10 +28,11 @@ def _catalogue(args: argparse.Namespace) -> int:
         for kind in KINDS.values()
         if (own := part(kind, "catalogue"))
         for item in own.CATALOGUE.items()
-        if args.word.lower() in item.name.lower()
+        if _in(args.words, item.name)
     ]
     if not found:
-        raise ValueError(f"no joint of the catalogues has {args.word!r} in its name (jointfmu catalogue)")
+        word = " ".join(args.words)
+        raise ValueError(f"no joint of the catalogues has {word!r} in its name (jointfmu catalogue)")
     if args.json:
         print(json.dumps([_document(*row) for row in found]))
         return 0
@@ -42,6 +46,12 @@ def _catalogue(args: argparse.Namespace) -> int:
     if any(number.kind == "estimate" for _, _, item in found for number in item.numbers.values()):
         print("~ is an estimate, < an upper limit; --json tells where each number comes from")
     return 0
+
+
+def _in(words: Sequence[str], name: str) -> bool:
+    """Whether the words are in a name one after the other, whatever their case, signs and spaces."""
+    wanted, own = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
+    return wanted in own
 
 
 def _cell(item: Item) -> Any:

@@ -3,7 +3,8 @@
 import argparse
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
@@ -16,6 +17,16 @@ Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
 """Where commands are declared."""
 IMPLIED = {"surface": ("identify", "synthesize")}
 """{command: its sub-commands}, of which the first runs where none is named."""
+
+
+_CHOICE = re.compile(r"invalid choice: '?([^' ]*)'? \(choose from (.*)\)")
+"""What argparse says of a wrong choice."""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """What to add to a refusal: the known word that is most like it, if any is."""
+    found = get_close_matches(word, [*known], 1)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,7 +51,9 @@ class Parser(argparse.ArgumentParser):
         return f"{super().format_help()}\nexample{before}:\n  jointfmu {example}\n"
 
     def error(self, message: str) -> NoReturn:
-        """Print one line and exit with 2."""
+        """Print one line, with the nearest of the choices where one is wrong, and exit with 2."""
+        if match := _CHOICE.search(message):
+            message += nearest(match[1], re.findall(r"[\w.-]+", match[2]))
         print(f"{self.prog}: {message}", file=sys.stderr)
         raise SystemExit(2)
 
