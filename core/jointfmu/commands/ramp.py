@@ -2,7 +2,9 @@
 
 import argparse
 import json
+import math
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +18,10 @@ from .common import Commands, command, flag, settings
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output", "plot")
+RAMP, LOOP = ("to", "step"), ("about", "shape", "points", "cycles", "output")
 """Options of a ramp, and of loops beside --loop."""
+ROWS = 24
+"""Points of a ramp that are printed on a terminal, the first and the last among them."""
 
 
 def add(commands: Commands) -> None:
@@ -38,11 +42,11 @@ def add(commands: Commands) -> None:
     drive.add_argument("--points", type=int, metavar="N", help=f"of a cycle (default: {loops.POINTS})")
     drive.add_argument("--cycles", type=int, metavar="N", help=f"of a loop (default: {loops.CYCLES})")
     drive.add_argument("--output", metavar="NAME", help="force or motion conjugate to the input of loops")
+    drive.add_argument("--columns", nargs="+", metavar="NAME", help="outputs of a ramp (default: all)")
     settings(drive)
     drive.add_argument("--csv", type=Path, metavar="FILE", help="write every point to a file")
-    drive.add_argument(
-        "--plot", type=Path, metavar="FILE", help="draw loops, loss and stiffness (.png, .svg)"
-    )
+    text = "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
+    drive.add_argument("--plot", type=Path, metavar="FILE", help=text)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -56,8 +60,12 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError(f"{flag(looped[0])} is given without --loop; allowed is with --loop only")
     if not args.loop and len(ramped) < len(RAMP):
         raise ValueError("the drive is not stated; expected --to with --step, or --loop")
+    if args.loop and args.columns:
+        raise ValueError("--columns is given with --loop; allowed is with a ramp only")
     if args.csv:
         check_writable(args.csv)
+    if args.plot:
+        plots.check(args.plot)
     return _loops(args) if args.loop else _ramp(args)
 
 
@@ -65,21 +73,69 @@ def _ramp(args: argparse.Namespace) -> int:
     result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)
+    result = _chosen(result, args.input, args.columns)
     if args.csv:
         write_text(args.csv, result.csv())
+    if args.plot:
+        count = len(result.columns) - 1
+        with plots.drawing(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
+            _draw_ramp(figure, result)
+    points = len(next(iter(result.columns.values())))
     if args.json:
         columns = {name: column.tolist() for name, column in result.columns.items()}
         print(json.dumps({"fmu": str(args.fmu), "units": result.units, "columns": columns}))
-    elif args.csv:
-        print(f"wrote {args.csv}: {len(next(iter(result.columns.values())))} points")
+    elif args.csv or args.plot:
+        print("\n".join(f"wrote {path}: {points} points" for path in (args.csv, args.plot) if path))
     else:
-        sys.stdout.write(result.csv())
+        sys.stdout.write(_table(result) if sys.stdout.isatty() else result.csv())
     return 0
 
 
+def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ramp.RampResult:
+    """The driven input and the outputs asked for; ValueError for one that is not there."""
+    if unknown := [name for name in names or () if name not in result.columns]:
+        raise ValueError(f"--columns {unknown[0]}: unknown output, allowed are {', '.join(result.columns)}")
+    kept = list(dict.fromkeys([driven, *(names or result.columns)]))
+    return replace(
+        result,
+        columns={name: result.columns[name] for name in kept},
+        units={name: result.units[name] for name in kept},
+    )
+
+
+def _table(result: ramp.RampResult) -> str:
+    """Some of the points for people, in the units in which they read best."""
+    every = next(iter(result.columns.values())).size
+    shown = np.unique(np.linspace(0, every - 1, min(every, ROWS)).round().astype(int))
+    columns = []
+    for name, values in result.columns.items():
+        unit, size = plots.shown(result.units[name], values)
+        columns.append(
+            [
+                f"{name}{'' if unit == '1' else f' [{unit}]'}",
+                *(f"{size * values[i] + 0.0:.5g}" for i in shown),
+            ]
+        )
+    rows = zip(*([f"{cell:>{max(map(len, column))}}" for cell in column] for column in columns), strict=True)
+    more = f"\n{len(shown)} of {every} points; --csv writes all" if len(shown) < every else ""
+    return "\n".join("  ".join(row) for row in rows) + more + "\n"
+
+
+def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
+    """Every output over the driven input."""
+    (driven, x), *outputs = result.columns.items()
+    x_unit, by = plots.shown(result.units[driven], x)
+    axes = figure.subplots(math.ceil(len(outputs) / 3), min(len(outputs), 3), squeeze=False).ravel()
+    for one, (name, y) in zip(axes, outputs, strict=False):
+        unit, size = plots.shown(result.units[name], y)
+        one.plot(by * x, size * y, color=plots.BLUE)
+        one.set_ylabel(f"{name} [{unit}]")
+        one.set_xlabel(f"{driven} [{x_unit}]")
+    for one in axes[len(outputs) :]:
+        one.set_visible(False)
+
+
 def _loops(args: argparse.Namespace) -> int:
-    if args.plot:
-        plots.check(args.plot)
     given = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
     swing = loops.Swing(**given)
     found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))

@@ -1,0 +1,48 @@
+"""`jointfmu ramp`: chosen columns, a table on a terminal, a picture."""
+
+import json
+import sys
+
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+
+from jointfmu import plots
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def words(native):
+    return ["ramp", str(native / "fmi2" / "GearContact.fmu"), "--input", "f", "--to", "1000", "--step", "10"]
+
+
+def test_columns_are_those_asked_for_behind_the_input(words, capsys):
+    assert cli.main([*words, "--columns", "K_N", "s_rel", "--json"]) == 0
+    assert [*json.loads(capsys.readouterr().out)["columns"]] == ["f", "K_N", "s_rel"]
+    assert "--columns q: unknown output, allowed are f, s_rel" in refused_line(
+        capsys, *words, "--columns", "q"
+    )
+    looped = [*words[:4], "--loop", "1e-6", "--columns", "K_N"]
+    assert "--columns is given with --loop" in refused_line(capsys, *looped)
+
+
+def test_a_terminal_gets_a_table_and_a_pipe_every_point(words, capsys, monkeypatch):
+    assert cli.main(words) == 0
+    assert capsys.readouterr().out.count("\n") == 102
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert cli.main(words) == 0
+    head, *rows, more, end = capsys.readouterr().out.split("\n")
+    assert head.split()[:4] == ["f", "[kN]", "s_rel", "[um]"]
+    assert (len(rows), end) == (24, "")
+    assert [float(row.split()[0]) for row in (rows[0], rows[-1])] == [0.0, 1.0]
+    assert len({len(row) for row in (head, *rows)}) == 1
+    assert more == "24 of 101 points; --csv writes all"
+
+
+def test_a_ramp_is_drawn(words, capsys, monkeypatch, tmp_path):
+    monkeypatch.setattr(plots, "RESOLUTION", 40)
+    assert cli.main([*words, "--plot", str(tmp_path / "a.png"), "--csv", str(tmp_path / "a.csv")]) == 0
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    assert capsys.readouterr().out.count("wrote ") == 2
+    assert "'.pdf' is no picture" in refused_line(capsys, *words, "--plot", "a.pdf")
