@@ -1,4 +1,4 @@
-"""A wrong word is answered with the nearest right one."""
+"""A wrong word is answered with the nearest right one, a number in another unit with what is possible."""
 
 import json
 
@@ -38,3 +38,16 @@ def test_the_catalogue_is_searched_whatever_the_signs(capsys, words):
 
 def test_a_name_that_no_catalogue_has(capsys):
     assert "has 'csg 99 100' in its name" in refused_line(capsys, "catalogue", "csg", "99", "100")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("law roughness --pressure 1e6 --set Ra1=0.8 Ra2=0.8e-6", "Ra1 = 0.8 m is outside (0, 0.0001]"),
+        ("new bolted-joint {} --grip 40 --Ra 800", "--Ra = '800' is outside (0, 100] um"),
+        ("new bolted-joint {} --grip 4000 --Ra 0.8", "--grip = 4000 mm is outside (0, 600] mm: 50 times M12"),
+    ],
+)
+def test_what_is_in_another_unit_is_refused_by_what_is_possible(capsys, words, said):
+    plate = "--plate 200x100 --bolts 4xM12 --at 160x60 --material steel"
+    assert said in refused_line(capsys, *words.format(plate).split())

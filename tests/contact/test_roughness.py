@@ -143,9 +143,9 @@ def test_a_field_keeps_it():
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        (entry("Ra1", 0.0), ["roughness.Ra1 = 0 m", "(0, inf)", "arithmetic mean height of the first"]),
-        (entry("h", -1e-6), ["roughness.h = -1e-06 m", "(0, inf)"]),
-        (entry("h", "nan"), ["roughness.h = nan m", "(0, inf)"]),
+        (entry("Ra1", 0.0), ["roughness.Ra1 = 0 m", "(0, 0.0001]", "arithmetic mean height of the first"]),
+        (entry("h", -1e-6), ["roughness.h = -1e-06 m", "(0, 0.0001]"]),
+        (entry("h", "nan"), ["roughness.h = nan m", "(0, 0.0001]"]),
         (entry("h", "true"), ["roughness.h = True", "not a number"]),
         (entry("h", '"fine"'), ["roughness.h = 'fine'", "not a number"]),
         (entry("Ra1", 0.8, "um"), ["roughness.Ra1", "unit 'um'", "expected 'm'"]),

@@ -190,6 +190,9 @@ def _of_finish(name: str) -> Face:
 
 def _of_number(name: str, text: str, finish: Row | None) -> Face:
     value = number(name, text, "um", "m")
+    if value > roughness.ROUGHEST:
+        most = roughness.ROUGHEST * 1e6
+        raise ValueError(f"--{name} = {text!r} is outside (0, {most:g}] um: no roughness is as high")
     Rq = value if name == "Rq" else float(roughness.rms_of_mean(value))
     slope = Known(SLOPE, "estimate", "usual of machined surfaces")
     hurst = Known(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9")

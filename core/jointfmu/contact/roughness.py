@@ -21,8 +21,12 @@ FACTOR = (pi / 2.0) ** 0.5
 """R_q/R_a [1] of a Gaussian surface, 1.25."""
 
 
+ROUGHEST = 1e-4
+"""Largest height [m] that is taken for a roughness: cast and flame-cut faces have 50 um."""
+
+
 def _height(doc: str) -> Any:
-    return quantity("m", f"{doc} over the longest wave that machining leaves", gt=0.0)
+    return quantity("m", f"{doc} over the longest wave that machining leaves", gt=0.0, le=ROUGHEST)
 
 
 DECLARED: dict[str, Field[Any]] = {

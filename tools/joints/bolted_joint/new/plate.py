@@ -20,6 +20,8 @@ from . import layout
 
 Array = NDArray[np.float64]
 REST = (0.0, 0.0, 0.0)
+LONGEST = 50
+"""Most grip over the diameter of the thread: beyond it a bolt is a tie rod."""
 LARGE = 16e-3
 """Diameter [m] above which the second strengths of a class hold."""
 
@@ -118,6 +120,11 @@ def clamped(
         pair = thick if len(thick) == 2 else [0.5 * thick[0]] * 2
         layers = tuple(vdi2230.Layer(t, E) for t, E in zip(pair, moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
+    if grip > LONGEST * thread.d:
+        most = LONGEST * thread.d * 1e3
+        raise ValueError(
+            f"--grip = {grip * 1e3:g} mm is outside (0, {most:g}] mm: {LONGEST} times {thread.name}"
+        )
     outer = outer_diameter(size, at)
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
     if not slope > 0.0:
