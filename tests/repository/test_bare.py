@@ -68,7 +68,7 @@ def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> 
     [
         (("ring", "robot_joint", "--plot", "ring.png"), "matplotlib"),
         (("build", "GearContact"), "casadi"),
-        (("report", "joint.toml"), "matplotlib"),
+        (("report", "joint.toml"), "casadi"),
         (("modes", "absent.toml"), "skfem"),
         (("footprint", "compute", "absent.toml", "--preload", "9e3"), "skfem"),
     ],
