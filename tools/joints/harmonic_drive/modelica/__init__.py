@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.friction import LIMITS, SPRINGS, TURNED
+from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 from jointfmu.joints.harmonic_drive.lost_motion import WIDTH
@@ -27,6 +27,8 @@ _OWN = (
     "load_loss_back",
     "presliding",
     "temperature_factor",
+    "viscous_temperature_coefficient",
+    "dry_temperature_coefficient",
     *(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")),
 )
 """Parameters of the drive that the component has too."""
@@ -72,6 +74,7 @@ COMPONENT = Component(
         "end": f"{drive.end:g} N m",
         "brakes": matrix(np.column_stack([SPRINGS, LIMITS])),
         "turned": number(TURNED),
+        "reference": number(REFERENCE),
         "width": number(WIDTH),
     },
     note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
