@@ -206,12 +206,10 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     midline(&joint->curve, kind->phi, 2, y);
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + kind->slid.tangent[0];
-    SliderSum slides = {.loss = 0.0};
-    if (kind->hysteresis.acts)
-        slides = hysteresis_rate(&kind->hysteresis, memory, kind->phi, rate);
-    const double loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
+    const double heat = kind->hysteresis.acts ? hysteresis_heat(&kind->hysteresis, memory, kind->phi) : 0.0;
+    const double slid = kind->slid.tangent[0] * rate, loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
     const double given[] = {kind->phi, y[0], y[1], kind->slid.force[0], loss, error[0], error[1], kind->braked.force[0]};
-    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slides.force[0], slides.loss, error[1] * seed[0],
+    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid, heat * rate, error[1] * seed[0],
                              error[2] * seed[0], 0.0};
     memcpy(x + PHI, given, sizeof given);
     memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);

@@ -35,12 +35,10 @@ SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, doub
     return sum;
 }
 
-SliderSum hysteresis_rate(const Hysteresis *hysteresis, const double *memory, double phi, double rate)
+double hysteresis_heat(const Hysteresis *hysteresis, const double *memory, double phi)
 {
     const Sliders s = sliders_of(hysteresis, memory);
-    SliderSum sum;
-    sliders_line_rate(SLIDERS, &s, phi - memory[AT_WIND_UP], rate, NULL, &sum);
-    return sum;
+    return sliders_heat(SLIDERS, &s, phi - memory[AT_WIND_UP]);
 }
 
 double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,
