@@ -72,6 +72,7 @@ def _tabulated(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
             "N_LAW_TABLE": count["law_table_0"],
             "N_LAW_STATE": state // 3,
         }
+    names |= {f"AT_{name.upper()}": place for name, place in part.memory.places.items()}
     given = shared_definitions(part.shared) | part.definitions(g, model)
     series = ["law_load", "law_table"] if regimes else []
     series += ["law_state"] if state else []

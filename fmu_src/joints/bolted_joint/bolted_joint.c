@@ -12,7 +12,7 @@ _Static_assert(MOMENT == PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn and their rates");
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
-_Static_assert(N_MEMORY == FORCES + MOST_PATCHES * 2 * SLIDERS, "as the package has it");
+_Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
 
 static inline int n_nodes(void)
 {
@@ -328,11 +328,11 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    const bool begun = (int)memory[MOVED] != UNKNOWN;
+    const bool begun = (int)memory[AT_STATE] != UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
-        const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
+        const double start = begun ? memory[AT_APPROACH + j] : end, reference = begun ? memory[AT_REFERENCE + j] : end;
         if (kind->moved != RESTING && kind->foundation[j].reference != reference)
             lay(kind, j, reference);
         const Foundation *f = &kind->foundation[j];
@@ -345,10 +345,10 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const double *patch = data.patches[j], *force = memory + FORCES + j * 2 * SLIDERS;
-    const double turn = inputs[THETA + 2] - memory[RIGID + 2];
-    const double u = inputs[S_REL] - memory[RIGID] - turn * patch[PLACE_Y];
-    const double v = inputs[S_REL + 1] - memory[RIGID + 1] + turn * patch[PLACE_X];
+    const double *patch = data.patches[j], *force = memory + AT_FORCE + j * 2 * SLIDERS;
+    const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
+    const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y];
+    const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X];
     return (PatchPath){.force = {force, force + SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
@@ -429,9 +429,9 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
 /* How it has moved after the way to inputs. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    if ((int)memory[MOVED] == FREE || inputs[S_REL + 1] != memory[RIGID + 1] || inputs[THETA + 2] != memory[RIGID + 2])
+    if ((int)memory[AT_STATE] == FREE || inputs[S_REL + 1] != memory[AT_RIGID + 1] || inputs[THETA + 2] != memory[AT_RIGID + 2])
         return FREE;
-    return (int)memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
+    return (int)memory[AT_STATE] == ALONG || inputs[S_REL] != memory[AT_RIGID] ? ALONG : RESTING;
 }
 
 /* A patch moves: its sums, and the forces of all its sliders. */
@@ -461,19 +461,19 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
-        const Shear shear = slide(joint, j, inputs, memory, after + FORCES + 2 * j * SLIDERS);
+        const Shear shear = slide(joint, j, inputs, memory, after + AT_FORCE + 2 * j * SLIDERS);
         add_shear(x, data.patches[j], shear.traction, shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
-        after[REFERENCES + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
-        after[APPROACHES + j] = kind->to[j].approach;
+        after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
+        after[AT_APPROACH + j] = kind->to[j].approach;
     }
-    const double loss = memory[LOSS] + kind->area * heat;
+    const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
-    after[MOVED] = kind->memory ? kind->moved : UNKNOWN;
-    after[LOSS] = loss;
-    after[RIGID] = kind->memory ? inputs[S_REL] : 0.0;
-    after[RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
-    after[RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
+    after[AT_STATE] = kind->memory ? kind->moved : UNKNOWN;
+    after[AT_LOSS] = loss;
+    after[AT_RIGID] = kind->memory ? inputs[S_REL] : 0.0;
+    after[AT_RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
+    after[AT_RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
 }
 
 /* Outputs */
@@ -580,7 +580,7 @@ static void patch_rates(const Joint *joint, const double *inputs, const double *
         const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
         const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {(int)memory[MOVED] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {(int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
         add_loop_rate(joint, patch, path.to, inputs, loop, dx);
         if (!kind->memory)
             continue;

@@ -69,11 +69,8 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
+    counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
     return Definitions(counts, numbers)
 
 
-_SLIDERS = 2 * (sliders.BELOW + sliders.ABOVE + 2)
-_MEMORY = 5 + spring.PATCHES * (2 + 2 * _SLIDERS)
-"""That of as many patches as there is room for: how it moved, loss, rigid motion; of each patch reference,
-approach and forces."""
-PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, _MEMORY)
+PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, spring.memory_of(spring.PATCHES))

@@ -145,8 +145,6 @@ static double wind_up(const Joint *joint, const double *inputs, double error, co
 enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
 /* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
 enum { TURN_LOAD = N_INPUTS, TURN_SLID, TURN_SLOPE, N_TURN };
-enum { BRAKED = AT_LOSS + 1 }; /* where the memory of the friction begins */
-_Static_assert(N_MEMORY == BRAKED + N_BRAKES, "hysteresis, then friction");
 
 /* The inputs of `turn` out of those of `outputs`. */
 static void to_turn(const double *x, double *y)
@@ -180,7 +178,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
         to_turn(x, given);
         turn(given, joint->c, y);
         kind->turn = (Turn){y[0], y[1], {y[2], y[3]}};
-        kind->braked = friction_at(&kind->friction, memory + BRAKED, kind->turn, after + BRAKED);
+        kind->braked = friction_at(&kind->friction, memory, kind->turn, after);
     }
     x[DRY] = kind->braked.force[0];
     x[LOSS] = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
@@ -219,7 +217,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
         to_turn(x + N_GIVEN, turning + N_TURN);
         turn_seed(turning, joint->c, drift);
         const SliderSum brakes =
-            friction_rate(&kind->friction, memory + BRAKED, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
+            friction_rate(&kind->friction, memory, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
         x[N_GIVEN + DRY] = brakes.force[0];
         x[N_GIVEN + LOSS] += brakes.loss;
     }

@@ -1,14 +1,10 @@
-/* Friction torque with memory of a harmonic drive: sliders in parallel, spring and friction each.
- *
- * Memory: their forces, the wind-up, the loss. */
+/* Friction torque with memory of a harmonic drive: sliders in parallel, spring and friction each. */
 #ifndef JOINTFMU_HYSTERESIS_H
 #define JOINTFMU_HYSTERESIS_H
 
 #include "curve.h"
 #include "sliders.h"
 #include "text.h"
-
-enum { AT_WIND_UP = SLIDERS, AT_LOSS }; /* of the memory */
 
 typedef struct {
     bool acts;
