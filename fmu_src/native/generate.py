@@ -90,12 +90,15 @@ def _model(model: Model, parameters: Any, memory: int) -> str:
         moving += f"#define LAGS {first + list(model.parameter_fields()).index('lag_a')}\n"
     if model.events:
         moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
+    places = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
     if memory:
         moving += f"#define N_MEMORY {memory}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
 {moving}
+enum {{ {places} }};
+
 enum {{
     N_INPUTS = {len(model.inputs)},
     N_OUTPUTS = {len(model.outputs)},

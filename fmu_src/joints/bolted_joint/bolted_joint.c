@@ -7,9 +7,15 @@
 
 #include "tabulated.h"
 
-enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3, THETA = V_REL + 3, OMEGA = THETA + 3 }; /* places of the inputs */
-_Static_assert(MOMENT == PRELOAD + 1, "the arguments of bolt_pressures");
-_Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn and their rates");
+enum { /* places of the inputs */
+    PRELOAD = INPUT_PRELOAD,
+    MOMENT = INPUT_MOMENT,
+    S_REL = INPUT_S_REL_X,
+    V_REL = INPUT_V_REL_X,
+    THETA = INPUT_THETA_X,
+    OMEGA = INPUT_OMEGA_X
+};
+_Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 _Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");

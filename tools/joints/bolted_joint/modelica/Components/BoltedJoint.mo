@@ -30,7 +30,7 @@ protected
   parameter Real g[n + 1]=data.heights[:, 2] "Normal force there [N]";
   parameter Real k[n + 1]=data.heights[:, 3] "Normal stiffness there [N/m]";
   constant Real layer=1e-3 "Width over friction of the layer beyond the circle in which a slider ceases to stick";
-  constant Real spread=0.288675134594813 "1/sqrt(12)";
+  constant Real spread=<< spread >> "1/sqrt(12)";
   Real c "Approach from the tightened state [m]";
   Real v_c "Its rate [m/s]";
   Real bend "Derivative of the normal stiffness [N/m2]";
