@@ -38,7 +38,7 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     variables = [v.name for v in (*model.inputs, *model.outputs)]
     watched = [f"{{{variables.index(o.variable)}, {string(o.doc)}}}" for o in model.outside]
     header = _template().render(
-        counts=_counts(g, model, part, count) | given.counts,
+        counts={**_counts(g, model, part, count), **given.counts},
         macros={name: number(value) for name, value in given.macros.items()},
         tabulated=part.tabulated,
         warnings=array("static const Warning warnings[N_WARNINGS]", watched),
