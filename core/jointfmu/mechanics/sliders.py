@@ -138,20 +138,24 @@ class Foundation:
 
         mu [p(delta) - p(delta - kappa u/mu)]: of all springs, without the sliders' steps.
         """
-        now, then = (self.curve.derivatives(x, 0)[0] for x in self._between(approach, shift))
+        now, then, _ = self.slipped(approach, shift)
         return np.asarray(self.friction * (now - then))
 
     def work(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Integral (...) [J/m2] of the backbone over the shift from 0."""
-        now, then = self._between(approach, shift)
-        energy = self.curve.energy(now) - self.curve.energy(then)
-        whole = self.curve.derivatives(now, 0)[0] * np.asarray(shift, dtype=np.float64)
-        return np.asarray(self.friction * (whole - self.friction / self.ratio * energy))
+        now, _, energy = self.slipped(approach, shift)
+        size = np.asarray(shift, dtype=np.float64)
+        return np.asarray(slipping_work(self.friction, self.ratio, size, now, energy))
 
-    def _between(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array]:
-        """Heights between which springs have slipped."""
+    def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
+        """Loads (...) [Pa] now and where springs have slipped, and the curve's energy (...) [J/m2] in between.
+
+        At approaches (...) [m], over shifts (...) >= 0 [m] from rest.
+        """
         now, moved = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
-        return now, np.asarray(now - moved / (self.friction / self.ratio))
+        then = np.asarray(now - moved / (self.friction / self.ratio))
+        load, left = (self.curve.derivatives(x, 0)[0] for x in (now, then))
+        return load, left, self.curve.energy(now) - self.curve.energy(then)
 
     def _ranges(self) -> tuple[Array, Array]:
         """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
@@ -253,6 +257,24 @@ class _Path:
 def _parts(vector: Array) -> tuple[Array, Array]:
     """Components (..., n) of vectors (..., 2, n)."""
     return vector[..., 0, :], vector[..., 1, :]
+
+
+def slipping_work(friction: Number, ratio: Number, shift: Number, load: Number, energy: Number) -> Number:
+    """Integral [J/m2] of the backbone over the shift [m] from 0, see `Foundation.slipped`."""
+    return friction * (load * shift - friction / ratio * energy)
+
+
+def loop(
+    friction: Number, ratio: Number, size: Number, load: Number, then: Number, energy: Number
+) -> tuple[Number, Number]:
+    """Loss [J/m2] of a cycle with the amplitude `size` [m], and the elastic energy at its end.
+
+    Under constant load 8 (I - B a/2) and B a/2, B the backbone and I its integral over a; the rest is of
+    `Foundation.slipped`.
+    """
+    stored = 0.5 * friction * (load - then) * size
+    loss = 8.0 * (slipping_work(friction, ratio, size, load, energy) - stored)
+    return np.maximum(loss, 0.0), stored
 
 
 def touching(

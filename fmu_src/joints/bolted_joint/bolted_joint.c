@@ -166,10 +166,9 @@ static inline bool node_at(const Joint *joint, double approach, int order, doubl
 }
 
 /* Add what a node has to the sums of its normal side: pressure and stiffness, with what shear adds. */
-static inline void add_normal(double *x, const double *node, double factor, double p, double k, double lifted,
-                              double stiffer)
+static inline void add_normal(double *x, const double *node, double p, double k, double lifted, double stiffer)
 {
-    const double share = factor * node[SHARE], px = node[PLACE_X], py = node[PLACE_Y];
+    const double share = node[SHARE], px = node[PLACE_X], py = node[PLACE_Y];
     const double pressure = share * p, stiffness = share * k, all = share * (p + lifted);
     const double normal = share * (k + stiffer);
     x[SUM_NORMAL] += all;
@@ -318,7 +317,7 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
             return false;
         elastic_arguments(joint, i, y, inputs, at);
         elastic_shear(at, joint->c, e);
-        add_normal(x, data.nodes[i], 1.0, y[0], y[1], e[LIFTED], e[STIFFER]);
+        add_normal(x, data.nodes[i], y[0], y[1], e[LIFTED], e[STIFFER]);
         add_shear(x, data.nodes[i], e, e + 2);
         for (int q = 0; q < N_LAW_STATE; q++)
             x[SUM_PLASTIC + q] += data.nodes[i][SHARE] * works[q];
@@ -391,20 +390,23 @@ static inline double energy_near(const Joint *joint, double x, double *load)
     return energy_inside(&joint->kind.energy, curve, segment, t);
 }
 
+/* Arguments of `loop`, and of those that change a seed. */
+enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP };
+
 /* Add the loops whose amplitude is the present shift, see `loop_sums`. */
 static void add_loops(const Joint *joint, const double *inputs, double *x)
 {
-    const double mu = joint->kind.mu, reach = mu / joint->kind.ratio, per_reach = joint->kind.ratio / mu;
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, per_reach = ratio / mu;
     double works = 0.0, energies = 0.0;
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
-        double then;
+        double then, y[2];
         const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
-        const double stored = 0.5 * mu * (at->y[0] - then) * size;
-        const double work = 8.0 * (mu * (at->y[0] * size - reach * energy) - stored);
-        works += data.patches[j][SHARE] * (work > 0.0 ? work : 0.0);
-        energies += data.patches[j][SHARE] * stored;
+        const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
+        loop(given, NULL, y);
+        works += data.patches[j][SHARE] * y[0];
+        energies += data.patches[j][SHARE] * y[1];
     }
     x[SUM_LOOP_WORK] = works;
     x[SUM_LOOP_ENERGY] = energies;
@@ -414,22 +416,18 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
 static void add_loop_rate(const Joint *joint, const double *patch, const Point *at, const double *inputs,
                           const double *rates, double *dx)
 {
-    const Kind *kind = &joint->kind;
     const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
     if (size == 0.0)
         return;
-    const double mu = kind->mu, reach = mu / kind->ratio, *now = at->y;
-    double then[2];
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio, *now = at->y;
+    const double grows = (u * rates[1] + v * rates[2]) / size, falls = rates[0] - grows / reach;
+    double then[2], y[2];
     const double energy = at->energy - energy_at(joint, at->approach - size / reach, then);
-    const double backbone = mu * (now[0] - then[0]), stored = 0.5 * backbone * size;
-    const double work = 8.0 * (mu * (now[0] * size - reach * energy) - stored);
-    const double approach = rates[0], grows = (u * rates[1] + v * rates[2]) / size, falls = approach - grows / reach;
-    const double slope = mu * (now[1] * approach - then[1] * falls);
-    const double energy_rate = now[0] * approach - then[0] * falls;
-    const double stored_rate = 0.5 * (slope * size + backbone * grows);
-    const double integral_rate = mu * (now[1] * approach * size + now[0] * grows - reach * energy_rate);
-    dx[SUM_LOOP_WORK] += patch[SHARE] * (work > 0.0 ? 8.0 * (integral_rate - stored_rate) : 0.0);
-    dx[SUM_LOOP_ENERGY] += patch[SHARE] * stored_rate;
+    const double x[2 * N_LOOP - L_SIZE] = {mu, ratio, size, now[0], then[0], energy, grows, now[1] * rates[0],
+                                           then[1] * falls, now[0] * rates[0] - then[0] * falls};
+    loop_seed(x, NULL, y);
+    dx[SUM_LOOP_WORK] += patch[SHARE] * y[0];
+    dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
 }
 
 /* How it has moved after the way to inputs. */
@@ -562,7 +560,7 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
             elastic_shear_seed(at, joint->c, e);
             add_shear(dx, node, e, e + 2);
         }
-        add_normal(dx, node, 1.0, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
+        add_normal(dx, node, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
         for (int q = 0; q < N_LAW_STATE; q++)
             dx[SUM_PLASTIC + q] += node[SHARE] * slopes[q] * rate;
         const double force = node[SHARE] * carried[1] * tightening;

@@ -46,6 +46,9 @@ def _shear(g: Graph) -> None:
     y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
     g.add_with_seed("elastic_shear", doc, x, y)
     add_sliders(g)
+    x = symbols("x", 6)
+    doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
+    g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
