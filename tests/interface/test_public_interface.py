@@ -170,3 +170,24 @@ def test_a_refusal_is_one_line_that_names_what_is_wrong(call, message):
 def test_a_required_name_is_said_by_python():
     with pytest.raises(TypeError, match="plate"):
         jointfmu.bolted_joint()
+
+
+def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
+    """As in a bare environment: numbers work, what needs more says so in one line."""
+    asked = """
+import sys
+sys.modules.update(dict.fromkeys(("matplotlib", "casadi")))
+import jointfmu
+drive = jointfmu.drive("CSG-25-100")
+assert drive.wind_up(48.0) > 0.0 and len(repr(drive)) > 1000
+for call in (drive.plot, drive.build, lambda: drive.report("a.html")):
+    try:
+        call()
+    except ValueError as error:
+        print(error)
+"""
+    monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    said = done.stdout.splitlines()
+    assert len(said) == 3
+    assert all("is missing" in line and "pip install 'jointfmu[build]'" in line for line in said)

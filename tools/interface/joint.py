@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from jointfmu import plots
+from jointfmu.commands.common import without_package
 from jointfmu.contact.roughness import DECLARED
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
@@ -217,20 +218,22 @@ class Joint:
         shown = [name for name in rows[0] if name in columns or name not in rest]
         return Frame({name: [row[name] for row in rows] for name in shown}, units, tuple(warned))
 
-    @plots.style()
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
-        from ..report.course import Course
-        from ..report.figure import drawn
-        from ..report.joint import curves, looped
-
+        try:
+            from ..report.course import Course
+            from ..report.figure import drawn
+            from ..report.joint import curves, looped
+        except ImportError as error:
+            raise without_package(error, "draw") from None
         course = Course(self.model(fmu), self.file)
         panels = list(curves(course).panels)
         loops = course.loops() if course.model.loop else None
         if loops and any(loop.loss for loop in loops.loops):
             panels += looped(course, loops).panels
-        figure = plots.figure((4.4 * len(panels), 3.8))
-        drawn(figure, panels)
+        with plots.style():
+            figure = plots.figure((4.4 * len(panels), 3.8))
+            drawn(figure, panels)
         return figure
 
     def save(self, path: str | Path) -> Path:
@@ -254,15 +257,20 @@ class Joint:
 
         Raises ValueError for an unknown name or flavour, or a folder that cannot be written.
         """
-        from jointfmu_fmu_src import building
-
         flavours = [flavour] if isinstance(flavour, str) else [*flavour]
         names = [*self.fmus] if fmu is None else [self.model(fmu).name]
-        return building.build(names, flavours, self.file, Path(out), alias=name)
+        try:
+            from jointfmu_fmu_src import building
+
+            return building.build(names, flavours, self.file, Path(out), alias=name)
+        except ImportError as error:
+            raise without_package(error, "build") from None
 
     def report(self, path: str | Path, fmu: str | None = None) -> Path:
         """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers."""
-        from ..report.joint import write_joint_report
-
+        try:
+            from ..report.joint import write_joint_report
+        except ImportError as error:
+            raise without_package(error, "write a report") from None
         write_joint_report(Path(path), self.file, fmu)
         return Path(path)
