@@ -148,7 +148,7 @@ class Foundation:
         return np.asarray(slipping_work(self.friction, self.ratio, size, now, energy))
 
     def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
-        """Loads (...) [Pa] now and where springs have slipped, and the energy (...) [J/m2] of the curve between.
+        """Loads (...) [Pa] now and where springs have slipped, and the energy (...) [J/m2] in between.
 
         At approaches (...) [m], over shifts (...) >= 0 [m] from rest.
         """
