@@ -114,7 +114,7 @@ class HarmonicDriveSpring:
         if self.hysteresis.acts:
             phi = self.hysteresis.wind_up(self.curve, wound, tau)
         else:
-            phi = np.copysign(self.curve.inverse(np.abs(tau)), tau)
+            phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         _, loss, new = self._slid(phi, wound)
         locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
