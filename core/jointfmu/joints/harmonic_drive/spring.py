@@ -116,7 +116,7 @@ class HarmonicDriveSpring:
         if self.hysteresis.acts:
             phi = self.hysteresis.wind_up(self.curve, wound, tau)
         else:
-            phi = np.copysign(self.curve.inverse(np.abs(tau)), tau)
+            phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
         slid = self.hysteresis.moved(wound, phi)
         loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss
