@@ -32,7 +32,7 @@ from jointfmu.parameters import default
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"
 HOSTS = TESTS / "native"
-sys.path.append(str(TESTS))
+sys.path.append(str(TESTS / "support"))
 from joint_cases import CASES  # noqa: E402
 
 ROUNDS, REPEATS, PYTHON_CYCLES = 5, 101, 100

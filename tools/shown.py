@@ -1,8 +1,14 @@
-"""Units as the pages show them: one for all stiffnesses, spelled as people write them."""
+"""Numbers as people read them: one unit for all stiffnesses, units spelled out, a file's with sources."""
 
 import re
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
-from jointfmu.quantity.units import display_unit
+from jointfmu.contact.roughness import DECLARED
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import flat_fields
+from jointfmu.quantity.units import display_unit, factor
 
 STIFFNESSES = {"N.m/rad": "N.m/rad", "N/m": "N/um"}
 """{SI unit: the one in which every page shows it}; others have that in which they read best."""
@@ -16,3 +22,50 @@ def shown_unit(unit: str, typical: float) -> str:
 def spelled(unit: str) -> str:
     """A unit as it is read: N m, µm; nothing for 1."""
     return "" if unit == "1" else re.sub(r"\bu(?=[mNsJr])", "µ", unit.replace(".", " "))
+
+
+def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
+    """A value as text in the unit in which it reads best, and that unit."""
+    if isinstance(value, bool | str):
+        return str(value).lower(), ""
+    if isinstance(value, tuple):
+        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1")
+    if unit is None:
+        return f"{value:g}", ""
+    shown = shown_unit(unit, value)
+    return f"{factor(unit, shown) * value:.{digits}g}", spelled(shown)
+
+
+class Stated(NamedTuple):
+    """A number or choice of a parameter file, in SI; `unit` is None of what has none."""
+
+    name: str
+    value: Any
+    unit: str | None
+    doc: str
+    kind: str
+    source: str
+
+
+def stated(file: ParameterFile) -> list[Stated]:
+    """Every number of a file: parameters, start values of inputs, roughnesses."""
+    fields: dict[str, Mapping[str, Any]] = {
+        name: item.metadata for name, item in flat_fields(type(file.values))
+    }
+    fields |= {f"roughness.{name}": item.metadata for name, item in DECLARED.items()}
+    inputs = (v for model in KINDS[file.joint].models for v in model.inputs)
+    fields |= {f"inputs.{v.name}": {"unit": v.unit, "doc": v.doc} for v in inputs}
+    values = dict(file.flat)
+    values |= {f"inputs.{name}": value for name, value in file.inputs.items()}
+    values |= {f"roughness.{name}": value for name, value in file.roughness.items()}
+    return [
+        Stated(
+            name,
+            value,
+            fields[name].get("unit"),
+            fields[name]["doc"],
+            file.origins.get(name, "user"),
+            file.sources.get(name, "default choice"),
+        )
+        for name, value in values.items()
+    ]

@@ -10,6 +10,7 @@ import casadi as ca
 from jointfmu.contact import interface
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import curve
+from jointfmu.mechanics.memory import Layout
 
 from .c_text import number
 from .graph import Graph
@@ -89,13 +90,13 @@ class NativePart:
     functions   : adds the functions that its C calls to a graph
     shared      : files of `runtime/` that it uses, beside those of every FMU
     definitions : its constants
-    memory      : numbers of its memory, where the parameters decide how many of them it needs
+    memory      : what it remembers, with room for the most that parameters can ask for; `AT_NAME` in C
     """
 
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
     definitions: Callable[[Graph, Model], Definitions] = nothing
-    memory: int | None = None
+    memory: Layout = Layout({})
 
     @property
     def tabulated(self) -> bool:

@@ -1,6 +1,7 @@
 """The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
 
 from jointfmu.mechanics.jenkins import beyond, slide, trial
+from jointfmu.quantity import where
 
 from .graph import Graph, symbols
 
@@ -14,14 +15,18 @@ def add_sliders(g: Graph) -> None:
     tried = trial([force], 1.0, stiffness, [shift])
     doc = "force, shift, limit, stiffness -> force if it sticks, how far that is beyond the limit"
     g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, beyond(tried, after)])
-    for name, first, moving in (("line", before, [shift, after]), ("steady", after, [shift])):
-        slid = slide([force], tried, first, after, stiffness, compliance)
-        doc = (
-            "force, limit before, stiffness, compliance, shift, limit after if it changes -> force, tangent "
-            "along and across, loss"
-        )
-        x, y = [force, first, stiffness, compliance], [*slid.force, *slid.tangent, slid.loss]
-        g.add_with_seed(f"slide_{name}", doc, [*x, *moving], y, fixed=4)
+    slid = slide([force], tried, after, after, stiffness, compliance)
+    results = "force, tangent along and across, loss"
+    doc = (
+        f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
+    )
+    heat = where(slid.slip > 0.0, slid.force[0], 0.0)
+    y = [*slid.force, *slid.tangent, slid.loss, heat]
+    g.add("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
+    slid = slide([force], tried, before, after, stiffness, compliance)
+    doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
+    x, y = [force, before, stiffness, compliance, shift, after], [*slid.force, *slid.tangent, slid.loss]
+    g.add_with_seed("slide_line", doc, x, y, fixed=4)
     _plane(g)
 
 

@@ -53,6 +53,11 @@ _UNARY = {
     ca.OP_SIGN: "{0} > 0.0 ? 1.0 : ({0} < 0.0 ? -1.0 : {0})",
 }
 
+_IN_DERIVATIVES = {
+    ca.OP_DIV: "{0} == 0.0 ? 0.0 : {0} / {1}",
+    ca.OP_SIGN: "({0} > 0.0 ? 1.0 : 0.0) - ({0} < 0.0 ? 1.0 : 0.0)",
+}
+
 HELPERS = """/* expm1, at less cost where nothing cancels. */
 static inline double exp_less_one(double x)
 {
@@ -76,7 +81,8 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
     """C of `static void name(const double *x, const double *c, double *y)`.
 
     Every intermediate value is a constant of its own, in the order of evaluation. In a `derivative`
-    nothing that changes makes no change, where the slope is infinite too: 0/0 is 0.
+    nothing that changes makes no change, where the slope is infinite too: 0/0 is 0; and the slope of the
+    smaller or larger of two that are equal is that of the first.
     """
     graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
     inputs = "xc"
@@ -95,22 +101,52 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
             place[out[0]] = f"{inputs[args[0]]}[{args[1]}]"
         else:
             form = _BINARY.get(code) or _UNARY.get(code)
-            if derivative and code == ca.OP_DIV:
-                form = "{0} == 0.0 ? 0.0 : {0} / {1}"
+            if derivative:
+                form = _IN_DERIVATIVES.get(code, form)
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
             names = [place[a] for a in args]
-            choice = _choice(names, made) if code == ca.OP_ADD else None
-            body.append(f"const double t{k} = {choice or form.format(*names)};")
+            simpler = _SIMPLER.get(code, _none)(names, made)
+            body.append(f"const double t{k} = {simpler or form.format(*names)};")
             place[out[0]] = f"t{k}"
-            made[f"t{k}"] = code, names
+            made[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
     unused = [name for name in inputs if name not in given] + ([] if y else ["y"])
     body += [f"(void){name};" for name in unused]
     lines = "\n".join(f"    {line}" for line in _used(body))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
-def _choice(names: Sequence[str], made: Mapping[str, tuple[int, list[str]]]) -> str | None:
+_Made = Mapping[str, tuple[int, list[str]]]
+"""{value: operation, what it is made of}."""
+
+
+def _none(names: Sequence[str], made: _Made) -> str | None:
+    return None
+
+
+def _first_of_equal(names: Sequence[str], made: _Made) -> str | None:
+    """Slope of the smaller or larger of two in one of them, which CasADi shares between equal ones:
+    (a <= b)/((a <= b) + (b <= a))."""
+    one, both = names
+    code, terms = made.get(both, (None, [""]))
+    if code != ca.OP_ADD or one not in terms:
+        return None
+    first = terms[0]
+    (first_code, ends), (second_code, others) = (made.get(name, (None, [])) for name in terms)
+    if (first_code, second_code) != (ca.OP_LE, ca.OP_LE) or ends != others[::-1]:
+        return None
+    return first if one == first else f"{first} == 0.0 ? 1.0 : 0.0"
+
+
+def _where(names: Sequence[str], made: _Made) -> str | None:
+    """A product with a condition, 1 or 0."""
+    for condition, value in (names, names[::-1]):
+        if made.get(condition, (None, []))[0] in _CONDITIONS:
+            return f"{condition} != 0.0 ? {value} : 0.0"
+    return None
+
+
+def _choice(names: Sequence[str], made: _Made) -> str | None:
     """`where(condition, a, b)`, which CasADi has as the sum of both, each 0 where it does not hold."""
     (code, first), (other, second) = (made.get(name, (None, [])) for name in names)
     if code != ca.OP_IF_ELSE_ZERO or other != ca.OP_IF_ELSE_ZERO:
@@ -119,6 +155,10 @@ def _choice(names: Sequence[str], made: Mapping[str, tuple[int, list[str]]]) -> 
         if made.get(no) == (ca.OP_NOT, [yes]):
             return f"{yes} != 0.0 ? {a} : {b}"
     return None
+
+
+_SIMPLER = {ca.OP_ADD: _choice, ca.OP_DIV: _first_of_equal, ca.OP_MUL: _where}
+_CONDITIONS = (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE, ca.OP_AND, ca.OP_OR, ca.OP_NOT)
 
 
 def _used(body: Sequence[str]) -> list[str]:

@@ -43,8 +43,10 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
     files["law.h"], files["law.c"] = law_c(
         graph(model, given, native.functions, native.tabulated), model, native
     )
-    memory = model.memory_size(parameters.values) if native.memory is None else native.memory
-    files |= {"variables.c": variables_c(model), "model.h": _model(model, parameters.values, memory)}
+    files |= {
+        "variables.c": variables_c(model),
+        "model.h": _model(model, parameters.values, native.memory.size),
+    }
     files |= {"elementary_tables.h": tables()}
     head = GENERATED.format(version=__version__, of="")
     files |= {n: head + files[n] for n in _GENERATED}
@@ -60,12 +62,15 @@ def token(files: Mapping[str, str]) -> str:
 def native_part(model: Model) -> NativePart:
     """How a model becomes C.
 
-    Raises ValueError if its joint's folder does not say so.
+    Raises ValueError if its joint's folder does not say so, or not what it remembers.
     """
     load = parts_of(model).native
     if load is None:
         raise ValueError(f"{model.name}: the joint {model.joint!r} has no part `native`; expected its C")
-    return load()
+    native = load()
+    if (model.rest is None) != (native.memory.size == 0):
+        raise ValueError(f"{model.name}: one of `rest` and the memory in C is given, expected both or none")
+    return native
 
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
@@ -85,12 +90,15 @@ def _model(model: Model, parameters: Any, memory: int) -> str:
         moving += f"#define LAGS {first + list(model.parameter_fields()).index('lag_a')}\n"
     if model.events:
         moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
+    places = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)
     if memory:
         moving += f"#define N_MEMORY {memory}\n"
     return f"""#ifndef JOINTFMU_MODEL_H
 #define JOINTFMU_MODEL_H
 
 {moving}
+enum {{ {places} }};
+
 enum {{
     N_INPUTS = {len(model.inputs)},
     N_OUTPUTS = {len(model.outputs)},

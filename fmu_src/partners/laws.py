@@ -1,29 +1,17 @@
 """What a joint meets in a system: inertia, mass and load; the equations of their FMUs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, make_dataclass
 from math import comb
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity import Number, check, quantity
+from jointfmu.quantity import Number, check, quantity, smooth_step, smooth_step_slopes
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
-
-
-def smooth_step(x: Number) -> Number:
-    """From 0 at x <= 0 to 1 at x >= 1 with continuous first and second derivative."""
-    r = np.fmin(np.fmax(x, 0.0), 1.0)
-    return r * r * r * (10.0 + r * (6.0 * r - 15.0))
-
-
-def smooth_step_slopes(x: Number) -> tuple[Number, Number]:
-    """First and second derivative of `smooth_step`."""
-    r = np.fmin(np.fmax(x, 0.0), 1.0)
-    return 30.0 * (r * (1.0 - r)) ** 2, 60.0 * r * (1.0 - r) * (1.0 - 2.0 * r)
 
 
 def _lag(flange: str) -> Any:
@@ -145,33 +133,15 @@ POINTS = 17
 """Of a TorqueCurve."""
 
 
-def _point(k: int) -> Any:
-    return quantity("N.m", f"torque at point {k + 1} of {POINTS} of the Bernstein polynomial")
+_NAMES = [f"p{k + 1}" for k in range(POINTS)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorqueCurve:
+class _Bernstein:
     """A torque over time as a Bernstein polynomial, held before and after it."""
 
     start: float = quantity("s", "begin of the curve")
     duration: float = quantity("s", "from its begin to its end", gt=0.0)
-    p1: float = _point(0)
-    p2: float = _point(1)
-    p3: float = _point(2)
-    p4: float = _point(3)
-    p5: float = _point(4)
-    p6: float = _point(5)
-    p7: float = _point(6)
-    p8: float = _point(7)
-    p9: float = _point(8)
-    p10: float = _point(9)
-    p11: float = _point(10)
-    p12: float = _point(11)
-    p13: float = _point(12)
-    p14: float = _point(13)
-    p15: float = _point(14)
-    p16: float = _point(15)
-    p17: float = _point(16)
 
     def __post_init__(self) -> None:
         check(self)
@@ -191,7 +161,7 @@ class TorqueCurve:
         rest = torque - shares[:, ends] @ torque[[0, -1]]
         inner, *_ = np.linalg.lstsq(shares[:, 1:-1], rest, rcond=None)
         points = [torque[0], *inner, torque[-1]]
-        return {f"p{k + 1}": float(value) for k, value in enumerate(points)}
+        return dict(zip(_NAMES, map(float, points), strict=True))
 
     def corners(self) -> tuple[Number, ...]:
         """Times [s] at which the curve begins and ends."""
@@ -200,8 +170,23 @@ class TorqueCurve:
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Torque [N.m], with that of the input."""
         shares = self.shares((v["time"] - self.start) / self.duration)
-        points = [getattr(self, f"p{k + 1}") for k in range(POINTS)]
-        return {"tau": v["tau_in"] + sum(point * share for point, share in zip(points, shares, strict=True))}
+        points = [getattr(self, name) * share for name, share in zip(_NAMES, shares, strict=True)]
+        return {"tau": v["tau_in"] + sum(points)}
+
+
+def _point(name: str) -> tuple[str, type, Any]:
+    doc = f"torque at point {name[1:]} of {POINTS} of the Bernstein polynomial"
+    return name, float, quantity("N.m", doc)
+
+
+TorqueCurve: type[_Bernstein] = make_dataclass(
+    "TorqueCurve",
+    [_point(name) for name in _NAMES],
+    bases=(_Bernstein,),
+    namespace={"__doc__": _Bernstein.__doc__, "__module__": __name__},
+    frozen=True,
+    kw_only=True,
+)
 
 
 PARTNERS: dict[str, type[object]] = {

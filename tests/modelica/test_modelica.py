@@ -28,7 +28,7 @@ from read_modelica import Read, read, solution
 from scipy.integrate import solve_ivp
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.contact import Place, elastic_shear
 from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
@@ -370,7 +370,7 @@ def test_gear_component_gives_the_force_of_the_package(rumoca: Any, gear: GearCo
 
 
 def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
-    """Without friction: far below its limit, which the component then does not have."""
+    """Without memory: far below the limit, which the FMU has for each of its nodes."""
     s, v = (0.0, -2e-9, -4e-6), (2e-6, -1e-6, 6e-3)
     flags = {"memory": False, "damping": True, "plastic_damping": True}
     plastic = BoltedJointSpring.of_nodes(changed(bolted.joint, flags))
@@ -393,6 +393,24 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
             error = abs(found[f"joint.f[{i + 1}]"][k] - exact[f"f_{axis}"])
             allowed = EXACT * scale + (2.0 * tight.DAMPING_TOLERANCE * damping if axis == "z" else 0.0)
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
+
+
+def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: Any, bolted: BoltedJointSpring):
+    """Without memory, where the linear force would be more than twice the limit, while the load changes."""
+    body = "JointStiffness.Components.BoltedJoint joint(memory=false, damping=false);"
+    rates = (6e-6, -4e-6, -5e-7)
+    body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))
+    wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
+    found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
+    total = tight.tightened(bolted, 9e3, 0.0)
+    limit, u = bolted.joint.mu * total.force, (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
+    assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
+    curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]
+    x, y, *_, lifted, _ = elastic_shear(limit, total.shear, [*curve, 0.0 * u[0]], *u)
+    for name, force in (("f[1]", x), ("f[2]", y)):
+        np.testing.assert_allclose(found[f"joint.{name}"], -force, rtol=0.0, atol=EXACT * limit)
+    normal = found["joint.G"] - total.force + lifted
+    np.testing.assert_allclose(found["joint.f[3]"], normal, rtol=0.0, atol=EXACT * limit)
 
 
 _CIRCLE = """

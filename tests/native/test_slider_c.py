@@ -59,7 +59,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
     path = tmp_path_factory.mktemp("sliders") / "sliders.so"
     path.write_bytes(made["x86_64-linux"])
     found = CDLL(str(path))
-    found.sliders_force.restype = c_double
+    found.sliders_force.restype = found.sliders_heat.restype = c_double
     return found
 
 
@@ -98,7 +98,7 @@ def close(found: object, expected: object, size: float) -> None:
 
 
 def test_along_one_direction(library: CDLL) -> None:
-    """Forces, sums, tangent and rates of a limit that stays and of one that changes."""
+    """Forces, sums, tangent and rates of a limit that changes, slope of the heat of one that stays."""
     moved, slipped = np.empty(SLIDERS), 0
     for K, before, after, force, (u, _) in moves(plane=False):
         s, kept = in_c(K, before, after, force)
@@ -112,10 +112,13 @@ def test_along_one_direction(library: CDLL) -> None:
         tried = force[0] + K * u
         slips = np.abs(tried) > after
         slipped += int(np.sum(slips))
-        ones = pointer(np.ones(SLIDERS))
-        library.sliders_line_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
-        rises = 0.0 if after is before else float(np.sum(np.sign(tried[slips & (after > 0.0)])))
-        if after is before or np.all(after[slips] > 0.0):
+        if after is before:
+            heat = library.sliders_heat(SLIDERS, byref(s), c_double(u))
+            assert heat == pytest.approx(float(np.sign(tried) @ np.where(slips, after, 0.0)), abs=ROUND_OFF)
+        elif np.all(after[slips] > 0.0):
+            ones = pointer(np.ones(SLIDERS))
+            library.sliders_line_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
+            rises = float(np.sum(np.sign(tried[slips])))
             assert rate.force[0] == pytest.approx(float(expected.tangent) + rises, abs=ROUND_OFF * SLIDERS)
         assert kept.size
     assert 0.2 * MOVES < slipped < 0.8 * MOVES

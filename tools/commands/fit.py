@@ -12,12 +12,10 @@ from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
-from jointfmu.joints import KINDS
 from jointfmu.parameters import dump, load
 
 from ..drawing.reading import number
-from ..fitting.procedure import Option, Procedure
-from ..joint_parts import part
+from ..fitting.procedure import Option, Procedure, procedures
 from ..pressing import judge_file
 
 if TYPE_CHECKING:
@@ -28,26 +26,16 @@ def add(commands: Commands) -> None:
     """Declare the command and what the joints are fitted to."""
     text = "fit a joint's parameters to a measured curve or a catalogue row"
     top = commands.add_parser("fit", help=text, description=text)
-    procedures = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
-    for choices in _procedures().values():
-        _declare(procedures, choices)
+    ways = top.add_subparsers(dest="procedure", required=True, metavar="PROCEDURE", parser_class=Parser)
+    for choices in procedures().values():
+        _declare(ways, choices)
 
 
-def _procedures() -> dict[str, dict[str, Procedure]]:
-    """{name: {joint: procedure}}; procedures of several joints may share a name."""
-    found: dict[str, dict[str, Procedure]] = {}
-    for kind in KINDS.values():
-        own = part(kind, "fit")
-        for procedure in own.FITS if own else ():
-            found.setdefault(procedure.name, {})[kind.name] = procedure
-    return found
-
-
-def _declare(procedures: Commands, choices: Mapping[str, Procedure]) -> None:
+def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     """Declare the procedures of one name: what all share, and their own options."""
     first = next(iter(choices.values()))
     text = "; ".join(procedure.text for procedure in choices.values())
-    sub = command(procedures, first.name, partial(_fit, choices), f"fit {text}")
+    sub = command(ways, first.name, partial(_fit, choices), f"fit {text}")
     if first.file:
         sub.add_argument("file", type=Path, metavar="FILE", help="CSV; the heading names columns and units")
     sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
@@ -124,12 +112,11 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
 def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
     """Write and print what was found."""
     from ..fitting.outcome import percent
-    from ..fitting.picture import draw
+    from ..fitting.picture import draw, size
 
     if args.plot:
-        pictures = [outcome.picture, *filter(None, (outcome.beside,))]
-        with plots.drawing(args.plot, (7.2 if len(pictures) == 1 else 10.8, 5.6)) as figure:
-            draw(figure, pictures)
+        with plots.drawing(args.plot, size(outcome)) as figure:
+            draw(figure, outcome)
     if args.out:
         write_text(args.out, dump(outcome.parameters))
     if args.json:

@@ -1,18 +1,23 @@
 """The picture of a fit."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointfmu import plots
 
-from .outcome import Picture
+from .outcome import Outcome
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(figure: "Figure", pictures: Sequence[Picture]) -> None:
+def size(outcome: Outcome) -> tuple[float, float]:
+    """Of the figure [inch]."""
+    return (10.8 if outcome.beside else 7.2), 5.6
+
+
+def draw(figure: "Figure", outcome: Outcome) -> None:
     """Data and law above, residuals below; pictures side by side."""
+    pictures = [outcome.picture, *filter(None, (outcome.beside,))]
     every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(every.T, pictures, strict=True):
         x, y = picture.x, picture.y

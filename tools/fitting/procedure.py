@@ -4,6 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from jointfmu.joints import KINDS
+
+from ..joint_parts import part
+
 if TYPE_CHECKING:
     from .outcome import Outcome
 
@@ -52,6 +56,16 @@ class Procedure:
     column: str = ""
     options: Sequence[Option] = ()
     run: "Callable[..., Outcome]"
+
+
+def procedures() -> dict[str, dict[str, Procedure]]:
+    """{name: {joint: procedure}}; procedures of several joints may share a name."""
+    found: dict[str, dict[str, Procedure]] = {}
+    for kind in KINDS.values():
+        own = part(kind, "fit")
+        for procedure in own.FITS if own else ():
+            found.setdefault(procedure.name, {})[kind.name] = procedure
+    return found
 
 
 DAMPING_RATIO = Option(

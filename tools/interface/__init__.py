@@ -1,13 +1,17 @@
-"""The public interface of `import jointfmu`: joints, laws, fits and FMUs as objects."""
+"""The public interface of `import jointfmu`, whose `__all__` lists it: joints, laws, fits and runs."""
 
 from jointfmu.joints import KINDS
 
-from .frame import Frame
-from .joint import Joint
-from .law import Law, law
-from .make import Fit, fit, load, maker
-from .run import run
-from .table import Table
+from .frame import Frame as Frame
+from .joint import Joint as Joint
+from .law import Law as Law
+from .law import law as law
+from .make import Fit as Fit
+from .make import fit as fit
+from .make import load as load
+from .make import maker
+from .run import run as run
+from .table import Table as Table
 
 drive = maker(
     "drive",
@@ -39,19 +43,3 @@ gear_mesh = maker(
     "... )\n"
     '>>> mesh.values["teeth1"]\n20.0',
 )
-
-__all__ = [
-    "Fit",
-    "Frame",
-    "Joint",
-    "Law",
-    "Table",
-    "bolted_joint",
-    "drive",
-    "fit",
-    "gear_contact",
-    "gear_mesh",
-    "law",
-    "load",
-    "run",
-]

@@ -11,17 +11,17 @@ from numpy.typing import ArrayLike
 
 from jointfmu import plots
 from jointfmu.commands.common import without_package
-from jointfmu.contact.roughness import DECLARED
 from jointfmu.files.writing import write_text
+from jointfmu.fmi.ramp import broadcast
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import ParameterFile, dump
-from jointfmu.quantity import flat_fields
 
 from ..pressing import judge_file
+from ..shown import quantity, stated
 from .frame import Frame
 from .law import Law
-from .table import Table, quantity
+from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,20 +78,11 @@ class Joint:
     @property
     def parameters(self) -> Table:
         """All numbers with unit, meaning, kind and source."""
-        fields = {name: item.metadata for name, item in flat_fields(type(self.file.values))}
-        inputs = {v.name: v for model in self.fmus.values() for v in model.inputs}
-        stated = [(n, v, fields[n].get("unit"), fields[n]["doc"]) for n, v in self.file.flat.items()]
-        stated += [(f"inputs.{n}", v, inputs[n].unit, inputs[n].doc) for n, v in self.file.inputs.items()]
-        known = ((n, v, DECLARED[n].metadata) for n, v in self.file.roughness.items())
-        stated += [(f"roughness.{n}", v, meta["unit"], meta["doc"]) for n, v, meta in known]
         rows = [
-            (name, *quantity(value, unit), doc, self.file.origins.get(name, "user"), self._source(name))
-            for name, value, unit, doc in stated
+            (one.name, *quantity(one.value, one.unit), one.doc, one.kind, one.source)
+            for one in stated(self.file)
         ]
         return Table(self._title, ("name", "value", "unit", "meaning", "kind", "source"), rows)
-
-    def _source(self, name: str) -> str:
-        return self.file.sources.get(name, "default choice")
 
     @property
     def _title(self) -> str:
@@ -139,11 +130,7 @@ class Joint:
 
     def model(self, fmu: str | None = None) -> Model:
         """What one of its FMUs is: inputs, outputs, units. ValueError if it has none of that name."""
-        if fmu is not None and fmu not in self.fmus:
-            raise ValueError(
-                f"fmu = {fmu!r} is none of a {self.file.joint}, allowed are {', '.join(self.fmus)}"
-            )
-        return self.fmus[fmu or next(iter(self.fmus))].of(self.file.joint, self.file.values)
+        return KINDS[self.file.joint].model(fmu).of(self.file.joint, self.file.values)
 
     @cached_property
     def spring(self) -> Spring:
@@ -197,20 +184,15 @@ class Joint:
             raise ValueError(f"{model.name}: unknown input {unknown[0]!r}, allowed are {', '.join(names)}")
         rest = {name: self.file.start(name) for name in names}
         columns = {name: np.ravel(np.asarray(value, dtype=np.float64)) for name, value in inputs.items()}
-        sizes = {name: column.size for name, column in columns.items() if column.size != 1}
-        if len(set(sizes.values())) > 1:
-            told = ", ".join(f"{name} {size}" for name, size in sizes.items())
-            raise ValueError(
-                f"{model.name}: inputs of different lengths ({told}), allowed are 1 and one other"
-            )
+        columns, count = broadcast(columns, model.name)
         for variable in model.inputs:
             wrong = [x for x in columns.get(variable.name, ()) if not variable.interval.contains(x)]
             if wrong:
                 allowed = f"{variable.interval} {variable.unit}"
                 raise ValueError(f"{model.name}: {variable.name} = {wrong[0]:g} is outside {allowed}")
         rows: list[dict[str, float]] = []
-        for i in range(max(sizes.values(), default=1)):
-            point = rest | {name: float(c[i if c.size > 1 else 0]) for name, c in columns.items()}
+        for i in range(count):
+            point = rest | {name: float(column[i]) for name, column in columns.items()}
             outputs, memory = step(point, memory)
             rows.append(point | {name: float(value) for name, value in outputs.items()})
         units = {v.name: v.unit for v in (*model.inputs, *model.outputs)}

@@ -14,8 +14,9 @@ from jointfmu.contact.laws import LAWS
 from jointfmu.judgement import judge, law_height
 from jointfmu.quantity import flat_fields, flatten
 
+from ..shown import quantity
 from .frame import Frame
-from .table import Table, quantity
+from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,7 +16,8 @@ from jointfmu.parameters import load as load_file
 
 from ..drawing.part import Drawing, NewJoint, Option
 from ..fitting.outcome import Outcome, percent
-from ..fitting.picture import draw
+from ..fitting.picture import draw, size
+from ..fitting.procedure import procedures
 from ..joint_parts import part
 from .joint import Facts, Joint
 from .table import Table
@@ -191,9 +192,8 @@ class Fit:
     @plots.style()
     def plot(self) -> "Figure":
         """Draw data, fitted law and residuals: a matplotlib figure."""
-        pictures = [self.outcome.picture, *filter(None, (self.outcome.beside,))]
-        figure = plots.figure((7.2 if len(pictures) == 1 else 10.8, 5.6))
-        draw(figure, pictures)
+        figure = plots.figure(size(self.outcome))
+        draw(figure, self.outcome)
         return figure
 
 
@@ -222,21 +222,17 @@ def fit(
     >>> drive.values["K1"]
     4700.0
     """
+    wanted, every = joint or (start.file.joint if start else None), procedures()
     known = {
-        (own.name, kind.name): own
-        for kind in KINDS.values()
-        if (fits := part(kind, "fit"))
-        for own in fits.FITS
+        name: [of for of in choices if wanted in (None, of)]
+        for name, choices in every.items()
+        if wanted is None or wanted in choices
     }
-    wanted = joint or (start.file.joint if start else None)
-    found = [own for (name, of), own in known.items() if name == procedure and wanted in (None, of)]
-    if not found:
-        names = dict.fromkeys(name for name, of in known if wanted in (None, of))
-        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(names)}")
-    if len(found) > 1:
-        joints = [of for name, of in known if name == procedure]
+    if procedure not in known:
+        raise ValueError(f"procedure = {procedure!r}, allowed are {', '.join(known)}")
+    if len(joints := known[procedure]) > 1:
         raise ValueError(f"procedure {procedure!r} is of several joints; expected joint = one of {joints}")
-    chosen = found[0]
+    chosen = every[procedure][joints[0]]
     if chosen.file == (file is None):
         raise ValueError(f"procedure {procedure!r} takes {'a' if chosen.file else 'no'} file")
     by = {option.unit_by for option in chosen.options}  # units of texts; numbers here are SI

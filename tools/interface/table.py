@@ -3,11 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import Any
-
-from jointfmu.quantity.units import factor
-
-from ..shown import shown_unit, spelled
 
 LONGEST = 60
 """Letters of a cell at a prompt; a notebook shows all."""
@@ -45,18 +40,6 @@ class Table:
             f"<div><b>{escape(self.title)}</b></div>{lines}"
             f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-
-
-def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
-    """A value as text in the unit in which it reads best, and that unit."""
-    if isinstance(value, bool | str):
-        return str(value).lower(), ""
-    if isinstance(value, tuple):
-        return f"{len(value)} numbers, {min(value):.{digits}g} to {max(value):.{digits}g}", unit or ""
-    if unit is None:
-        return f"{value:g}", ""
-    shown = shown_unit(unit, value)
-    return f"{factor(unit, shown) * value:.{digits}g}", spelled(shown)
 
 
 def _cut(cell: str) -> str:

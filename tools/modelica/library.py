@@ -20,6 +20,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flat_fields
+from jointfmu.quantity.smooth import STEP
 
 from ..joint_parts import part
 from ..systems.system import System, systems
@@ -86,7 +87,7 @@ def library(file: ParameterFile | None = None, points: Points | None = None) -> 
         "Wrappers": {name: model.render(wrapper(fmu)) for name, fmu in MODELS.items()},
         "Interfaces": {name: block.render(interface(fmu)) for name, fmu in MODELS.items()},
         "Data": _data(joints),
-        "Functions": _plain(shared, "Functions", _FUNCTIONS),
+        "Functions": _plain(shared, "Functions", _FUNCTIONS, step=[round(a) for a in STEP]),
     }
     notes = [text(joint.component.note) for joint in joints if joint.component.note]
     common = {"version": __version__, "notes": notes, "example": next(iter(MODELS))}

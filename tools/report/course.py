@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from jointfmu.fmi.loops import Loops, Swing, conjugate, of
 from jointfmu.fmi.ramp import RampResult
-from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
 
@@ -123,8 +122,3 @@ def _limit(model: Model, spring: Any, rest: Mapping[str, float]) -> tuple[float,
         middle = 0.5 * (low + high)
         low, high = (low, middle) if beyond(middle) else (middle, high)
     return high, beyond(high)[0]
-
-
-def kinds_of(file: ParameterFile) -> dict[str, Model]:
-    """{FMU: its model} of the joint of a parameter file."""
-    return {model.name: model for model in KINDS[file.joint].models}

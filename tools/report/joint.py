@@ -10,20 +10,18 @@ from jointfmu_fmu_src.native.page import drawings, panels
 from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
-from jointfmu.contact.roughness import DECLARED
 from jointfmu.files.writing import write_text
 from jointfmu.fmi.loops import Loops
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
-from jointfmu.quantity import flat_fields
 from jointfmu.quantity.units import factor
 
 from ..joint_parts import part
 from ..pressing import judge_file
-from ..shown import shown_unit, spelled
+from ..shown import Stated, quantity, shown_unit, spelled, stated
 from .beside import Beside
-from .course import Course, kinds_of
+from .course import Course
 from .figure import Figure, Panel, Series
 from .looks import script, style
 
@@ -64,10 +62,7 @@ def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) 
 
     Raises ValueError if the joint has no such FMU, or the file cannot be written.
     """
-    models = kinds_of(file)
-    if fmu is not None and fmu not in models:
-        raise ValueError(f"fmu = {fmu!r} is none of a {file.joint}, allowed are {', '.join(models)}")
-    write_text(path, _page(models[fmu or next(iter(models))], file))
+    write_text(path, _page(KINDS[file.joint].model(fmu), file))
 
 
 def _page(model: Model, file: ParameterFile) -> str:
@@ -100,40 +95,18 @@ def _page(model: Model, file: ParameterFile) -> str:
 
 
 def _rows(file: ParameterFile) -> list[_Row]:
-    """Every number of the file: parameters, start values of inputs, roughnesses."""
-    fields = {name: item.metadata for name, item in flat_fields(type(file.values))}
-    variables = {v.name: v for model in kinds_of(file).values() for v in model.inputs}
-    found = [
-        (name, value, fields[name].get("unit"), fields[name]["doc"]) for name, value in file.flat.items()
-    ]
-    for name, value in file.inputs.items():
-        found.append((f"inputs.{name}", value, variables[name].unit, variables[name].doc))
-    for name, value in file.roughness.items():
-        meta = DECLARED[name].metadata
-        found.append((f"roughness.{name}", value, meta["unit"], meta["doc"]))
+    """Every number of the file."""
     return [
-        _Row(
-            name,
-            *_shown(value, unit),
-            doc,
-            file.origins.get(name, "user"),
-            file.sources.get(name, "default choice"),
-        )
-        for name, value, unit, doc in found
+        _Row(one.name, *quantity(one.value, one.unit), _exact(one), one.doc, one.kind, one.source)
+        for one in stated(file)
     ]
 
 
-def _shown(value: Any, unit: str | None) -> tuple[str, str, str]:
-    """A value in its display unit, that unit, and the value in SI where that is another."""
-    if isinstance(value, bool | str):
-        return str(value).lower(), "", ""
-    if isinstance(value, tuple):
-        return f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}", spelled(unit or "1"), ""
-    if unit is None:
-        return f"{value:g}", "", ""
-    shown = shown_unit(unit, value)
-    exact = "" if shown == unit else f"{value:.12g} {spelled(unit)}"
-    return f"{factor(unit, shown) * value:.6g}", spelled(shown), exact
+def _exact(one: Stated) -> str:
+    """The value in SI, where it is shown in another unit."""
+    if one.unit is None or isinstance(one.value, bool | str | tuple):
+        return ""
+    return "" if shown_unit(one.unit, one.value) == one.unit else f"{one.value:.12g} {spelled(one.unit)}"
 
 
 def _scale(values: Any, unit: str) -> tuple[Any, str]:

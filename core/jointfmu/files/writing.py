@@ -90,7 +90,7 @@ def check_folder(path: str | Path) -> None:
     To be called before long work.
     """
     path = Path(path).absolute()
-    _check_place(Path(path), next(folder for folder in (path, *path.parents) if folder.exists()))
+    _check_place(path, next(folder for folder in (path, *path.parents) if folder.exists()))
 
 
 def _check_place(path: Path, folder: Path) -> None:

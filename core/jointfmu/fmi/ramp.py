@@ -90,19 +90,22 @@ def drive(
 
     Raises as `run`, and ValueError for inputs of different lengths or a time that does not rise from 0.
     """
-    sizes = {name: points.size for name, points in inputs.items() if points.size != 1}
-    if time is not None:
-        sizes["time"] = time.size
-    if len(set(sizes.values())) > 1:
-        told = ", ".join(f"{name} {size}" for name, size in sizes.items())
-        raise ValueError(f"{fmu}: inputs of different lengths ({told}), allowed are 1 and one other")
-    count = max(sizes.values(), default=1)
-    clock = np.arange(float(count)) if time is None else time
+    rows, count = broadcast({**inputs} if time is None else {**inputs, "time": time}, str(fmu))
+    clock = rows.pop("time", np.arange(float(count)))
     if not (clock[0] == 0.0 and np.all(np.diff(clock) > 0.0) and np.all(np.isfinite(clock))):
         raise ValueError(f"{fmu}: time does not rise from 0 s")
-    rows = {name: np.broadcast_to(points, count) for name, points in inputs.items()}
     with unpacked(fmu) as (folder, description):
         return _drive(folder, description, rows, clock, dict(settings or {}), str(fmu))
+
+
+def broadcast(columns: Mapping[str, Array], source: str) -> tuple[dict[str, Array], int]:
+    """Columns, each (n) or (1), all of them as (n), and n. Raises ValueError for different lengths."""
+    sizes = {name: column.size for name, column in columns.items() if column.size != 1}
+    if len(set(sizes.values())) > 1:
+        told = ", ".join(f"{name} {size}" for name, size in sizes.items())
+        raise ValueError(f"{source}: inputs of different lengths ({told}), allowed are 1 and one other")
+    count = max(sizes.values(), default=1)
+    return {name: np.broadcast_to(column, count) for name, column in columns.items()}, count
 
 
 def units(fmu: str | Path) -> dict[str, str]:

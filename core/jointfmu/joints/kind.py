@@ -75,6 +75,13 @@ class Kind:
         """Name of the interface law of a parameter set."""
         return next(name for name, cls in self.laws.items() if type(parameters) is cls)
 
+    def model(self, name: str | None = None) -> Model:
+        """The model of an FMU, of the first without a name. Raises ValueError if it has none of that name."""
+        models = {model.name: model for model in self.models}
+        if name is not None and name not in models:
+            raise ValueError(f"fmu = {name!r} is none of a {self.name}, allowed are {', '.join(models)}")
+        return models[name or next(iter(models))]
+
     @property
     def variables(self) -> dict[str, Variable]:
         """Inputs and outputs of all its models by name."""

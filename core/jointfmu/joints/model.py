@@ -170,10 +170,6 @@ class Model:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
         return replace(self, parameters=type(parameters))
 
-    def memory_size(self, parameters: object) -> int:
-        """Numbers of the memory; 0 without one."""
-        return 0 if self.rest is None else self.rest(self.spring(parameters)).size
-
     def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""
         units = {v.name: "" if v.unit == "1" else f" {v.unit}" for v in (*self.inputs, *self.outputs)}

@@ -121,6 +121,11 @@ class Curve:
         load, stiffness = self.derivatives(inside, 1)
         return np.asarray(energy + beyond * (load + 0.5 * beyond * stiffness))
 
+    def odd_inverse(self, load: ArrayLike) -> Array:
+        """`inverse` (...) of a curve from zero on that is odd, at loads (...) of either sign."""
+        y = np.asarray(load, dtype=np.float64)
+        return np.asarray(np.copysign(self.inverse(np.abs(y)), y))
+
     def inverse(self, load: ArrayLike) -> Array:
         """Displacement (...) at which the table carries a load (...), to round-off.
 

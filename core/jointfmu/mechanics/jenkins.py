@@ -126,7 +126,7 @@ class Sliders:
     @property
     def compliance(self) -> Array:
         """Of the springs (..., n), 0 without."""
-        return compliance(self.stiffness)
+        return np.asarray(compliance(self.stiffness))
 
     def along(self, force: Array, shift: ArrayLike, before: Array, after: Array) -> Moved:
         """After shifts (...) along a single direction with forces (..., n) and limits (..., n)."""
@@ -135,6 +135,7 @@ class Sliders:
         return Moved(np.asarray(slid.force[0]), np.sum(slid.loss, axis=-1), np.sum(slid.tangent[0], axis=-1))
 
 
-def compliance(stiffness: Array) -> Array:
+def compliance(stiffness: Number) -> Number:
     """1/stiffness, 0 without springs."""
-    return np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=stiffness > 0.0)
+    some = stiffness > 0.0
+    return where(some, 1.0 / where(some, stiffness, 1.0), 0.0)

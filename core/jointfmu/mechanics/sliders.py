@@ -11,6 +11,7 @@ sums over those of the springs that touch, so the foundation is exact in full st
 approach; they differ by the spread of the springs' limits, which the loss of a loop needs.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -84,9 +85,25 @@ class Carried:
     slope     : [Pa/m2] derivative of the stiffness in the approach
     """
 
-    stiffness: Array
-    limit: Array
-    slope: Array
+    stiffness: Number
+    limit: Number
+    slope: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """What sliders meet on a straight path.
+
+    shift  : [m] along the surface
+    change : [m] of the approach
+    rise   : [Pa] integral of the stiffness over it, ratio/friction times the mean rise of the limits
+    small  : whether the mean stiffness follows from the ends, to the fourth order, as the rise cancels
+    """
+
+    shift: Vector
+    change: Number
+    rise: Number
+    small: Number
 
 
 @dataclass(frozen=True)
@@ -121,20 +138,24 @@ class Foundation:
 
         mu [p(delta) - p(delta - kappa u/mu)]: of all springs, without the sliders' steps.
         """
-        now, then = (self.curve.derivatives(x, 0)[0] for x in self._between(approach, shift))
+        now, then, _ = self.slipped(approach, shift)
         return np.asarray(self.friction * (now - then))
 
     def work(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Integral (...) [J/m2] of the backbone over the shift from 0."""
-        now, then = self._between(approach, shift)
-        energy = self.curve.energy(now) - self.curve.energy(then)
-        whole = self.curve.derivatives(now, 0)[0] * np.asarray(shift, dtype=np.float64)
-        return np.asarray(self.friction * (whole - self.friction / self.ratio * energy))
+        now, _, energy = self.slipped(approach, shift)
+        size = np.asarray(shift, dtype=np.float64)
+        return np.asarray(slipping_work(self.friction, self.ratio, size, now, energy))
 
-    def _between(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array]:
-        """Heights between which springs have slipped."""
+    def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
+        """Loads (...) [Pa] now and where springs have slipped, and the energy (...) [J/m2] in between.
+
+        At approaches (...) [m], over shifts (...) >= 0 [m] from rest.
+        """
         now, moved = np.asarray(approach, dtype=np.float64), np.asarray(shift, dtype=np.float64)
-        return now, np.asarray(now - moved / (self.friction / self.ratio))
+        then = np.asarray(now - moved / (self.friction / self.ratio))
+        load, left = (self.curve.derivatives(x, 0)[0] for x in (now, then))
+        return load, left, self.curve.energy(now) - self.curve.energy(then)
 
     def _ranges(self) -> tuple[Array, Array]:
         """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
@@ -149,21 +170,15 @@ class Foundation:
         """What the sliders have at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
         low, high = self._ranges()
-        full, touches = delta >= high, delta > low
-        now, ends = self.curve.derivatives(delta, 2), self._ends
-        first, last = ([end[..., part] for end in ends] for part in (slice(-1), slice(1, None)))
-        load, springs = (np.where(full, b, a) for a, b in zip(now[:2], last, strict=True))
-        width = np.where(touches, np.minimum(delta, high) - low, 0.0)
-        load = np.where(touches, load - first[0] - first[1] * width, 0.0)
-        springs = np.where(touches, springs - first[1], 0.0)
-        bend = np.where((delta >= low) & ~full, now[2], 0.0)
-        each, slope, early, late = touching(load, springs, bend, width, self.ratio, self.friction)
-        grown = self.friction / self.ratio * each * np.where(full, delta - high, 0.0)
-        limit = np.stack([early + grown, late + grown], axis=-1)
+        first, last = ([end[..., part] for end in self._ends] for part in (slice(-1), slice(1, None)))
+        touches, full = delta >= low, delta >= high
+        now = [delta, *self.curve.derivatives(delta, 2)]
+        pair = of_range(now, [low, *first], [high, *last], touches, full, self.ratio, self.friction)
+        limit = np.stack([one.limit for one in pair], axis=-1)
         return Carried(
-            np.repeat(each, 2, axis=-1),
+            np.repeat(pair[0].stiffness, 2, axis=-1),
             limit.reshape(*limit.shape[:-2], -1),
-            np.repeat(slope, 2, axis=-1),
+            np.repeat(pair[0].slope, 2, axis=-1),
         )
 
     def moved(self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> Moved:
@@ -177,40 +192,32 @@ class Foundation:
         """
         path, end = _Path.of(before, after, shift), self.carried(after)
         start = self.carried(before) if np.any(path.change) else end
-        slid = self._slid(force, start, end, path)
-        loss, changes = slid.loss, start.stiffness != end.stiffness
-        if np.any(changes):
+        slid, loss = on_way(_parts(force), start, end, self._way(start, end, path)), None
+        if np.any(start.stiffness != end.stiffness):
             across = ~self._stays(path)
-            between = self._between_ends(force, start, path) if np.any(across) else (0.0, 0.0)
-            stiffness = start.stiffness, end.stiffness
-            heat = changing_loss(_parts(force), slid.force, path.parts, stiffness, slid.slip, across, between)
-            loss = np.where(changes, heat, loss)
+            inner = self._between_ends(force, start, path) if np.any(across) else []
+            loss = heat(_parts(force), path.parts, start, end, slid, across, inner)
         tangent = np.stack([np.sum(t, axis=-1) for t in slid.tangent], axis=-1)
+        loss = slid.loss if loss is None else loss
         return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), tangent)
 
-    def _slid(self, force: Array, start: Carried, end: Carried, path: "_Path") -> Slid:
-        """Each slider (..., n)."""
-        keeps, carries = self._carrying(start, end, path)
-        tried = trial(_parts(force), keeps, carries, path.parts)
-        return slide(_parts(force), tried, start.limit, end.limit, end.stiffness, compliance(end.stiffness))
-
-    def _carrying(self, start: Carried, end: Carried, path: "_Path") -> tuple[Number, Number]:
-        """What sliders (..., n) keep, and what the shift adds."""
+    def _way(self, start: Carried, end: Carried, path: "_Path") -> "Way":
+        """What the sliders (..., n) meet on a path."""
         if start is end:
-            return 1.0, end.stiffness
+            return Way(path.parts, 0.0, 0.0, True)
         small = self._stays(path) & (
             np.abs(path.change) < SMALL * np.repeat(np.diff(self.height), 2, axis=-1)
         )
         limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
         rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
-        ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
-        return carrying(*ends, path.change, rise, small | (path.change == 0.0))
+        return Way(path.parts, path.change, rise, small | (path.change == 0.0))
 
-    def _between_ends(self, force: Array, start: Carried, path: "_Path") -> tuple[Array, Array]:
-        """Sum of the forces (..., n) at the two inner points of Lobatto's rule."""
+    def _between_ends(self, force: Array, start: Carried, path: "_Path") -> list[Slid]:
+        """The sliders at the two inner points of Lobatto's rule."""
         inner = [path.part(part) for part in (0.5 - LOBATTO, 0.5 + LOBATTO)]
-        slid = [self._slid(force, start, self.carried(p.last[..., 0]), p).force for p in inner]
-        return np.asarray(slid[0][0] + slid[1][0]), np.asarray(slid[0][1] + slid[1][1])
+        ends = [self.carried(p.last[..., 0]) for p in inner]
+        ways = [self._way(start, end, p) for end, p in zip(ends, inner, strict=True)]
+        return [on_way(_parts(force), start, end, way) for end, way in zip(ends, ways, strict=True)]
 
     def _stays(self, path: "_Path") -> NDArray[np.bool_]:
         """Whether all, some or none of the springs of sliders (..., n) touch at both ends of a path alike."""
@@ -252,6 +259,24 @@ def _parts(vector: Array) -> tuple[Array, Array]:
     return vector[..., 0, :], vector[..., 1, :]
 
 
+def slipping_work(friction: Number, ratio: Number, shift: Number, load: Number, energy: Number) -> Number:
+    """Integral [J/m2] of the backbone over the shift [m] from 0, see `Foundation.slipped`."""
+    return friction * (load * shift - friction / ratio * energy)
+
+
+def loop(
+    friction: Number, ratio: Number, size: Number, load: Number, then: Number, energy: Number
+) -> tuple[Number, Number]:
+    """Loss [J/m2] of a cycle with the amplitude `size` [m], and the elastic energy at its end.
+
+    Under constant load 8 (I - B a/2) and B a/2, B the backbone and I its integral over a; the rest is of
+    `Foundation.slipped`.
+    """
+    stored = 0.5 * friction * (load - then) * size
+    loss = 8.0 * (slipping_work(friction, ratio, size, load, energy) - stored)
+    return np.maximum(loss, 0.0), stored
+
+
 def touching(
     load: Number, stiffness: Number, bend: Number, width: Number, ratio: Number, friction: Number
 ) -> tuple[Number, ...]:
@@ -267,6 +292,58 @@ def touching(
     apart = np.minimum(springs * (SPREAD * width), normal)  # else the springs begin at the lower height
     half = 0.5 * friction
     return 0.5 * ratio * springs, 0.5 * ratio * bend, half * (normal - apart), half * (normal + apart)
+
+
+def of_range(
+    now: Vector,
+    low: Vector,
+    high: Vector,
+    touches: Number,
+    full: Number,
+    ratio: Number,
+    friction: Number,
+) -> tuple[Carried, Carried]:
+    """The early and the late slider of a range of heights at an approach.
+
+    now           : approach [m], load [Pa] of the curve there, its stiffness [Pa/m] and slope [Pa/m2]
+    low, high     : heights [m] between which the springs are, load and stiffness of the curve there
+    touches, full : whether some, or all, of the springs touch
+    """
+    delta, load, springs, bend = now
+    width = where(touches, where(full, high[0], delta) - low[0], 0.0)
+    load = where(touches, where(full, high[1], load) - low[1] - low[2] * width, 0.0)
+    springs = where(touches, where(full, high[2], springs) - low[2], 0.0)
+    bend = where(touches, where(full, 0.0, bend), 0.0)
+    each, slope, early, late = touching(load, springs, bend, width, ratio, friction)
+    grown = friction / ratio * each * where(full, delta - high[0], 0.0)
+    return Carried(each, early + grown, slope), Carried(each, late + grown, slope)
+
+
+def on_way(force: Vector, start: Carried, end: Carried, way: Way) -> Slid:
+    """Sliders after a way; the loss is right where the stiffness stays, else see `heat`."""
+    ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
+    tried = trial(force, *carrying(*ends, way.change, way.rise, way.small), way.shift)
+    return slide(force, tried, start.limit, end.limit, end.stiffness, compliance(end.stiffness))
+
+
+def heat(
+    force: Vector,
+    shift: Vector,
+    start: Carried,
+    end: Carried,
+    slid: Slid,
+    across: Number,
+    inner: Sequence[Slid],
+) -> Number:
+    """Loss [J/m2] of sliders on a way.
+
+    across : whether the springs begin or cease to touch on it; then `inner` are the sliders at the two inner
+             points of Lobatto's rule
+    """
+    between = [sum(one.force[axis] for one in inner) for axis in range(2)]
+    stiffness = start.stiffness, end.stiffness
+    changing = changing_loss(force, slid.force, shift, stiffness, slid.slip, across, between)
+    return where(start.stiffness == end.stiffness, slid.loss, changing)
 
 
 def carrying(

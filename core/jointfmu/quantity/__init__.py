@@ -3,6 +3,7 @@
 from .declaration import check, choice, group, problem, quantity, series
 from .interval import Interval, Number, erf, where
 from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
+from .smooth import smooth_step, smooth_step_integral, smooth_step_slopes
 
 __all__ = [
     "Interval",
@@ -21,5 +22,8 @@ __all__ = [
     "problem",
     "quantity",
     "series",
+    "smooth_step",
+    "smooth_step_integral",
+    "smooth_step_slopes",
     "where",
 ]

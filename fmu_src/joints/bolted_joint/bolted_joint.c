@@ -7,12 +7,18 @@
 
 #include "tabulated.h"
 
-enum { PRELOAD, MOMENT, S_REL, V_REL = S_REL + 3, THETA = V_REL + 3, OMEGA = THETA + 3 }; /* places of the inputs */
-_Static_assert(MOMENT == PRELOAD + 1, "the arguments of bolt_pressures");
-_Static_assert(N_INPUTS == OMEGA + 3, "preload, moment, displacement and turn and their rates");
+enum { /* places of the inputs */
+    PRELOAD = INPUT_PRELOAD,
+    MOMENT = INPUT_MOMENT,
+    S_REL = INPUT_S_REL_X,
+    V_REL = INPUT_V_REL_X,
+    THETA = INPUT_THETA_X,
+    OMEGA = INPUT_OMEGA_X
+};
+_Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
-_Static_assert(N_MEMORY == FORCES + MOST_PATCHES * 2 * SLIDERS, "as the package has it");
+_Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
 
 static inline int n_nodes(void)
 {
@@ -160,10 +166,9 @@ static inline bool node_at(const Joint *joint, double approach, int order, doubl
 }
 
 /* Add what a node has to the sums of its normal side: pressure and stiffness, with what shear adds. */
-static inline void add_normal(double *x, const double *node, double factor, double p, double k, double lifted,
-                              double stiffer)
+static inline void add_normal(double *x, const double *node, double p, double k, double lifted, double stiffer)
 {
-    const double share = factor * node[SHARE], px = node[PLACE_X], py = node[PLACE_Y];
+    const double share = node[SHARE], px = node[PLACE_X], py = node[PLACE_Y];
     const double pressure = share * p, stiffness = share * k, all = share * (p + lifted);
     const double normal = share * (k + stiffer);
     x[SUM_NORMAL] += all;
@@ -312,7 +317,7 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
             return false;
         elastic_arguments(joint, i, y, inputs, at);
         elastic_shear(at, joint->c, e);
-        add_normal(x, data.nodes[i], 1.0, y[0], y[1], e[LIFTED], e[STIFFER]);
+        add_normal(x, data.nodes[i], y[0], y[1], e[LIFTED], e[STIFFER]);
         add_shear(x, data.nodes[i], e, e + 2);
         for (int q = 0; q < N_LAW_STATE; q++)
             x[SUM_PLASTIC + q] += data.nodes[i][SHARE] * works[q];
@@ -328,11 +333,11 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 static void find_points(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    const bool begun = (int)memory[MOVED] != UNKNOWN;
+    const bool begun = (int)memory[AT_STATE] != UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
-        const double start = begun ? memory[APPROACHES + j] : end, reference = begun ? memory[REFERENCES + j] : end;
+        const double start = begun ? memory[AT_APPROACH + j] : end, reference = begun ? memory[AT_REFERENCE + j] : end;
         if (kind->moved != RESTING && kind->foundation[j].reference != reference)
             lay(kind, j, reference);
         const Foundation *f = &kind->foundation[j];
@@ -345,10 +350,10 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const double *patch = data.patches[j], *force = memory + FORCES + j * 2 * SLIDERS;
-    const double turn = inputs[THETA + 2] - memory[RIGID + 2];
-    const double u = inputs[S_REL] - memory[RIGID] - turn * patch[PLACE_Y];
-    const double v = inputs[S_REL + 1] - memory[RIGID + 1] + turn * patch[PLACE_X];
+    const double *patch = data.patches[j], *force = memory + AT_FORCE + j * 2 * SLIDERS;
+    const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
+    const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y];
+    const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X];
     return (PatchPath){.force = {force, force + SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
@@ -385,20 +390,23 @@ static inline double energy_near(const Joint *joint, double x, double *load)
     return energy_inside(&joint->kind.energy, curve, segment, t);
 }
 
+/* Arguments of `loop`, and of those that change a seed. */
+enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP };
+
 /* Add the loops whose amplitude is the present shift, see `loop_sums`. */
 static void add_loops(const Joint *joint, const double *inputs, double *x)
 {
-    const double mu = joint->kind.mu, reach = mu / joint->kind.ratio, per_reach = joint->kind.ratio / mu;
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, per_reach = ratio / mu;
     double works = 0.0, energies = 0.0;
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
-        double then;
+        double then, y[2];
         const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
-        const double stored = 0.5 * mu * (at->y[0] - then) * size;
-        const double work = 8.0 * (mu * (at->y[0] * size - reach * energy) - stored);
-        works += data.patches[j][SHARE] * (work > 0.0 ? work : 0.0);
-        energies += data.patches[j][SHARE] * stored;
+        const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
+        loop(given, NULL, y);
+        works += data.patches[j][SHARE] * y[0];
+        energies += data.patches[j][SHARE] * y[1];
     }
     x[SUM_LOOP_WORK] = works;
     x[SUM_LOOP_ENERGY] = energies;
@@ -408,30 +416,26 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
 static void add_loop_rate(const Joint *joint, const double *patch, const Point *at, const double *inputs,
                           const double *rates, double *dx)
 {
-    const Kind *kind = &joint->kind;
     const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
     if (size == 0.0)
         return;
-    const double mu = kind->mu, reach = mu / kind->ratio, *now = at->y;
-    double then[2];
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio, *now = at->y;
+    const double grows = (u * rates[1] + v * rates[2]) / size, falls = rates[0] - grows / reach;
+    double then[2], y[2];
     const double energy = at->energy - energy_at(joint, at->approach - size / reach, then);
-    const double backbone = mu * (now[0] - then[0]), stored = 0.5 * backbone * size;
-    const double work = 8.0 * (mu * (now[0] * size - reach * energy) - stored);
-    const double approach = rates[0], grows = (u * rates[1] + v * rates[2]) / size, falls = approach - grows / reach;
-    const double slope = mu * (now[1] * approach - then[1] * falls);
-    const double energy_rate = now[0] * approach - then[0] * falls;
-    const double stored_rate = 0.5 * (slope * size + backbone * grows);
-    const double integral_rate = mu * (now[1] * approach * size + now[0] * grows - reach * energy_rate);
-    dx[SUM_LOOP_WORK] += patch[SHARE] * (work > 0.0 ? 8.0 * (integral_rate - stored_rate) : 0.0);
-    dx[SUM_LOOP_ENERGY] += patch[SHARE] * stored_rate;
+    const double x[2 * N_LOOP - L_SIZE] = {mu, ratio, size, now[0], then[0], energy, grows, now[1] * rates[0],
+                                           then[1] * falls, now[0] * rates[0] - then[0] * falls};
+    loop_seed(x, NULL, y);
+    dx[SUM_LOOP_WORK] += patch[SHARE] * y[0];
+    dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
 }
 
 /* How it has moved after the way to inputs. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    if ((int)memory[MOVED] == FREE || inputs[S_REL + 1] != memory[RIGID + 1] || inputs[THETA + 2] != memory[RIGID + 2])
+    if ((int)memory[AT_STATE] == FREE || inputs[S_REL + 1] != memory[AT_RIGID + 1] || inputs[THETA + 2] != memory[AT_RIGID + 2])
         return FREE;
-    return (int)memory[MOVED] == ALONG || inputs[S_REL] != memory[RIGID] ? ALONG : RESTING;
+    return (int)memory[AT_STATE] == ALONG || inputs[S_REL] != memory[AT_RIGID] ? ALONG : RESTING;
 }
 
 /* A patch moves: its sums, and the forces of all its sliders. */
@@ -461,19 +465,19 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
-        const Shear shear = slide(joint, j, inputs, memory, after + FORCES + 2 * j * SLIDERS);
+        const Shear shear = slide(joint, j, inputs, memory, after + AT_FORCE + 2 * j * SLIDERS);
         add_shear(x, data.patches[j], shear.traction, shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
-        after[REFERENCES + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
-        after[APPROACHES + j] = kind->to[j].approach;
+        after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
+        after[AT_APPROACH + j] = kind->to[j].approach;
     }
-    const double loss = memory[LOSS] + kind->area * heat;
+    const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
-    after[MOVED] = kind->memory ? kind->moved : UNKNOWN;
-    after[LOSS] = loss;
-    after[RIGID] = kind->memory ? inputs[S_REL] : 0.0;
-    after[RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
-    after[RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
+    after[AT_STATE] = kind->memory ? kind->moved : UNKNOWN;
+    after[AT_LOSS] = loss;
+    after[AT_RIGID] = kind->memory ? inputs[S_REL] : 0.0;
+    after[AT_RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
+    after[AT_RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
 }
 
 /* Outputs */
@@ -556,7 +560,7 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
             elastic_shear_seed(at, joint->c, e);
             add_shear(dx, node, e, e + 2);
         }
-        add_normal(dx, node, 1.0, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
+        add_normal(dx, node, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
         for (int q = 0; q < N_LAW_STATE; q++)
             dx[SUM_PLASTIC + q] += node[SHARE] * slopes[q] * rate;
         const double force = node[SHARE] * carried[1] * tightening;
@@ -580,7 +584,7 @@ static void patch_rates(const Joint *joint, const double *inputs, const double *
         const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
         const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {(int)memory[MOVED] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {(int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
         add_loop_rate(joint, patch, path.to, inputs, loop, dx);
         if (!kind->memory)
             continue;

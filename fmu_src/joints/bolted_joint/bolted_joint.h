@@ -8,10 +8,6 @@
 #include "energy.h"
 #include "friction.h"
 
-/* The memory: how it has moved; heat so far, shift x, y and turn; then references, approaches, forces. */
-enum { MOVED, LOSS, RIGID, REFERENCES = RIGID + 3, APPROACHES = REFERENCES + MOST_PATCHES, FORCES = APPROACHES + MOST_PATCHES };
-enum { UNKNOWN, RESTING, ALONG, FREE }; /* how it has moved: not yet begun, not, along x alone, otherwise */
-
 /* Arguments of `outputs`. */
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 

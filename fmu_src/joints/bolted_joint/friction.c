@@ -121,30 +121,17 @@ static inline Pair pair_at(const Foundation *f, int i, const Point *p)
     return pair;
 }
 
-/* Its rate by that of the approach; `bend` is the derivative of the slope. */
-static Pair pair_rate(const Foundation *f, int i, const Point *p, double rate, double bend)
-{
-    double x[2 * N_TOUCHING - X_LOAD], *dx = x + N_TOUCHING - X_LOAD;
-    Pair pair = {.K = 0.0};
-    if (p->approach < f->height[i])
-        return pair;
-    if (i < p->full) {
-        const double grows = 0.5 * f->mu * f->springs[i] * rate;
-        return (Pair){.limit = {grows, grows}};
-    }
-    entered(f, i, p, x);
-    dx[X_LOAD] = (p->y[1] - f->stiffness[i]) * rate;
-    dx[X_STIFFNESS] = p->y[2] * rate;
-    dx[X_BEND] = 2.0 / f->ratio * bend * rate;
-    dx[X_WIDTH] = rate;
-    touching_seed(x, NULL, &pair.K);
-    return pair;
-}
-
 /* Whether all, some or none of the springs of a range touch at both points alike. */
 static bool stays(int i, const Point *from, const Point *to)
 {
     return (i < from->touched) == (i < to->touched) && (i < from->full) == (i < to->full);
+}
+
+/* Whether the mean stiffness of a range on a way follows from its ends. */
+static inline bool small_on(const Foundation *f, int i, const Point *from, const Point *at)
+{
+    const double change = at->approach - from->approach;
+    return change == 0.0 || (stays(i, from, at) && fabs(change) < SLIDER_SMALL * (f->height[i + 1] - f->height[i]));
 }
 
 /* The two points of Lobatto's rule on a way, looked up when they are first needed. */
@@ -247,9 +234,8 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
                         const Point *at, double *x)
 {
     const double change = at->approach - path->from->approach;
-    const bool near = fabs(change) < SLIDER_SMALL * (f->height[i + 1] - f->height[i]);
     ends_of(f, start, end, change, x);
-    x[X_SMALL] = change == 0.0 || (near && stays(i, path->from, at));
+    x[X_SMALL] = small_on(f, i, path->from, at);
 }
 
 /* Arguments of `slide_plane`, and its results. */
@@ -366,67 +352,49 @@ typedef struct {
     double ends[2], shift[2];
 } PathRate;
 
-static double rate_at(const PathRate *rates, double part)
-{
-    return rates->ends[0] + part * (rates->ends[1] - rates->ends[0]);
-}
-
-/* Rate of a slider on a part of the way to a point, its results before it: `then` are rates of the pair there. */
-static void slider_rate(const Foundation *f, int k, const PatchPath *path, const PathRate *rates, const Pair *start,
-                        const Point *at, double part, const Pair *end, double *y, double *dy)
-{
-    double g[2 * N_CARRYING - 1], gained[2], grows[2], x[2 * N_SLIDE - 2], *dx = x + N_SLIDE;
-    const double change = at->approach - path->from->approach, r = rate_at(rates, part);
-    const double bend = change != 0.0 ? (end->slope - start->slope) / change : 0.0;
-    const Pair first = pair_rate(f, k / 2, path->from, rates->ends[0], bend), last = pair_rate(f, k / 2, at, r, bend);
-    gain(f, k / 2, path, start, end, at, g);
-    carrying(g, NULL, gained);
-    ends_of(f, &first, &last, r - rates->ends[0], g + N_CARRYING - 1);
-    carrying_seed(g, NULL, grows);
-    slider_on(path, k, gained, part, start, end, x);
-    const double seed[] = {grows[0], grows[1], part * rates->shift[0], part * rates->shift[1], first.limit[k % 2],
-                           last.limit[k % 2], last.K, -last.K * x[S_PER_K] * x[S_PER_K]};
-    memcpy(dx, seed, sizeof seed);
-    slide_plane(x, NULL, y);
-    slide_plane_seed(x, NULL, dy);
-}
-
-/* Rate of the heat of a slider that changes. */
-static double changing_rate(const Foundation *f, int k, const PatchPath *path, const PathRate *rates, const Range *r,
-                            const Point *inner, const double *y, const double *dy)
-{
-    const int i = k / 2;
-    const bool across = !stays(i, path->from, path->to);
-    double x[2 * N_CHANGING - C_MOVED] = {across}, *dx = x + N_CHANGING - C_MOVED, rate;
-    const double q[2] = {path->force[0][k], path->force[1][k]};
-    const Pair first = pair_rate(f, i, path->from, rates->ends[0], 0.0), last = pair_rate(f, i, path->to, rates->ends[1], 0.0);
-    changing(q, dy, rates->shift, &first, &last, dx);
-    changing(q, y, path->shift, &r->start, &r->end, x);
-    x[C_BETWEEN] = x[C_BETWEEN + 1] = 0.0; /* seeds of the force are none and lie there */
-    for (int p = 0; p < 2 && across; p++) {
-        double there[N_MOVED], moves[N_MOVED];
-        slider_rate(f, k, path, rates, &r->start, &inner[p], lobatto[p], &r->inner[p], there, moves);
-        for (int d = 0; d < 2; d++) {
-            x[C_BETWEEN + d] += there[d];
-            dx[C_BETWEEN + d] += moves[d];
-        }
-    }
-    changing_loss_seed(x, NULL, &rate);
-    return rate;
-}
+/* Arguments of `both_on_way`, and a seed of those that change. */
+typedef struct {
+    double approach, load, stiffness, slope;
+} OnCurve;
+typedef struct {
+    OnCurve at[4]; /* start, end and inner points */
+    double shift[2];
+} RangePath;
+typedef struct {
+    double small[3], across, flags[4][2], ratio, mu, low[3], high[3], force[2][2];
+    RangePath path, rate;
+} RangeOn;
+_Static_assert(sizeof(RangeOn) == (24 + 2 * 18) * sizeof(double), "arguments of both_on_way_seed");
 
 /* Rates of the sliders of a range that is not all in contact. */
 static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *inner,
                        Shear *rate)
 {
-    const Range r = range_on(f, i, path, inner);
-    for (int k = 2 * i; k < 2 * i + 2; k++) {
-        double y[N_MOVED], dy[N_MOVED];
-        slider_rate(f, k, path, rates, &r.start, path->to, 1.0, &r.end, y, dy);
-        if (r.start.K != r.end.K)
-            dy[MOVED_LOSS] = changing_rate(f, k, path, rates, &r, inner, y, dy);
-        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[MOVED_LOSS]}, rate);
+    const Point *from = path->from, *to = path->to, *points[] = {from, to, &inner[0], &inner[1]};
+    const double parts[] = {0.0, 1.0, lobatto[0], lobatto[1]}, change = to->approach - from->approach;
+    const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
+    RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu};
+    double y[6];
+    for (int k = 0; k < 4; k++) {
+        const Point *p = points[k];
+        const double r = rates->ends[0] + parts[k] * (rates->ends[1] - rates->ends[0]);
+        x.flags[k][0] = p->approach >= f->height[i];
+        x.flags[k][1] = i < p->full;
+        x.path.at[k] = (OnCurve){p->approach, p->y[0], p->y[1], p->y[2]};
+        x.rate.at[k] = (OnCurve){r, p->y[1] * r, p->y[2] * r, bend * r};
+        if (k > 0)
+            x.small[k - 1] = small_on(f, i, from, p);
     }
+    for (int d = 0; d < 2; d++) {
+        x.force[0][d] = path->force[d][2 * i];
+        x.force[1][d] = path->force[d][2 * i + 1];
+        x.path.shift[d] = path->shift[d];
+        x.rate.shift[d] = rates->shift[d];
+    }
+    memcpy(x.low, (double[]){f->height[i], f->load[i], f->stiffness[i]}, sizeof x.low);
+    memcpy(x.high, (double[]){f->height[i + 1], f->load[i + 1], f->stiffness[i + 1]}, sizeof x.high);
+    both_on_way_seed((const double *)&x, NULL, y);
+    add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, y[5]}, rate);
 }
 
 /* Rates of the first `n` sliders, of ranges all in contact. */

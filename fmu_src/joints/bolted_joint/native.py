@@ -46,21 +46,62 @@ def _shear(g: Graph) -> None:
     y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
     g.add_with_seed("elastic_shear", doc, x, y)
     add_sliders(g)
+    x = symbols("x", 6)
+    doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
+    g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.touching(load, stiffness, bend, width, ratio, friction)
-    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, fixed=2)
+    g.add("touching", f"K_T/K_N, mu, {doc}", x, y)
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.carrying((first, slope), (last, then), change, rise, small)
-    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, fixed=1)
+    g.add("carrying", doc, [small, first, slope, last, then, change, rise], kept)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, between = (symbols(name, 2) for name in "qfukb")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, between -> loss"
     loss = sliders.changing_loss(force, moved, shift, (ends[0], ends[1]), slip, across, between)
     x = [across, *force, *moved, *shift, *ends, slip, *between]
-    g.add_with_seed("changing_loss", doc, x, [loss], fixed=3)
+    g.add("changing_loss", doc, x, [loss])
+    _range(g)
+
+
+def _range(g: Graph) -> None:
+    """Both sliders of a range that is not all in contact along a path, for their derivative."""
+    small, flags, forces = symbols("small", 3), symbols("flag", 8), symbols("q", 4)
+    (across, ratio, friction), low, high = symbols("x", 3), symbols("l", 3), symbols("h", 3)
+    points, shift = [symbols(name, 4) for name in "abcd"], symbols("u", 2)
+    pairs = [
+        sliders.of_range(point, low, high, flags[2 * k], flags[2 * k + 1], ratio, friction)
+        for k, point in enumerate(points)
+    ]
+    limits = [sum(one.limit for one in pair) for pair in pairs]
+    parts = (1.0, 0.5 - sliders.LOBATTO, 0.5 + sliders.LOBATTO)
+    ways = [
+        sliders.Way(
+            [part * u for u in shift],
+            points[k][0] - points[0][0],
+            0.5 * ratio / friction * (limits[k] - limits[0]),
+            small[k - 1],
+        )
+        for k, part in enumerate(parts, start=1)
+    ]
+    total = [ca.SX(0.0)] * 6
+    for late, force in enumerate((forces[:2], forces[2:])):
+        start, *ends = (pair[late] for pair in pairs)
+        slid, *inner = (sliders.on_way(force, start, end, way) for end, way in zip(ends, ways, strict=True))
+        loss = sliders.heat(force, shift, start, ends[0], slid, across, inner)
+        total = [a + b for a, b in zip(total, [*slid.force, *slid.tangent, loss], strict=True)]
+    fixed = [*small, across, *flags, ratio, friction, *low, *high, *forces]
+    doc = (
+        "whether small to the end and to both inner points, whether across; whether touching, full at each "
+        "point; K_T/K_N, mu; height, load, stiffness at both ends of the range; forces of the early and the "
+        "late slider; approach, load, stiffness, its slope at start, end and inner points; shift -> force, "
+        "tangent, loss"
+    )
+    moving = [number for point in points for number in point]
+    g.add_with_seed("both_on_way", doc, [*fixed, *moving, *shift], total, fixed=len(fixed))
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
@@ -69,11 +110,8 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
+    counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
     return Definitions(counts, numbers)
 
 
-_SLIDERS = 2 * (sliders.BELOW + sliders.ABOVE + 2)
-_MEMORY = 5 + spring.PATCHES * (2 + 2 * _SLIDERS)
-"""That of as many patches as there is room for: how it moved, loss, rigid motion; of each patch reference,
-approach and forces."""
-PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, _MEMORY)
+PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, spring.memory_of(spring.PATCHES))

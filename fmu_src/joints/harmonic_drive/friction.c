@@ -23,7 +23,7 @@ static void limits_at(const Friction *friction, const double *memory, double shi
                       double *each)
 {
     for (int i = 0; i < BRAKES; i++)
-        each[i] = limit[memory[i] + friction->K[i] * shift < 0.0] * BRAKE_LIMITS[i];
+        each[i] = limit[memory[AT_BRAKE + i] + friction->K[i] * shift < 0.0] * BRAKE_LIMITS[i];
 }
 
 SliderSum friction_at(const Friction *friction, const double *memory, Turn turn, double *after)
@@ -32,9 +32,9 @@ SliderSum friction_at(const Friction *friction, const double *memory, Turn turn,
     const double shift = way(memory, turn);
     limits_at(friction, memory, shift, memory + AT_LIMIT, start);
     limits_at(friction, memory, shift, turn.limit, end);
-    const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
+    const Sliders s = {friction->K, friction->per_K, start, end, {memory + AT_BRAKE, NULL}};
     SliderSum sum;
-    sliders_line(BRAKES, &s, shift, after, &sum);
+    sliders_line(BRAKES, &s, shift, after + AT_BRAKE, &sum);
     after[AT_ANGLE] = turn.angle;
     after[AT_LIMIT] = turn.limit[0];
     after[AT_LIMIT + 1] = turn.limit[1];
@@ -52,7 +52,7 @@ SliderSum friction_rate(const Friction *friction, const double *memory, Turn tur
     limits_at(friction, memory, shift, memory + AT_LIMIT, start);
     limits_at(friction, memory, shift, turn.limit, end);
     limits_at(friction, memory, shift, rate.limit, rises);
-    const Sliders s = {friction->K, friction->per_K, start, end, {memory, NULL}};
+    const Sliders s = {friction->K, friction->per_K, start, end, {memory + AT_BRAKE, NULL}};
     SliderSum sum;
     sliders_line_rate(BRAKES, &s, shift, begun ? rate.angle : TURNED * rate.speed, rises, &sum);
     if (!begun)

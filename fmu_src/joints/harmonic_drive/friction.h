@@ -1,15 +1,10 @@
-/* Dry friction with memory at the wave generator: sliders in parallel, spring and friction each.
- *
- * Memory: their forces, the wave generator's angle, the limits of positive and of negative friction, 1 once
- * it has begun. */
+/* Dry friction with memory at the wave generator: sliders in parallel, spring and friction each. */
 #ifndef JOINTFMU_FRICTION_H
 #define JOINTFMU_FRICTION_H
 
 #include <stdbool.h>
 
 #include "sliders.h"
-
-enum { AT_ANGLE = BRAKES, AT_LIMIT, AT_BEGUN = AT_LIMIT + 2, N_BRAKES }; /* of the memory */
 
 typedef struct {
     bool acts;

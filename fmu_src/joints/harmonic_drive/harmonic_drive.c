@@ -145,8 +145,6 @@ static double wind_up(const Joint *joint, const double *inputs, double error, co
 enum { PHI = N_INPUTS, LOAD, STIFF, SLID, LOSS, ERROR, SLOPE, DRY, N_GIVEN };
 /* What the friction is made of: inputs, torques of curve and hysteresis, slope of the kinematic error. */
 enum { TURN_LOAD = N_INPUTS, TURN_SLID, TURN_SLOPE, N_TURN };
-enum { BRAKED = AT_LOSS + 1 }; /* where the memory of the friction begins */
-_Static_assert(N_MEMORY == BRAKED + N_BRAKES, "hysteresis, then friction");
 
 /* The inputs of `turn` out of those of `outputs`. */
 static void to_turn(const double *x, double *y)
@@ -180,7 +178,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
         to_turn(x, given);
         turn(given, joint->c, y);
         kind->turn = (Turn){y[0], y[1], {y[2], y[3]}};
-        kind->braked = friction_at(&kind->friction, memory + BRAKED, kind->turn, after + BRAKED);
+        kind->braked = friction_at(&kind->friction, memory, kind->turn, after);
     }
     x[DRY] = kind->braked.force[0];
     x[LOSS] = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
@@ -206,12 +204,10 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     midline(&joint->curve, kind->phi, 2, y);
     if (ARGUMENT_IS_LOAD)
         rate /= y[1] + kind->slid.tangent[0];
-    SliderSum slides = {.loss = 0.0};
-    if (kind->hysteresis.acts)
-        slides = hysteresis_rate(&kind->hysteresis, memory, kind->phi, rate);
-    const double loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
+    const double heat = kind->hysteresis.acts ? hysteresis_heat(&kind->hysteresis, memory, kind->phi) : 0.0;
+    const double slid = kind->slid.tangent[0] * rate, loss = memory[AT_LOSS] + kind->slid.loss + kind->braked.loss;
     const double given[] = {kind->phi, y[0], y[1], kind->slid.force[0], loss, error[0], error[1], kind->braked.force[0]};
-    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slides.force[0], slides.loss, error[1] * seed[0],
+    const double slopes[] = {rate, y[1] * rate, y[2] * rate, slid, heat * rate, error[1] * seed[0],
                              error[2] * seed[0], 0.0};
     memcpy(x + PHI, given, sizeof given);
     memcpy(x + N_GIVEN + PHI, slopes, sizeof slopes);
@@ -221,7 +217,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
         to_turn(x + N_GIVEN, turning + N_TURN);
         turn_seed(turning, joint->c, drift);
         const SliderSum brakes =
-            friction_rate(&kind->friction, memory + BRAKED, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
+            friction_rate(&kind->friction, memory, kind->turn, (Turn){drift[0], drift[1], {drift[2], drift[3]}});
         x[N_GIVEN + DRY] = brakes.force[0];
         x[N_GIVEN + LOSS] += brakes.loss;
     }

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "model.h"
+
 enum { LOSS, STIFFNESS, RATED }; /* of the drive's numbers */
 
 void midline(const Curve *curve, double phi, int order, double *y)
@@ -24,23 +26,21 @@ _Static_assert(SLIDERS % 4 == 0, "as sliders_line needs them");
 
 static Sliders sliders_of(const Hysteresis *h, const double *memory)
 {
-    return (Sliders){h->K, h->per_K, h->limit, h->limit, {memory, NULL}};
+    return (Sliders){h->K, h->per_K, h->limit, h->limit, {memory + AT_FORCE, NULL}};
 }
 
 SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after)
 {
     const Sliders s = sliders_of(hysteresis, memory);
     SliderSum sum;
-    sliders_line(SLIDERS, &s, phi - memory[AT_WIND_UP], after, &sum);
+    sliders_line(SLIDERS, &s, phi - memory[AT_WIND_UP], after + AT_FORCE, &sum);
     return sum;
 }
 
-SliderSum hysteresis_rate(const Hysteresis *hysteresis, const double *memory, double phi, double rate)
+double hysteresis_heat(const Hysteresis *hysteresis, const double *memory, double phi)
 {
     const Sliders s = sliders_of(hysteresis, memory);
-    SliderSum sum;
-    sliders_line_rate(SLIDERS, &s, phi - memory[AT_WIND_UP], rate, NULL, &sum);
-    return sum;
+    return sliders_heat(SLIDERS, &s, phi - memory[AT_WIND_UP]);
 }
 
 double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,
@@ -71,7 +71,7 @@ double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, cons
 /* Friction against the midline on the way back from a torque, at a wind-up. */
 static double opening(const Hysteresis *hysteresis, const Curve *curve, double torque, double half)
 {
-    const double rest[SLIDERS + 2] = {0.0};
+    const double rest[N_MEMORY] = {0.0};
     const double turn = hysteresis_wind_up(hysteresis, curve, rest, torque);
     const Sliders s = sliders_of(hysteresis, rest);
     double tangent;

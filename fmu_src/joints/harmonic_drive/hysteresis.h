@@ -1,14 +1,10 @@
-/* Friction torque with memory of a harmonic drive: sliders in parallel, spring and friction each.
- *
- * Memory: their forces, the wind-up, the loss. */
+/* Friction torque with memory of a harmonic drive: sliders in parallel, spring and friction each. */
 #ifndef JOINTFMU_HYSTERESIS_H
 #define JOINTFMU_HYSTERESIS_H
 
 #include "curve.h"
 #include "sliders.h"
 #include "text.h"
-
-enum { AT_WIND_UP = SLIDERS, AT_LOSS }; /* of the memory */
 
 typedef struct {
     bool acts;
@@ -28,8 +24,8 @@ double midline_inverse(const Curve *curve, double torque);
 
 /* Those on the straight path from a memory to a wind-up: what they give, and their forces after it. */
 SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after);
-/* Rates of torque and loss by that of the wind-up. */
-SliderSum hysteresis_rate(const Hysteresis *hysteresis, const double *memory, double phi, double rate);
+/* Derivative of the loss in the wind-up. */
+double hysteresis_heat(const Hysteresis *hysteresis, const double *memory, double phi);
 
 /* Wind-up at which midline and sliders carry a torque, coming from a memory. */
 double hysteresis_wind_up(const Hysteresis *hysteresis, const Curve *curve, const double *memory,

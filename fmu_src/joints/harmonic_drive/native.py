@@ -90,4 +90,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return every | Definitions({}, {"GIVEN_NODES": nodes} if nodes else {})
 
 
-PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions)
+PART = NativePart(_functions, (*CURVE, *SLIDERS), _definitions, spring.MEMORY)

@@ -32,7 +32,7 @@ static inline int first_beyond(const double *beyond, int n)
 
 /* Along one direction */
 
-enum { L_FORCE, L_ALONG, L_ACROSS, L_LOSS, N_LINE }; /* results of slide_line and slide_steady */
+enum { L_FORCE, L_ALONG, L_ACROSS, L_LOSS, L_HEAT, N_LINE }; /* results of slide_line and slide_steady */
 
 static inline void one_steady(const Sliders *s, int k, double shift, double *y)
 {
@@ -46,22 +46,31 @@ static inline void one_line(const Sliders *s, int k, double shift, double *y)
     slide_line(x, NULL, y);
 }
 
+static inline void add_line(int l, const double *y, double *restrict moved, Lanes *lanes)
+{
+    *moved = y[L_FORCE];
+    lanes->x[l] += y[L_FORCE];
+    lanes->xx[l] += y[L_ALONG];
+    lanes->loss[l] += y[L_LOSS];
+}
+
 void sliders_line(int n, const Sliders *s, double shift, double *restrict moved, SliderSum *sum)
 {
+    const Sliders own = *s; /* which nothing that is written can change */
+    double y[N_LINE];
     Lanes lanes = {.x = {0.0}};
-    const bool steady = s->before == s->after;
-    for (int i = 0; i < n; i += LANES)
-        for (int l = 0; l < LANES; l++) {
-            double y[N_LINE];
-            if (steady)
-                one_steady(s, i + l, shift, y);
-            else
-                one_line(s, i + l, shift, y);
-            moved[i + l] = y[L_FORCE];
-            lanes.x[l] += y[L_FORCE];
-            lanes.xx[l] += y[L_ALONG];
-            lanes.loss[l] += y[L_LOSS];
-        }
+    if (own.before == own.after)
+        for (int i = 0; i < n; i += LANES)
+            for (int l = 0; l < LANES; l++) {
+                one_steady(&own, i + l, shift, y);
+                add_line(l, y, moved + i + l, &lanes);
+            }
+    else
+        for (int i = 0; i < n; i += LANES)
+            for (int l = 0; l < LANES; l++) {
+                one_line(&own, i + l, shift, y);
+                add_line(l, y, moved + i + l, &lanes);
+            }
     *sum = total(&lanes);
 }
 
@@ -77,6 +86,18 @@ double sliders_force(int n, const Sliders *s, double shift, double *tangent)
         }
     *tangent = sum_of(lanes.xx);
     return sum_of(lanes.x);
+}
+
+double sliders_heat(int n, const Sliders *s, double shift)
+{
+    double heat[LANES] = {0.0};
+    for (int i = 0; i < n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            double y[N_LINE];
+            one_steady(s, i + l, shift, y);
+            heat[l] += y[L_HEAT];
+        }
+    return sum_of(heat);
 }
 
 /* What sliders from the first beyond its limit on give. */
@@ -136,23 +157,15 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
                        SliderSum *rate)
 {
     Lanes lanes = {.x = {0.0}};
-    const bool steady = s->before == s->after;
     for (int i = 0; i < n; i += LANES)
         for (int l = 0; l < LANES; l++) {
             const int k = i + l;
-            const double trial[] = {s->force[0][k], shift, s->after[k], s->K[k]};
-            double y[N_LINE], tried[2];
-            stick_line(trial, NULL, tried);
-            if (steady) {
-                const double x[] = {s->force[0][k], s->after[k], s->K[k], s->per_K[k], shift, shift_rate};
-                slide_steady_seed(x, NULL, y);
-            } else {
-                const double x[] = {s->force[0][k], s->before[k], s->K[k],    s->per_K[k],
-                                    shift,          s->after[k],  shift_rate, after_rate[k]};
-                slide_line_seed(x, NULL, y);
-            }
-            lanes.x[l] += tried[1] > 0.0 ? y[L_FORCE] : s->K[k] * shift_rate;
-            lanes.loss[l] += tried[1] > 0.0 ? y[L_LOSS] : 0.0;
+            const double x[] = {s->force[0][k], s->before[k], s->K[k],    s->per_K[k],
+                                shift,          s->after[k],  shift_rate, after_rate[k]};
+            double y[N_LINE];
+            slide_line_seed(x, NULL, y);
+            lanes.x[l] += y[L_FORCE];
+            lanes.loss[l] += y[L_LOSS];
         }
     *rate = total(&lanes);
 }

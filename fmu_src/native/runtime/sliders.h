@@ -27,7 +27,9 @@ void sliders_line(int n, const Sliders *s, double shift, double *moved, SliderSu
 int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
 /* Force along one direction with limits that stay, and its tangent; a multiple of four sliders. */
 double sliders_force(int n, const Sliders *s, double shift, double *tangent);
-/* Rates of force and heat along one direction, by rates of the shift and of the limits after it. */
+/* Derivative of the heat along one direction with limits that stay; a multiple of four sliders. */
+double sliders_heat(int n, const Sliders *s, double shift);
+/* Rates of force and heat along one direction where limits change, by rates of the shift and of the limits after. */
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
                        SliderSum *rate);
 

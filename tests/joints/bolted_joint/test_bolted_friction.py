@@ -8,7 +8,7 @@ import pytest
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.law import shear_ratio
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, _Memory
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import default
 
@@ -171,9 +171,9 @@ def test_no_closed_path_creates_energy(spring):
 
 def stored(spring, memory):
     """Elastic energy of the sliders [J]."""
-    it = _Memory.of(memory, spring.patches.share.size)
-    stiff = spring.foundation(it.reference).carried(it.approach).stiffness[:, None, :]
-    each = np.divide(it.force**2, 2.0 * stiff, out=np.zeros_like(it.force), where=stiff > 0.0)
+    it = spring.memory.split(memory)
+    stiff = spring.foundation(it["reference"]).carried(it["approach"]).stiffness[:, None, :]
+    each = np.divide(it["force"] ** 2, 2.0 * stiff, out=np.zeros_like(it["force"]), where=stiff > 0.0)
     return JOINT.A_0 * float(spring.patches.share @ np.sum(each, axis=(1, 2)))
 
 

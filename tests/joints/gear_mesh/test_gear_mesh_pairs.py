@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.joints.gear_mesh.pairs import pairs, rise
+from jointfmu.joints.gear_mesh.pairs import pairs
 
 EPS = np.finfo(float).eps
 
@@ -79,14 +79,6 @@ def test_slope(ratio, engagement):
     allowed = 10.0 * h**2 / width**3 + 4.0 * EPS * 3.0 / h
     np.testing.assert_allclose((ends[1] - ends[0]) / (2.0 * h), slope, rtol=0.0, atol=allowed)
     assert np.max(np.abs(slope)) <= 1.875 / width * (1.0 + 1e-12)
-
-
-def test_rise_is_twice_continuously_differentiable():
-    """Value, slope and the slope's own slope at both ends, and constant beyond."""
-    value, slope = rise(np.array([-1.0, 0.0, 0.5, 1.0, 2.0]))
-    np.testing.assert_allclose(value, [0.0, 0.0, 0.5, 1.0, 1.0], atol=1e-15)
-    np.testing.assert_allclose(slope, [0.0, 0.0, 1.875, 0.0, 0.0], atol=1e-15)
-    assert np.all(rise(np.array([1e-6, 1.0 - 1e-6]))[1] < 31e-12)  # falls with the square
 
 
 def test_arrays_of_ratios():

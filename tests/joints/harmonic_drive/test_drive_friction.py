@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from jointfmu.joints.harmonic_drive.friction import SPRINGS, Friction, limits
+from jointfmu.joints.harmonic_drive.friction import MEMORY, SPRINGS, Friction, limits
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 
@@ -82,7 +82,7 @@ def test_a_drive_begins_where_it_is():
 def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
     """One step against very many, of which each is nearly a trapezium."""
     brake, rng = Friction(5.0 * SPRINGS), np.random.default_rng(4)
-    memory = brake.after(brake.moved(brake.rest(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08))
+    memory = brake.after(brake.moved(MEMORY.rest(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08))
     for _ in range(30):
         before = memory
         phi, most = before[-4] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1, 2)

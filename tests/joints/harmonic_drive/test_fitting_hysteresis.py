@@ -11,6 +11,7 @@ from jointfmu_tools.fitting.oscillator import Oscillator
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 from memory_measurements import save
 
+from jointfmu.joints.harmonic_drive.hysteresis import MEMORY
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, load
 
@@ -21,7 +22,7 @@ def test_law_is_the_exported_one():
     drive = measurements.file("harmonic_drive", measurements.DRIVE).values
     spring, law = HarmonicDriveSpring.of(drive), hysteresis.law(drive)
     for u in (1e-6, 1e-4, 2e-3):
-        moved = float(spring.hysteresis.moved(spring.hysteresis.rest(), u).traction)
+        moved = float(spring.hysteresis.moved(MEMORY.rest(), u).traction)
         assert law.friction(np.array([u]))[0] == pytest.approx(moved, rel=1e-12)
         assert law.elastic.force(np.array([-u]))[0] == -spring.curve.derivatives(u, 0)[0]
 

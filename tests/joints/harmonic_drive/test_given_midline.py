@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive, TorqueAngle
-from jointfmu.joints.harmonic_drive.hysteresis import exponent
+from jointfmu.joints.harmonic_drive.hysteresis import MEMORY, exponent
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import default, dump, load
 from jointfmu.quantity import changed
@@ -139,10 +139,10 @@ def test_hysteresis_of_a_drive_without_a_pair():
     hysteresis = spring.hysteresis
     limit, stiffness = np.sum(hysteresis.limit), np.sum(hysteresis.stiffness)
     phi = np.linspace(0.0, 3.0 * limit / stiffness, 50)
-    rest = np.broadcast_to(hysteresis.rest(), (50, hysteresis.rest().size))
+    rest = np.broadcast_to(MEMORY.rest(), (50, MEMORY.rest().size))
     dahl = limit * (1.0 - np.exp(-stiffness * phi / limit))
     np.testing.assert_allclose(hysteresis.moved(rest, phi).traction, dahl, atol=2e-3 * limit)
-    memory, wound = hysteresis.rest(), []
+    memory, wound = MEMORY.rest(), []
     for tau in (31.0, 0.0, -31.0, 0.0):
         state, memory = spring.loaded(tau, memory)
         wound.append(float(state["phi_rel"]))

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from jointfmu.joints.harmonic_drive import hysteresis
-from jointfmu.joints.harmonic_drive.hysteresis import SLIDERS
+from jointfmu.joints.harmonic_drive.hysteresis import MEMORY, SLIDERS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
@@ -105,7 +105,7 @@ def test_first_friction_is_the_extra_stiffness():
 def test_branches_at_zero_torque_are_apart_as_stated(law, loss, stiffness):
     """After rated torque one way and the other, step by step; 1 % is asked for, found is round-off."""
     found = spring(law, loss * ARCMIN, hysteresis_stiffness=stiffness)
-    memory, place = found.hysteresis.rest(), []
+    memory, place = MEMORY.rest(), []
     for start, end in pairwise((0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0)):
         for tau in found.joint.rated_torque * np.linspace(start, end, 12):
             out, memory = found.loaded(tau, memory)

@@ -13,8 +13,7 @@ from conftest import Fmu, run_host
 from natives import Host, close, jacobian, slope
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.friction import BRAKES
-from jointfmu.joints.harmonic_drive.hysteresis import SLIDERS
+from jointfmu.joints.harmonic_drive.spring import MEMORY
 from jointfmu.parameters import default
 
 SPRING, COMPLIANCE = NAMES = ("HarmonicDriveSpring", "HarmonicDriveCompliance")
@@ -29,7 +28,6 @@ SETS = pytest.mark.parametrize(
     [(SPRING, LOOP), (COMPLIANCE, LOOP), (SPRING, ALL)],
     ids=["spring", "compliance", "all"],
 )
-MEMORY = SLIDERS + 2 + BRAKES + 4
 TINY = 1e-15
 """Sums of sliders in another order, where what is left is zero: [N.m], [rad], [J]."""
 TURNS = (7e-4, 2e-4, 6e-4, -9e-4, -9e-4, 1e-4, 12e-4, 0.0)
@@ -103,10 +101,10 @@ def saved(instance: Fmu) -> bytes:
 def memory_of(instance: Fmu) -> np.ndarray:
     """Memory after the last accepted inputs, from the end of a native state as snapshot.c writes it."""
     inputs = sum(v.causality == "input" for v in instance.variables.values())
-    tail = f"<{2 * MEMORY}d{inputs}dIIQ"
+    tail = f"<{2 * MEMORY.size}d{inputs}dIIQ"
     numbers = struct.unpack(tail, saved(instance)[-struct.calcsize(tail) :])
     assert numbers[-2] == 1  # there are accepted inputs
-    return np.array(numbers[: 2 * MEMORY]).reshape(2, MEMORY)[numbers[-3]]
+    return np.array(numbers[: 2 * MEMORY.size]).reshape(2, MEMORY.size)[numbers[-3]]
 
 
 # The package's numbers

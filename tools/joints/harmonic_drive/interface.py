@@ -1,9 +1,9 @@
 """The harmonic drive as an object: wind-up over torque and back."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from jointfmu.mechanics.curve import Curve
 
 from ...interface.joint import Joint
 
@@ -21,8 +21,7 @@ class Drive(Joint):
 
     def wind_up(self, torque: ArrayLike) -> Array:
         """Wind-up (n) [rad] of the output under torques (n) [N.m], odd."""
-        T = np.asarray(torque, dtype=np.float64)
-        return np.asarray(np.copysign(self._curve.inverse(np.abs(T)), T))[()]
+        return self._curve.odd_inverse(torque)[()]
 
     def torque(self, wind_up: ArrayLike) -> Array:
         """Torque (n) [N.m] at wind-ups (n) [rad], odd."""
@@ -34,9 +33,11 @@ class Drive(Joint):
         return np.asarray(self._curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
 
     @property
-    def _curve(self) -> Any:
+    def _curve(self) -> Curve:
         """Torque over wind-up, from zero on."""
-        return self.spring.curve
+        curve = self.spring.curve
+        assert isinstance(curve, Curve)
+        return curve
 
 
 CLASS = Drive

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.footprint.shape import PressureShape
-from ...mechanics.sliders import Foundation
+from ...mechanics.sliders import Foundation, loop
 from ...quantity import Number, where
 
 Array = NDArray[np.float64]
@@ -118,10 +118,7 @@ def elastic_shear(
 
 
 def loop_sums(foundation: Foundation, share: Array, approach: Array, size: Array) -> dict[str, Number]:
-    """Loss of a cycle with amplitudes a (n) [m] at approaches (n) [m], and the elastic energy at its end.
-
-    Under constant load 8 (I - B a/2) and B a/2 [J/m2], B the backbone and I its integral over a.
-    """
-    stored = 0.5 * foundation.backbone(approach, size) * size
-    loss = 8.0 * (foundation.work(approach, size) - stored)
-    return {"loop_work": share @ np.maximum(loss, 0.0), "loop_energy": share @ stored}
+    """Sums of `loop` over amplitudes (n) [m] at approaches (n) [m]."""
+    slipped = foundation.slipped(approach, size)
+    loss, stored = loop(foundation.friction, foundation.ratio, size, *slipped)
+    return {"loop_work": share @ loss, "loop_energy": share @ stored}

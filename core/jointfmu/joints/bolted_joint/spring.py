@@ -1,6 +1,6 @@
 """The exported bolted joint: six degrees of freedom under uneven pressure, with friction that remembers."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -13,6 +13,7 @@ from ...mechanics.footprint.bolts import PressureSource, pressure_shape
 from ...mechanics.footprint.friction import friction_patches
 from ...mechanics.footprint.patches import few_points
 from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
 from .contact import (
@@ -34,8 +35,33 @@ POINTS = 120
 PATCHES = 22
 """Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
-UNKNOWN, RESTING, ALONG, FREE = 0.0, 1.0, 2.0, 3.0
-"""How friction has moved so far, see `_Memory`."""
+UNKNOWN, RESTING, ALONG, FREE = range(4)
+"""How friction has moved so far, see `memory_of`."""
+
+
+def memory_of(patches: int) -> Layout:
+    """What friction remembers on so many patches.
+
+    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
+                shift; RESTING: it has not moved along its surface; ALONG: it has along x alone; FREE: along
+                y or by a turn, too
+    loss      : [J] turned into heat so far
+    rigid     : (3) shift along x and y [m] and turn about the normal [rad]
+    reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
+    approach  : (m) [m] of the patches
+    force     : (m, 2, n) [Pa] of the sliders
+    """
+    one = (patches,)
+    return Layout(
+        {
+            "state": (),
+            "loss": (),
+            "rigid": (3,),
+            "reference": one,
+            "approach": one,
+            "force": (*one, 2, SLIDERS),
+        }
+    )
 
 
 @lru_cache(maxsize=8)
@@ -143,11 +169,14 @@ class BoltedJointSpring:
         place = Place(s_rel, theta)
         return self.evolve(preload, moment, place, (*v_rel, *omega), self.at_rest())[0]
 
+    @property
+    def memory(self) -> Layout:
+        """What it remembers."""
+        return memory_of(self.patches.share.size)
+
     def at_rest(self) -> Array:
-        """Memory of a joint that has not moved yet, see `_Memory`."""
-        patches = self.patches.share.size
-        none, forces = np.zeros(patches), np.zeros((patches, 2, SLIDERS))
-        return _Memory(UNKNOWN, 0.0, np.zeros(3), none, none, forces).flat()
+        """Memory of a joint that has not moved yet: UNKNOWN, and zero."""
+        return self.memory.rest()
 
     def evolve(
         self, preload: float, moment: float, place: Place, rates: tuple[float, ...], memory: Array
@@ -181,22 +210,24 @@ class BoltedJointSpring:
 
     def _friction(self, approach: Array, place: Place, memory: Array) -> tuple[dict[str, Number], Array]:
         """Sums of the shear at approaches (m) [m] of the patches, and the memory after the straight path."""
-        patches, area = self.patches, self.joint.A_0
-        before = _Memory.of(memory, patches.share.size)
+        patches, area, before = self.patches, self.joint.A_0, self.memory.split(memory)
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        shift = along(patches, rigid - before.rigid)
-        begins = before.state == UNKNOWN
-        first, reference = (approach, approach) if begins else (before.approach, before.reference)
-        moved = self.foundation(reference).moved(before.force, first, approach, shift)
-        loss = before.loss + area * float(patches.share @ moved.loss)
-        rests, straight = before.state < ALONG, before.state < FREE
-        state = FREE
-        if straight and np.array_equal(rigid[1:], before.rigid[1:]):
-            state = RESTING if rests and rigid[0] == before.rigid[0] else ALONG
-        if state == RESTING:
-            reference = approach
-        after = _Memory(state, loss, rigid, reference, approach, moved.force)
-        return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after.flat()
+        shift, state = along(patches, rigid - before["rigid"]), _moved_on(before, rigid)
+        begins = before["state"] == UNKNOWN
+        first, reference = (approach,) * 2 if begins else (before["approach"], before["reference"])
+        moved = self.foundation(reference).moved(before["force"], first, approach, shift)
+        loss = float(before["loss"]) + area * float(patches.share @ moved.loss)
+        after = self.memory.joined(
+            {
+                "state": state,
+                "loss": loss,
+                "rigid": rigid,
+                "reference": approach if state == RESTING else reference,
+                "approach": approach,
+                "force": moved.force,
+            }
+        )
+        return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -208,36 +239,8 @@ class BoltedJointSpring:
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-@dataclass(frozen=True, slots=True)
-class _Memory:
-    """What friction remembers.
-
-    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
-                shift; RESTING: it has not moved along its surface; ALONG: it has along x alone; FREE: along
-                y or by a turn, too
-    loss      : [J] turned into heat so far
-    rigid     : (3) shift along x and y [m] and turn about the normal [rad]
-    reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
-    approach  : (m) [m] of the patches
-    force     : (m, 2, n) [Pa] of the sliders
-    """
-
-    state: float
-    loss: float
-    rigid: Array
-    reference: Array
-    approach: Array
-    force: Array
-
-    @classmethod
-    def of(cls, flat: Array, patches: int) -> "_Memory":
-        """From an array as `flat` gives it."""
-        reference, approach, force = np.split(flat[5:], [patches, 2 * patches])
-        return cls(
-            float(flat[0]), float(flat[1]), flat[2:5], reference, approach, force.reshape(patches, 2, -1)
-        )
-
-    def flat(self) -> Array:
-        """All in one array, in this order."""
-        head = [self.state, self.loss]
-        return np.concatenate([head, self.rigid, self.reference, self.approach, self.force.ravel()])
+def _moved_on(before: Mapping[str, Array], rigid: Array) -> int:
+    """How friction has moved after the way to a shift and turn."""
+    if before["state"] == FREE or not np.array_equal(rigid[1:], before["rigid"][1:]):
+        return FREE
+    return RESTING if before["state"] < ALONG and rigid[0] == before["rigid"][0] else ALONG

@@ -2,18 +2,12 @@
 
 import numpy as np
 
-from ...quantity import Number
+from ...quantity import Number, smooth_step, smooth_step_integral, smooth_step_slopes
 
 _NARROW = 1e-6
 """Overlap ratio [1] below which the mean over it differs from the middle by less than the round-off of
 a difference over it: 1/24 of its square times the curvature, at most 6/width^2.
 """
-
-
-def rise(x: Number) -> tuple[Number, Number]:
-    """From 0 at x <= 0 to 1 at x >= 1, twice continuously differentiable, and its slope."""
-    r = np.minimum(np.maximum(x, 0.0), 1.0)
-    return r * r * r * (10.0 + r * (6.0 * r - 15.0)), 30.0 * (r * (1.0 - r)) ** 2
 
 
 def pairs(
@@ -39,7 +33,7 @@ def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[
     """Tooth pairs in a transverse section [1], their slope, and their integral less that of the mean.
 
     Of the contact ratio the whole part is always in contact, and one pair more during the rest of the
-    cycle, centred at whole phases. It comes and goes by `rise`, centred at the ends of that time, over
+    cycle, centred at whole phases. It comes and goes by `smooth_step`, centred at the ends of that time, over
     `engagement` times the shorter of the times with and without it. Even in the phase, and the
     contact ratio on average over a cycle.
     """
@@ -50,17 +44,11 @@ def _section(contact_ratio: Number, engagement: Number, phase: Number) -> tuple[
     length = np.where(changing, width, 1.0)
     away = phase - np.floor(phase + 0.5)
     first = 0.5 + 0.5 * part / length
-    share, slope = rise(first - np.abs(away) / length)
-    left = _area(first - np.abs(away) / length)
-    passed = length * (first - 0.5 - left) - part * np.abs(away)
+    place = first - np.abs(away) / length
+    share, (slope, _) = smooth_step(place), smooth_step_slopes(place)
+    passed = length * (first - 0.5 - smooth_step_integral(place)) - part * np.abs(away)
     return (
         least + np.where(changing, share, 0.0),
         np.where(changing, -np.sign(away) * slope / length, 0.0),
         np.where(changing, np.sign(away) * passed, 0.0),
     )
-
-
-def _area(x: Number) -> Number:
-    """Integral of `rise` from 0 to x."""
-    r = np.minimum(np.maximum(x, 0.0), 1.0)
-    return r * r * r * r * (2.5 + r * (r - 3.0)) + np.maximum(x - 1.0, 0.0)

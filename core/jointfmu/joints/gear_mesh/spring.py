@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ...contact.laws.roughness import Roughness
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, approach_curve, assemble, refined
-from ...quantity import Number, quantity
-from .pairs import pairs, rise
+from ...quantity import Number, quantity, smooth_step
+from .pairs import pairs
 
 Array = NDArray[np.float64]
 
@@ -170,7 +170,7 @@ def torques(
     _, w1, _, w2 = motion
     s = deflection(mesh, motion)
     count, slope = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase(mesh, motion))
-    touching, _ = rise(np.abs(s) / closing)
+    touching = smooth_step(np.abs(s) / closing)
     force = count * load * np.sign(s) + mesh.d * touching * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
     change = 0.5 * slope * energy / base_pitch(mesh)  # -dU along the rolling, per way of one base circle
     return {

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...mechanics.jenkins import Moved, Sliders
+from ...mechanics.memory import Layout
 from ...quantity import Number
 from .drive import Drive
 from .hysteresis import shares
@@ -35,6 +36,8 @@ Array = NDArray[np.float64]
 
 BRAKES = 8
 """How many sliders: friction from rest within 1 % of M."""
+MEMORY = Layout({"brake": (BRAKES,), "angle": (), "limit": (2,), "begun": ()})
+"""What the drive remembers of it: forces [N.m], phi1 [rad], `limits` [N.m], 1 once it has begun."""
 _LEFT = (*(np.linspace(1.0, 0.0, BRAKES, endpoint=False) ** 2).tolist(), 0.0)
 _SHARES = shares(1.0, _LEFT)
 SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
@@ -97,35 +100,32 @@ class Friction(Sliders):
         """Of a drive."""
         return cls(float(stiffness(drive)) * SPRINGS)
 
-    def rest(self) -> Array:
-        """Memory (n + 4) before anything moved: forces [N.m], phi1 [rad], limits [N.m], 1 once begun."""
-        return np.zeros(self.stiffness.size + 4)
-
     def moved(self, memory: Array, phi1: ArrayLike, w1: ArrayLike, most: Sequence[ArrayLike]) -> Moved:
-        """The sliders on the straight path from a memory (..., n + 4) to angles (...) [rad] with `limits`.
+        """The sliders on the straight path from a MEMORY (..., n) to angles (...) [rad] with `limits`.
 
         Each is held by the limit on the side of the force that it would have if it stuck.
 
         The first path of all leads to where the drive is, whatever the angle: it has turned before for as
         long as TURNED at its speed w1, and lost nothing yet.
         """
-        begun, now = memory[..., -1] > 0.0, np.stack(np.broadcast_arrays(*most), axis=-1)
+        start, now = MEMORY.split(memory), np.stack(np.broadcast_arrays(*most), axis=-1)
         if not self.acts:
             none = np.zeros(now.shape[:-1])
             return Moved(np.zeros((*none.shape, self.stiffness.size)), none, none)
-        way = np.where(begun, np.asarray(phi1) - memory[..., -4], TURNED * np.asarray(w1))
-        force = memory[..., :-4]
+        begun, force = start["begun"] > 0.0, start["brake"]
+        way = np.where(begun, np.asarray(phi1) - start["angle"], TURNED * np.asarray(w1))
         negative = force + self.stiffness * way[..., None] < 0.0
         before, after = (
             np.where(negative, ends[..., 1, None], ends[..., 0, None]) * LIMITS
-            for ends in (memory[..., -3:-1], now)
+            for ends in (start["limit"], now)
         )
         moved = self.along(force, way, before, after)
         return replace(moved, loss=np.where(begun, moved.loss, 0.0))
 
     def after(self, braked: Moved, phi1: ArrayLike, most: Sequence[ArrayLike]) -> Array:
-        """The memory (..., n + 4) there; none where nothing acts."""
+        """The MEMORY (..., n) there; none where nothing acts."""
+        shape = braked.loss.shape
         if not self.acts:
-            return np.zeros((*braked.loss.shape, self.stiffness.size + 4))
-        ends = np.broadcast_arrays(phi1, *most, 1.0)
-        return np.concatenate([braked.force, np.stack(ends, axis=-1)], axis=-1)
+            return np.zeros((*shape, MEMORY.size))
+        limit = np.stack(np.broadcast_arrays(*most), axis=-1)
+        return MEMORY.joined({"brake": braked.force, "angle": phi1, "limit": limit, "begun": 1.0}, *shape)

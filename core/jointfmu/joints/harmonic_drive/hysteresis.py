@@ -21,6 +21,7 @@ from ...contact.interface import MOST_STEPS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
 from ...mechanics.jenkins import Moved, Sliders
+from ...mechanics.memory import Layout
 from ...quantity import Number
 from .drive import Drive
 from .law import PairDrive, pair_log_area
@@ -32,6 +33,8 @@ SLIDERS = 44
 _CROWDING, _POWER = 3.5, 2.5
 """Their places: closer where the first ones slip, and wide enough where the last ones do."""
 _USED = np.expm1(_CROWDING * np.arange(SLIDERS) / SLIDERS) / np.expm1(_CROWDING)
+MEMORY = Layout({"force": (SLIDERS,), "wind_up": (), "loss": ()})
+"""What the drive remembers of it: forces [N.m], wind-up [rad], loss [J]."""
 LEFT = (*((1.0 - _USED) ** _POWER).tolist(), 0.0)
 """Share of the friction that is not used yet [1], from 1 down to 0: between which the sliders are."""
 NEAREST = 4e-16
@@ -111,18 +114,19 @@ class Hysteresis(Sliders):
 
         By Masing's rule. Where it is the midline's torque there, the branches are 2 `half` apart.
         """
-        turn = float(self.wind_up(curve, self.rest(), torque))
-        back, there = self.moved(self.rest(), [0.5 * (turn - half), turn]).traction
+        turn = float(self.wind_up(curve, MEMORY.rest(), torque))
+        back, there = self.moved(MEMORY.rest(), [0.5 * (turn - half), turn]).traction
         return float(2.0 * back - there)
 
-    def rest(self) -> Array:
-        """Memory (n + 2) of a drive that has not moved: forces [N.m], wind-up [rad], loss [J]."""
-        return np.zeros(self.limit.size + 2)
-
     def moved(self, memory: Array, phi: ArrayLike) -> Moved:
-        """The sliders on the straight path from a memory (..., n + 2) to wind-ups (...) [rad]."""
-        way = np.asarray(phi, dtype=np.float64) - memory[..., -2]
-        return self.along(memory[..., :-2], way, self.limit, self.limit)
+        """The sliders on the straight path from a MEMORY (..., n) to wind-ups (...) [rad]."""
+        before = MEMORY.split(memory)
+        way = np.asarray(phi, dtype=np.float64) - before["wind_up"]
+        return self.along(before["force"], way, self.limit, self.limit)
+
+    def after(self, moved: Moved, phi: ArrayLike, loss: Array) -> Array:
+        """The MEMORY (..., n) there, with the loss (...) so far."""
+        return MEMORY.joined({"force": moved.force, "wind_up": phi, "loss": loss}, *loss.shape)
 
     def wind_up(self, curve: Curve, memory: Array, torque: ArrayLike) -> Array:
         """Wind-up (...) [rad] where the way from a memory ends that leads to torques (...) [N.m].
@@ -131,8 +135,8 @@ class Hysteresis(Sliders):
         over. It begins where the way did, or where the sliders all slip, if that is nearer.
         """
         tau, most = np.asarray(torque, dtype=np.float64), float(np.sum(self.limit))
-        slipping = (np.copysign(curve.inverse(np.abs(load)), load) for load in (tau - most, tau + most))
-        phi = np.clip(memory[..., -2], *slipping)
+        slipping = (curve.odd_inverse(load) for load in (tau - most, tau + most))
+        phi = np.clip(MEMORY.split(memory)["wind_up"], *slipping)
         low, high = np.full(tau.shape, -np.inf), np.full(tau.shape, np.inf)
         for _ in range(MOST_STEPS):
             load, stiffness = curve.derivatives(np.abs(phi), 1)

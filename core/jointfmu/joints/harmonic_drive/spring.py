@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...mechanics.curve import Curve, assemble, refined
-from ...mechanics.jenkins import Moved
 from ...quantity import Number, check_limits
+from . import friction, hysteresis
 from .drive import Drive
 from .friction import REFERENCE, Friction, limits, viscous
 from .given import Given
@@ -24,6 +24,8 @@ STEPS = 160
 SOFTEST, STIFFEST = 1e-100, 1e-6
 """Least K_WTS [N.m/rad], and least K_FTS0 over K_TS [1], that are told from none and from infinite."""
 GAUSS = np.polynomial.legendre.leggauss(4)
+MEMORY = hysteresis.MEMORY | friction.MEMORY
+"""What the drive remembers."""
 
 
 def torque_curve(drive: Drive) -> Curve:
@@ -97,8 +99,8 @@ class HarmonicDriveSpring:
         return self.loaded(tau, self.rest())[0]
 
     def rest(self) -> Array:
-        """Memory (n) of a spring that has not moved: of the hysteresis, then of the friction."""
-        return np.concatenate([self.hysteresis.rest(), self.friction.rest()])
+        """MEMORY (n) of a spring that has not moved."""
+        return MEMORY.rest()
 
     def driven(
         self, motion: Sequence[ArrayLike], memory: Array, temperature: ArrayLike = REFERENCE
@@ -108,43 +110,39 @@ class HarmonicDriveSpring:
         """
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
         warmth = np.asarray(temperature, dtype=np.float64)
-        wound, brakes = self._parts(memory)
+        wound, brakes = _parts(memory)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        slid, loss, new = self._slid(phi, wound)
+        slid = self.hysteresis.moved(wound, phi)
         load = np.copysign(load, phi)
         state = State(phi, load, stiffness, slid.traction, error, slope)
         most = limits(self.joint, motion[1], transmitted(self.joint, motion, state), warmth)
         braked = self.friction.moved(brakes, motion[0], motion[1], most)
-        new[..., -1] += braked.loss
+        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss + braked.loss
+        out = exported(self.joint, motion, warmth, state, braked.traction) | {"E_loss": loss}
         after = self.friction.after(braked, motion[0], most)
-        out = exported(self.joint, motion, warmth, state, braked.traction) | {"E_loss": loss + braked.loss}
-        return out, np.concatenate([new, after], axis=-1)
+        return out, np.concatenate([self.hysteresis.after(slid, phi, loss), after], axis=-1)
 
     def loaded(self, tau: ArrayLike, memory: Array) -> tuple[dict[str, Array], Array]:
         """Wind-up and stiffnesses at torques (...), from a memory (n) on, and the new one."""
-        wound, brakes = self._parts(memory)
+        wound, brakes = _parts(memory)
         if self.hysteresis.acts:
             phi = self.hysteresis.wind_up(self.curve, wound, tau)
         else:
-            phi = np.copysign(self.curve.inverse(np.abs(tau)), tau)
+            phi = self.curve.odd_inverse(tau)
         load, stiffness = self.curve.derivatives(np.abs(phi), 1)
-        _, loss, new = self._slid(phi, wound)
+        slid = self.hysteresis.moved(wound, phi)
+        loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss
+        new = self.hysteresis.after(slid, phi, loss)
         locked = np.broadcast_to(brakes, (*new.shape[:-1], brakes.shape[-1]))
         out = {"phi_rel": phi, **parts(self.joint, load, stiffness), "E_loss": loss}
         return out, np.concatenate([new, locked], axis=-1)
 
-    def _parts(self, memory: Array) -> tuple[Array, Array]:
-        """Memory of the hysteresis and of the friction."""
-        size = self.hysteresis.limit.size + 2
-        return memory[..., :size], memory[..., size:]
 
-    def _slid(self, phi: Array, memory: Array) -> tuple[Moved, Array, Array]:
-        """The sliders at wind-ups (...), the loss so far, the memory (..., n + 2)."""
-        slid = self.hysteresis.moved(memory, phi)
-        loss = memory[..., -1] + slid.loss
-        return slid, loss, np.concatenate([slid.force, phi[..., None], loss[..., None]], axis=-1)
+def _parts(memory: Array) -> tuple[Array, Array]:
+    """MEMORY (..., n) of the hysteresis and of the friction."""
+    return memory[..., : hysteresis.MEMORY.size], memory[..., hysteresis.MEMORY.size :]
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,8 @@ protected
   Real slip[2*n] "What friction takes from the rate of that size [N/s]";
   Real held[2*n] "Part of their forces inside the friction circle";
   Real heat[2*n] "Power that they dissipate [W]";
+  Real square "Of the shift [m2]";
+  Real R "Without memory: tangential stiffness while nothing slips over that of the force from the origin";
 equation
   c = -s_rel[3];
   v_c = -v_rel[3];
@@ -81,6 +83,8 @@ equation
     held[j] = noEvent(if size_q[j] > Q[j] then Q[j]/size_q[j] else 1);
     heat[j] = (Q[j]*slip[j] + 0.5*size_q[j]^2*abs(K_rate[j])/max(K[j], 1))/max(K[j], 1);
   end for;
+  square = s_rel[1]^2 + s_rel[2]^2;
+  R = sqrt(1 + square*(K_t/max(data.mu*data.tight, Modelica.Constants.small))^2);
   lossPower = sum(heat) + C_t*(v_rel[1]^2 + v_rel[2]^2) + C_n*v_rel[3]^2;
   s_rel[1] = flange_x.s;
   s_rel[2] = flange_y.s;
@@ -93,10 +97,10 @@ equation
   C_n = if damping and plastic_damping then eta_n*sqrt(mass*max(K_n, 0)) else 0;
   C_t = if damping then data.eta_t*sqrt(mass*max(K_t, 0)) else 0;
   for a in 1:2 loop
-    f[a] = -(if memory then q[a, :]*held else K_t*s_rel[a]) - C_t*v_rel[a];
+    f[a] = -(if memory then q[a, :]*held else K_t/R*s_rel[a]) - C_t*v_rel[a];
   end for;
   f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
-    + (if memory then 0 else 0.5*data.shear*bend*(s_rel[1]^2 + s_rel[2]^2))
+    + (if memory then 0 else data.shear*bend*square/(R*(1 + R)))
     - data.bolts*s_rel[3] - C_n*v_rel[3];
   flange_x.f = -f[1];
   flange_y.f = -f[2];
@@ -127,7 +131,7 @@ equation
 <p>C<sub>n</sub> = η<sub>n</sub> (m K<sub>N</sub>)<sup>1/2</sup> if plastic_damping, else 0, &emsp; η<sub>n</sub> = Σ W<sub>plastic</sub> / Σ W<sub>elastic</sub> (Eqs. 16-20, corrected)</p>
 <p>C<sub>t</sub> = η<sub>t</sub> (m K<sub>T</sub>)<sup>1/2</sup>, &emsp; 1/η<sub>t</sub> = (5π/12) H<sub>2</sub>/H<sub>1</sub> − 1, &emsp; of Mindlin's loop at x = traction_ratio (Eq. 29, corrected)</p>
 <p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of 28 sliders, whose forces along x and y are states; each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
-<p>With <code>memory=false</code> shear is elastic without a friction limit and reacts on the normal force, far below slip as in the FMU: f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>, f<sub>z</sub> as above and &frac12; &rho; g''(c) (s<sub>x</sub><sup>2</sup> + s<sub>y</sub><sup>2</sup>).</p>
+<p>With <code>memory=false</code> shear is elastic, grows to &mu; g(0) and reacts on the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the shift u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>
 <li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>

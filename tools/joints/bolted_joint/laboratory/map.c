@@ -15,7 +15,6 @@ __attribute__((visibility("default"))) int lab_map_size(void)
 /* NULL: refused. */
 __attribute__((visibility("default"))) const double *lab_map(Instance *m)
 {
-    enum { S_REL_Z = 4, THETA_X = 8, THETA_Y };
     static double map[ROOM][4];
     if (instance_evaluate(m) != OK)
         return NULL;
@@ -27,7 +26,7 @@ __attribute__((visibility("default"))) const double *lab_map(Instance *m)
         node[2] = kind->weight[i][0];
         node[0] = kind->weight[i][1] / node[2];
         node[1] = kind->weight[i][2] / node[2];
-        const double apart = inputs[S_REL_Z] + inputs[THETA_X] * node[1] - inputs[THETA_Y] * node[0];
+        const double apart = inputs[INPUT_S_REL_Z] + inputs[INPUT_THETA_X] * node[1] - inputs[INPUT_THETA_Y] * node[0];
         curve_at(&m->joint->curve, kind->start[i] - apart, 0, &node[3]);
     }
     return map[0];

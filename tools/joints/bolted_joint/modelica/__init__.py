@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.sliders import SPREAD
 from jointfmu.parameters import ParameterFile
 
 from ....modelica.records import Component, Record, WorkingPoint, computed, given
@@ -52,6 +53,7 @@ COMPONENT = Component(
     texts=lambda joint: {
         "damping_tolerance": f"{DAMPING_TOLERANCE:g}",
         "strongest": f"{STRONGEST:g}",
+        "spread": f"{SPREAD:.15g}",
         "sliders": f"{2 * (BELOW + len(ABOVE))}",
     },
 )

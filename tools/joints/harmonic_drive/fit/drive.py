@@ -66,7 +66,7 @@ def likely_unit(ratio: float, units: Mapping[str, str], spec: Mapping[str, Sizes
 
 def windup(drive: Drive, torque: Array) -> Array:
     """phi (...) [rad] at torques (...) [N.m]: exactly the exported curve."""
-    return np.asarray(np.copysign(torque_curve(drive).inverse(np.abs(torque)), torque))
+    return torque_curve(drive).odd_inverse(torque)
 
 
 def resized(start: ParameterFile, rated: float, factor: float, kind: str, source: str) -> ParameterFile:

@@ -4,33 +4,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
-from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 from jointfmu.joints.harmonic_drive.lost_motion import WIDTH
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import flat_fields
 
 from ....modelica.records import Component, Record, WorkingPoint, computed, given
 from ....modelica.tables import thinned
 from ....modelica.text import identifier, matrix, number
 
-_OWN = (
-    "ratio",
-    "d",
-    "rated_torque",
-    "friction_coulomb",
-    "friction_stribeck",
-    "stribeck_speed",
-    "friction_viscous",
-    "load_loss",
-    "load_loss_back",
-    "presliding",
-    "temperature_factor",
-    "viscous_temperature_coefficient",
-    "dry_temperature_coefficient",
-    *(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase")),
-)
+_SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion")
+"""Parameters of the drive that are in the record's sliders and table."""
+_OWN = tuple(name for name, _ in flat_fields(Drive) if name not in _SPRING)
 """Parameters of the drive that the component has too."""
 
 

@@ -7,6 +7,6 @@ protected
   Real r "Argument, between 0 and 1";
 algorithm
   r := min(max(x, 0), 1);
-  y := r^3*(10 + r*(6*r - 15));
+  y := r^3*(<< step[0] >> + r*(<< step[2] >>*r - << -step[1] >>));
   annotation (smoothOrder=2);
 end smoothStep;

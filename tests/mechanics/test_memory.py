@@ -1,0 +1,25 @@
+"""The layout of a memory: its parts are found again where C finds them."""
+
+import numpy as np
+
+from jointfmu.mechanics.memory import Layout
+
+LAYOUT = Layout({"state": (), "force": (2, 3)}) | Layout({"loss": ()})
+
+
+def test_parts_are_found_again() -> None:
+    parts = {"state": [1.0, 2.0], "force": np.arange(12.0).reshape(2, 2, 3), "loss": 7.0}
+    memory = LAYOUT.joined(parts, 2)
+    assert memory.shape == (2, LAYOUT.size)
+    for name, part in LAYOUT.split(memory).items():
+        np.testing.assert_array_equal(part, np.broadcast_to(parts[name], part.shape))
+
+
+def test_places_are_those_of_the_first_numbers() -> None:
+    counted = np.arange(float(LAYOUT.size))
+    assert LAYOUT.places == {name: part.flat[0] for name, part in LAYOUT.split(counted).items()}
+
+
+def test_rest_is_zero() -> None:
+    assert not np.any(LAYOUT.rest())
+    assert LAYOUT.rest().shape == (8,)
