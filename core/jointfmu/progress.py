@@ -1,7 +1,12 @@
-"""A progress bar on standard error, where that is a terminal."""
+"""Long work: a progress bar on standard error, where that is a terminal, and processes that share it."""
 
+import multiprocessing
+import os
+import signal
 import sys
 from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -15,3 +20,26 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
         yield from items
         return
     yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+
+
+@contextmanager
+def processes() -> Iterator[Executor]:
+    """As many processes as there are cores, for functions and arguments that can be pickled.
+
+    They print nothing and do not hear Ctrl-C; this process does, and ends them. The program that starts
+    them needs a guard, `if __name__ == "__main__"`.
+    """
+    pool = ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn"), _quiet)
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.kill()
+        raise
+    pool.shutdown()
+
+
+def _quiet() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stderr = open(os.devnull, "w")  # noqa: SIM115

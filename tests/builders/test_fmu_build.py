@@ -435,7 +435,7 @@ def test_the_main_job_fails_when_a_check_misses(
     """With what the other job has built: whatever is built, the checks decide."""
     copytree(job[0], tmp_path, dirs_exist_ok=True)
     rmtree(tmp_path / "report")
-    monkeypatch.setattr(pipeline, "build", lambda *_: [tmp_path / "fmi2" / f"{name}.fmu" for name in NAMES])
+    monkeypatch.setattr(pipeline, "build", lambda *_, **__: [tmp_path / "fmi2" / f"{name}.fmu" for name in NAMES])
     monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
     assert pipeline.main(tmp_path) == 1
@@ -460,7 +460,7 @@ def test_the_main_job_fails_when_an_fmu_does_not_prove_itself(
         return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
 
     changed_copy(job[0] / "fmi2" / f"{name}.fmu", path, change)
-    monkeypatch.setattr(pipeline, "build", lambda *_: [path])
+    monkeypatch.setattr(pipeline, "build", lambda *_, **__: [path])
     monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
     assert pipeline.main(tmp_path) == 1
     missed = capsys.readouterr().out.partition("missed: 2\n")[2].splitlines()
