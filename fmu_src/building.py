@@ -1,6 +1,8 @@
 """`jointfmu build`: names and flavours to FMU files."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 
 from jointfmu.joints import MODELS
@@ -26,11 +28,13 @@ def build(
     out: Path,
     variability: str = VARIABILITIES[0],
     alias: str | None = None,
+    pool: Executor | None = None,
 ) -> list[Path]:
     """Build FMUs into `out/FLAVOUR/NAME.fmu`; with a parameter file and no names, those of its joint.
 
     variability : of the parameters, one of VARIABILITIES
     alias       : the name that one FMU has instead of its own
+    pool        : processes that share the work; None: this one does it
 
     Raises ValueError for an unknown name or flavour, a parameter file of another joint, an alias that is
     no identifier or for several FMUs, or a folder that cannot be written,
@@ -49,9 +53,15 @@ def build(
     for name in names:
         if parameters:
             MODELS[name].of(parameters.joint, parameters.values)
-    jobs = [(flavour, name) for flavour in flavours for name in names]
-    built = []
-    for flavour, name in track(jobs, "build", len(jobs)):
-        file = parameters or default(MODELS[name].joint)
-        built.append(FLAVOURS[flavour](name, file, out / flavour, variability, alias or ""))
-    return built
+    work = partial(_built, flavours, parameters, out, (variability, alias or ""))
+    made = (pool.map if pool else map)(work, names)
+    built = list(track(made, "build", len(names)))
+    return [paths[k] for k in range(len(flavours)) for paths in built]
+
+
+def _built(
+    flavours: Sequence[str], parameters: ParameterFile | None, out: Path, how: tuple[str, str], name: str
+) -> list[Path]:
+    """Build an FMU in some flavours, which share what is compiled; `how`: its variability and alias."""
+    file = parameters or default(MODELS[name].joint)
+    return [FLAVOURS[flavour](name, file, out / flavour, *how) for flavour in flavours]

@@ -1,7 +1,13 @@
-"""A progress bar on standard error, where that is a terminal."""
+"""Long work: a progress bar on standard error, where that is a terminal, and processes that share it."""
 
+import multiprocessing
+import os
+import signal
 import sys
 from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import contextmanager
+from threading import RLock
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -14,4 +20,28 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
     except ImportError:
         yield from items
         return
+    tqdm.set_lock(RLock())  # its own is shared by processes, and left behind by those that are ended
     yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+
+
+@contextmanager
+def processes() -> Iterator[Executor]:
+    """As many processes as there are cores, for functions and arguments that can be pickled.
+
+    They print nothing and do not hear Ctrl-C; this process does, and ends them. The program that starts
+    them needs a guard, `if __name__ == "__main__"`.
+    """
+    pool = ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn"), _quiet)
+    try:
+        yield pool
+    except BaseException:
+        for process in multiprocessing.active_children():
+            process.kill()
+        pool.shutdown(cancel_futures=True)
+        raise
+    pool.shutdown()
+
+
+def _quiet() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.stderr = open(os.devnull, "w")  # noqa: SIM115

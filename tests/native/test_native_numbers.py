@@ -12,6 +12,7 @@ from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
 from jointfmu_fmu_src.native.generate import RUNTIME, sources
 
+import jointfmu
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.mechanics import curve
@@ -101,7 +102,8 @@ def test_build_refuses_what_does_not_fit(
     assert not compiles(tmp_path, files, files[source])
 
 
-def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_build_refuses_a_table_without_room(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(curve, "MOST_NODES", 100)  # fewer than its first steps
     with pytest.raises(RuntimeError, match="the table needs more than 100 nodes"):
-        c_of(DRIVE)
+        jointfmu.load(DRIVE).build(tmp_path)
+    assert not list(tmp_path.iterdir())

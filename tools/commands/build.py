@@ -2,12 +2,14 @@
 
 import argparse
 import json
+from contextlib import nullcontext
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, tell, without_package
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
+from jointfmu.progress import processes
 
 from ..pressing import judge_file
 
@@ -54,12 +56,15 @@ def _build(args: argparse.Namespace) -> int:
         from jointfmu_fmu_src import building
 
         built = []
-        if args.names or not args.systems:
-            built += building.build(args.names, args.flavour, file, args.out, args.parameters, args.name)
-        if args.systems:
-            from ..systems import ssp
+        with processes() if args.systems or len(args.names) != 1 else nullcontext() as pool:
+            if args.names or not args.systems:
+                built += building.build(
+                    args.names, args.flavour, file, args.out, args.parameters, args.name, pool
+                )
+            if args.systems:
+                from ..systems import ssp
 
-            built += ssp.build_systems(args.out, None, file, variability=args.parameters)
+                built += ssp.build_systems(args.out, None, file, True, args.parameters, pool)
     except ImportError as error:
         raise without_package(error, "build") from None
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)

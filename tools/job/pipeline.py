@@ -10,7 +10,7 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu.files.writing import write_text
 from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
-from jointfmu.progress import track
+from jointfmu.progress import processes, track
 from jointfmu.proof.outcome import Proof
 from jointfmu.proof.run import prove
 from jointfmu.published import validation
@@ -76,35 +76,46 @@ def run(out: Path) -> Outcome:
     """
     folder = out / "fmi2"
     outcome = Outcome(folder)
-    outcome.built = build([], list(FLAVOURS), None, out)
-    outcome.systems = build_systems(out, joints=False)
-    for name in track(MODELS, "validate and ramp", len(MODELS)):
-        for path in (out / flavour / f"{name}.fmu" for flavour in FLAVOURS):
-            outcome.problems += [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))]
-        result = default_ramp(name, folder)
+    with processes() as pool:
+        outcome.built = build([], list(FLAVOURS), None, out, pool=pool)
+        outcome.systems = build_systems(out, joints=False, pool=pool)
+        components = [path for path in outcome.systems if path.suffix == ".fmu"]
+        arms, ringdowns = pool.submit(cosimulation.arms, folder), pool.submit(decays.examples, folder)
+        ringing = pool.submit(examples, folder)
+        page = pool.submit(write_laboratory, out / "report" / "laboratory.html")
+        every = [*outcome.built, *components]
+        found = pool.map(_examined, every)
+        _compare(outcome, out)
+        for problems, proof in track(found, "validate and prove", len(every)):
+            outcome.problems += problems
+            outcome.proofs.append(proof)
+        outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
+        outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
+        write_report(out / "report" / "index.html", outcome)
+        page.result()
+    return outcome
+
+
+def _examined(path: Path) -> tuple[list[str], Proof]:
+    """What fmpy finds wrong in an FMU, and its proof."""
+    return [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
+
+
+def _compare(outcome: Outcome, out: Path) -> None:
+    """The ramps of all FMUs, and the published numbers."""
+    for name in track(MODELS, "ramp", len(MODELS)):
+        result = default_ramp(name, outcome.fmus)
         outcome.ramps[name] = result
         outcome.problems += [f"{name}: unexpected message: {text}" for text in result.messages]
         write_text(out / "report" / f"{name}.csv", result.csv())
-        outcome.checks += check(name, folder, result)
-        outcome.checks += [same(name, out / beside, result) for beside in FLAVOURS if out / beside != folder]
-    components = [path for path in outcome.systems if path.suffix == ".fmu"]
-    for path in components:
-        outcome.problems += [f"{shown(path)}: {text}" for text in validate_fmu(str(path))]
-    outcome.proofs = [prove(path) for path in (*outcome.built, *components)]
-    for step in track(("package", "FMUs", "systems", "report"), "compare and report", 4):
+        outcome.checks += check(name, outcome.fmus, result)
+        beside = [out / flavour for flavour in FLAVOURS if out / flavour != outcome.fmus]
+        outcome.checks += [same(name, folder, result) for folder in beside]
+    for step in track(("package", "FMUs"), "compare", 2):
         if step == "package":
             outcome.rows = validation.validate()
-        elif step == "FMUs":
-            outcome.fmu_rows = published_through_fmus(folder)
-        elif step == "systems":
-            outcome.ringing = examples(folder)
-            outcome.decays = decays.examples(folder)
-            outcome.arms = cosimulation.arms(folder)
-            outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
         else:
-            write_report(out / "report" / "index.html", outcome)
-            write_laboratory(out / "report" / "laboratory.html")
-    return outcome
+            outcome.fmu_rows = published_through_fmus(outcome.fmus)
 
 
 def main(out: Path) -> int:
@@ -114,6 +125,9 @@ def main(out: Path) -> int:
     except (ValueError, RuntimeError) as error:
         print(f"build_fmus.py: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
+    except KeyboardInterrupt:
+        print("build_fmus.py: interrupted", file=sys.stderr)
+        return 130
     misses = outcome.misses
     folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")

@@ -1,11 +1,14 @@
 """Systems as SSP archives: SSP 1.0 with FMUs of FMI 2.0, SSP 2.0 with FMUs of FMI 3.0."""
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from jointfmu_fmu_src.archive import pack, workshop
 from jointfmu_fmu_src.native.build import build
+from jointfmu_fmu_src.native.kept import VERSIONS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.ssv import Value, parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES
@@ -27,6 +30,7 @@ def build_systems(
     parameters: ParameterFile | None = None,
     joints: bool = True,
     variability: str = VARIABILITIES[0],
+    pool: Executor | None = None,
 ) -> list[Path]:
     """Write the archives of systems, and their components as `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`.
 
@@ -34,6 +38,7 @@ def build_systems(
     parameters  : of a joint, instead of that of the systems: then only systems with the joint are packed
     joints      : build the systems' joints beside the partners; else they are there
     variability : of the parameters, one of VARIABILITIES
+    pool        : processes that share the work; None: this one does it
 
     Raises what `native.build.build` and `pack_system` raise, and ValueError if no system has the joint, or
     two joints of one FMU differ in what is baked into it.
@@ -51,13 +56,20 @@ def build_systems(
         for name, fmu in fmu_names(system).items():
             used.setdefault(fmu, system.components[name])
     wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
-    jobs = [(fmu, one, version) for version in "23" for fmu, one in wanted_fmus.items()]
-    built = []
-    for fmu, one, version in track(jobs, "build FMUs of systems", len(jobs)):
-        file = (one.file if one.own else one.base) or partner_parameters(one.model)
-        alias = "" if fmu == one.model else fmu
-        built.append(build(one.model, file, out / f"fmi{version}", version, variability, alias))
-    return built + [path for system in chosen for path in pack_system(system, out)]
+    names, ones = list(wanted_fmus), list(wanted_fmus.values())
+    made = (pool.map if pool else map)(partial(_versions, out, variability), names, ones)
+    built = list(track(made, "build FMUs of systems", len(names)))
+    archives = [path for system in chosen for path in pack_system(system, out)]
+    return [*(paths[k] for k in range(len(VERSIONS)) for paths in built), *archives]
+
+
+def _versions(out: Path, variability: str, fmu: str, one: Component) -> list[Path]:
+    """Build an FMU of a component in all versions of FMI, which share what is compiled."""
+    file = (one.file if one.own else one.base) or partner_parameters(one.model)
+    alias = "" if fmu == one.model else fmu
+    return [
+        build(one.model, file, out / f"fmi{version}", version, variability, alias) for version in VERSIONS
+    ]
 
 
 def pack_system(system: System, out: Path) -> list[Path]:

@@ -179,7 +179,7 @@ def description(fmu: str | Path) -> Any:
 
 @contextmanager
 def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any]]:
-    """Folder and fmpy model description of an FMU, removed afterwards.
+    """Folder with what runs of an FMU, and fmpy's model description, removed afterwards.
 
     exchange : whether it may be for model exchange only
 
@@ -195,7 +195,7 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any
         version = _fmi_version(path)
         if known := version.startswith(("2.", "3.")):
             described = description(path)
-            folder = extract(str(path))
+            folder = extract(str(path), include=_runs)
     except (zipfile.BadZipFile, KeyError, OSError) as error:
         raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
     except Exception as error:  # fmpy raises bare Exception for a broken description
@@ -210,6 +210,16 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any
         while (resources := str(Path(folder) / "resources")) in sys.path:
             sys.path.remove(resources)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def _runs(member: str) -> bool:
+    """Whether a member of an FMU is used when it runs: its description, resources and own binary."""
+    from fmpy import platform, platform_tuple
+
+    top, _, rest = member.partition("/")
+    if top == "binaries":
+        return rest.partition("/")[0] in (platform, platform_tuple)
+    return top not in ("documentation", "extra", "sources", "terminalsAndIcons")
 
 
 def _fmi_version(path: Path) -> str:
