@@ -8,8 +8,9 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
+from jointfmu.joints.harmonic_drive import friction
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
-from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.joints.harmonic_drive.spring import MEMORY, HarmonicDriveSpring
 from jointfmu.parameters import default
 
 THINNING = {"viscous_temperature_coefficient": 0.03, "dry_temperature_coefficient": 0.01}
@@ -64,7 +65,7 @@ def test_a_drive_in_the_cold_and_in_the_warm_holds_what_it_bears(kelvin):
     law, inertia, step = spring(friction_coulomb=0.05, friction_viscous=3e-3, **THINNING), 3e-5, 1e-4
     most = float(limits(law.joint, 0.0, 0.0, kelvin)[0])
     brake, joint = law.friction, law.joint
-    phi, w, memory = 0.0, 0.0, brake.rest()
+    phi, w, memory = 0.0, 0.0, friction.MEMORY.rest()
     places = np.empty(100_000)
     for k in range(places.size):
         held = brake.moved(memory, phi, w, (most, most))
@@ -79,8 +80,8 @@ def test_a_drive_in_the_cold_and_in_the_warm_holds_what_it_bears(kelvin):
 
 def stored(law, memory, out):
     """Energy (n) [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
-    n = law.hysteresis.limit.size
-    pairs = ((memory[..., :n], law.hysteresis.stiffness), (memory[..., n + 2 : -4], law.friction.stiffness))
+    parts = MEMORY.split(memory)
+    pairs = ((parts["force"], law.hysteresis.stiffness), (parts["brake"], law.friction.stiffness))
     sliders = sum(np.sum(force**2 / (2.0 * K), axis=-1) for force, K in pairs)
     return law.curve.energy(np.abs(out["phi_rel"])) + sliders
 
