@@ -25,7 +25,7 @@ def address(path: str) -> str:
     """Address in the site of a file of the repository."""
     if path in CARRIED:
         return CARRIED[path]
-    return f"files/{path}.txt" if path.endswith(".md") else f"files/{path}"
+    return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
 
 
 def carried(name: str) -> str:

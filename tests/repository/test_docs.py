@@ -125,7 +125,7 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
 
 # Names of files in the text
 
-FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests", "tools")
+FOLDERS = ("benchmarks", "core", "docs", "examples", "fmu_src", "models", "tests", "tools")
 ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
 """Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
 
