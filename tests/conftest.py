@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from filelock import FileLock
 from hypothesis import settings
+from jointfmu_fmu_src.native.cache import COMPILER, compiler_cache
 
 from jointfmu.fmi.host import Instance
 
@@ -21,6 +22,8 @@ settings.load_profile("jointfmu")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell's background job ignores it, and so would the commands that tests interrupt.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
 
 HERE = Path(__file__).parent
 SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})

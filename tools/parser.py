@@ -15,6 +15,7 @@ COMMANDS = (
     "law",
     "parameters",
     "build",
+    "cache",
     "modelica",
     "export",
     "footprint",

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
+from threading import RLock
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -19,6 +20,7 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
     except ImportError:
         yield from items
         return
+    tqdm.set_lock(RLock())  # its own is shared by processes, and left behind by those that are ended
     yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
 
 
@@ -33,9 +35,9 @@ def processes() -> Iterator[Executor]:
     try:
         yield pool
     except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
             process.kill()
+        pool.shutdown(cancel_futures=True)
         raise
     pool.shutdown()
 

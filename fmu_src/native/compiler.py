@@ -1,7 +1,6 @@
 """C sources to shared libraries for five platforms, on any machine, with the compiler of PyPI's ziglang."""
 
-import json
-import re
+import os
 import struct
 import subprocess
 import sys
@@ -11,6 +10,8 @@ from hashlib import sha256
 from importlib import import_module
 from os import cpu_count
 from pathlib import Path
+
+from .cache import COMPILER, compiler_cache
 
 TARGETS = {
     "x86_64-windows": "x86_64-windows-gnu",
@@ -131,15 +132,9 @@ def _headers() -> dict[str, str]:
 
 def _folder(files: Mapping[str, str]) -> Path:
     """Folder with these files in zig's cache, where zig knows again what it has compiled: by its path."""
-    advice = "set ZIG_GLOBAL_CACHE_DIR to a writable folder"
-    try:
-        shown = _run("the compiler's cache", Path.cwd(), "env")
-    except RuntimeError as error:
-        raise ValueError(f"{error}; {advice}") from None
-    cache = re.search(r"global_cache_dir = (\".*\")", shown)
-    assert cache, "zig env names no global_cache_dir"
+    advice = f"set {COMPILER} to a writable folder"
     digest = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(files.items())).encode()).hexdigest()[:32]
-    folder = Path.cwd() / str(json.loads(cache[1])) / "jointfmu" / digest
+    folder = compiler_cache() / "jointfmu" / digest
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in files.items():
@@ -157,6 +152,7 @@ def _run(what: str, folder: Path, *arguments: str) -> str:
     done = subprocess.run(
         [sys.executable, "-m", "ziglang", *arguments],
         cwd=folder,
+        env={**os.environ, COMPILER: str(compiler_cache())},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

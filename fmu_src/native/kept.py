@@ -6,8 +6,6 @@ Wheels carry parts beside this file; what is compiled here is kept in the user's
 
 import io
 import lzma
-import os
-import sys
 import tarfile
 import tempfile
 from collections.abc import Iterator
@@ -25,6 +23,7 @@ from jointfmu.parameters import ParameterFile
 
 from ..folders import own_folder
 from ..joint_parts.data import Split
+from .cache import parts
 from .compiler import exported, libraries
 from .data import PLACEHOLDER, placeholder
 from .interrupt import interrupt_after
@@ -32,8 +31,6 @@ from .interrupt import interrupt_after
 SHIPPED = Path(__file__).with_name("parts")
 """Where wheels have theirs."""
 VERSIONS = ("2", "3")
-CACHE = "JOINTFMU_CACHE"
-"""Environment variable with the folder of the parts that are kept."""
 MOST_KEPT = 200
 """Files that are kept [1]; older ones go."""
 _SUFFIX = ".tar.xz"
@@ -92,18 +89,7 @@ def _places(name: str) -> tuple[Path, Path]:
     for package in _COMPILERS:
         with suppress(PackageNotFoundError):
             used.append(f"{package}-{version(package)}")
-    return SHIPPED / name, cache_folder() / "_".join(used or ["none"]) / name
-
-
-def cache_folder() -> Path:
-    """The folder of the parts that are kept: JOINTFMU_CACHE, or in the user's cache."""
-    if own := os.environ.get(CACHE):
-        return Path(own)
-    home = {
-        "win32": os.environ.get("LOCALAPPDATA") or "~/AppData/Local",
-        "darwin": "~/Library/Caches",
-    }.get(sys.platform, os.environ.get("XDG_CACHE_HOME") or "~/.cache")
-    return Path(home).expanduser() / "jointfmu"
+    return SHIPPED / name, parts() / "_".join(used or ["none"]) / name
 
 
 def _sources_of(model: Model) -> str:

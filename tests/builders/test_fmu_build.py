@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import zipfile
 from collections.abc import Callable
 from contextlib import redirect_stdout, suppress
@@ -15,6 +16,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from shutil import copytree, ignore_patterns, rmtree
+from subprocess import PIPE
 
 import pytest
 import pythonfmu
@@ -435,7 +437,8 @@ def test_the_main_job_fails_when_a_check_misses(
     """With what the other job has built: whatever is built, the checks decide."""
     copytree(job[0], tmp_path, dirs_exist_ok=True)
     rmtree(tmp_path / "report")
-    monkeypatch.setattr(pipeline, "build", lambda *_, **__: [tmp_path / "fmi2" / f"{name}.fmu" for name in NAMES])
+    fmus = [tmp_path / "fmi2" / f"{name}.fmu" for name in NAMES]
+    monkeypatch.setattr(pipeline, "build", lambda *_, **__: fmus)
     monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
     assert pipeline.main(tmp_path) == 1
@@ -468,6 +471,25 @@ def test_the_main_job_fails_when_an_fmu_does_not_prove_itself(
     assert [interface in line for interface, line in zip(BOTH, missed, strict=True)] == [True, True]
     page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
     assert '<td class="miss">miss</td>' in page
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no process groups")
+def test_the_main_job_ends_with_its_processes_on_ctrl_c(tmp_path: Path) -> None:
+    script = Path(__file__).parents[2] / "build_fmus.py"
+    command = [sys.executable, str(script), "--out", str(tmp_path / "dist")]
+    process = subprocess.Popen(command, stdout=PIPE, stderr=PIPE, text=True, start_new_session=True)
+    while not list(tmp_path.glob("dist/fmi2/*.fmu")):  # its processes are at work
+        time.sleep(0.05)
+        assert process.poll() is None
+    os.killpg(process.pid, signal.SIGINT)
+    out, err = process.communicate(timeout=60.0)
+    assert (process.returncode, out, err) == (130, "", "build_fmus.py: interrupted\n")
+    late = time.monotonic() + 30.0
+    with suppress(ProcessLookupError):
+        while time.monotonic() < late:
+            os.killpg(process.pid, 0)
+            time.sleep(0.05)
+        pytest.fail("processes are left")
 
 
 def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 from conftest import Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native import kept
+from jointfmu_fmu_src.native import cache, kept
 from jointfmu_fmu_src.native.ahead import structures
 from jointfmu_fmu_src.native.binary import finished
 from jointfmu_fmu_src.native.data import PLACEHOLDER, block, data_of, placeholder, split
@@ -89,7 +89,7 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compiled = []
-    monkeypatch.setenv(kept.CACHE, str(tmp_path))
+    monkeypatch.setenv(cache.CACHE, str(tmp_path))
     monkeypatch.setattr(kept, "compiled", lambda *_: compiled.append(1) or a_part())
     model, file = of(NAMES[0])
     for _ in range(3):
@@ -104,7 +104,7 @@ def test_it_is_compiled_once_and_again_where_the_file_is_broken(
 
 def test_a_cache_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("mine")
-    monkeypatch.setenv(kept.CACHE, str(tmp_path / "file" / "below"))
+    monkeypatch.setenv(cache.CACHE, str(tmp_path / "file" / "below"))
     monkeypatch.setattr(kept, "compiled", lambda *_: a_part())
     model, file = of(NAMES[0])
     assert kept.part_of(model, file, split(model, file)) == a_part()

@@ -125,6 +125,9 @@ def main(out: Path) -> int:
     except (ValueError, RuntimeError) as error:
         print(f"build_fmus.py: {error}", file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
+    except KeyboardInterrupt:
+        print("build_fmus.py: interrupted", file=sys.stderr)
+        return 130
     misses = outcome.misses
     folders = ", ".join(str(out / flavour) for flavour in FLAVOURS)
     print(f"built: {len(outcome.built)} FMUs in {folders}: {', '.join(MODELS)}")

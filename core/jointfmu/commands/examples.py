@@ -10,6 +10,7 @@ EXAMPLES = {
     "law": "law zhao2018 --pressure 1e6 2e6",
     "parameters": "parameters HarmonicDriveSpring",
     "build": "build GearContact --flavour fmi2 --out dist",
+    "cache": "cache",
     "modelica": "modelica --preload 20e3 --out modelica",
     "export": "export calculix springs --preload 9e3 --units mm-N-MPa-t --out springs.inp",
     "footprint": "footprint compute models/assemblies/box_specimen.toml --refinement 0.35",
