@@ -44,8 +44,6 @@ SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
 """Springs over M/presliding and friction over M of the sliders [1]."""
 REFERENCE = 293.15
 """Temperature [K] at which the friction parameters hold: that of the catalogues, 20 degrees C."""
-COLDEST = 200.0
-"""Least temperature [K]: greases are stiff before, and degrees Celsius given as kelvin are refused."""
 TURNED = 0.1
 """Time [s] for which a drive that turns at initialization has turned before."""
 

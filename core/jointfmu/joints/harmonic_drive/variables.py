@@ -1,7 +1,7 @@
 """Inputs and outputs of the harmonic drive's models."""
 
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
-from .friction import COLDEST, REFERENCE
+from .friction import REFERENCE
 from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
@@ -54,7 +54,7 @@ MODELS = (
             Variable("w1", "rad/s", "speed of the wave-generator (motor) flange"),
             Variable("phi2", "rad", "angle of the output flange"),
             Variable("w2", "rad/s", "speed of the output flange"),
-            Variable("temperature", "K", "of the lubricant", REFERENCE, low=COLDEST, start=REFERENCE),
+            Variable("temperature", "K", "of the lubricant", REFERENCE, low=0.0, start=REFERENCE),
         ),
         outputs=(
             Variable(

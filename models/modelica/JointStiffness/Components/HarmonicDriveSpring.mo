@@ -176,9 +176,9 @@ equation
 <p>φ<sub>rel</sub> = φ<sub>2</sub> − φ<sub>1</sub>/ratio − φ<sub>e</sub>(φ<sub>1</sub>), &emsp; τ<sub>1</sub> = τ (1/ratio + dφ<sub>e</sub>/dφ<sub>1</sub>) − τ<sub>friction</sub>, &emsp; τ<sub>2</sub> = −τ</p>
 <p>φ<sub>e</sub> = Σ error_n sin(n φ<sub>1</sub> + error_n_phase), &emsp; n = 1, 2, 4</p>
 <p>φ<sub>e</sub>, the output <code>phi_error</code>, is the kinematic error at the output. φ<sub>1</sub> counts from the housing: both lobes of the wave generator pass every tooth once per turn, so two periods per turn come first, <code>error_2</code>. The torque on the wave generator follows by virtual work. At a steady speed the output ripples, most at that speed of the wave generator which is half the natural frequency.</p>
-<p>M = temperature_factor [friction_coulomb + friction_stribeck exp(−(w<sub>1</sub>/stribeck_speed)<sup>2</sup>) + loss |τ/ratio|]</p>
+<p>M = f<sub>dry</sub> [friction_coulomb + friction_stribeck exp(−(w<sub>1</sub>/stribeck_speed)<sup>2</sup>) + loss |τ/ratio|]</p>
 <p>The share of the load is <code>load_loss</code> where the motor drives, and <code>load_loss_back</code> where the load drives the motor: the limit of friction that holds the load.</p>
-<p>Friction at the wave generator, the output <code>tau_friction</code>, is dry friction with the limit M, and <code>temperature_factor · friction_viscous · w1</code>. Dry friction builds up over the angle φ<sub>1</sub>, from rest as M [1 − exp(−φ<sub>1</sub>/presliding)], by 8 sliders with memory: a drive at rest holds a torque below M where it is. At initialization a drive has turned before as its speed says, wherever it is. Smooth through τ = 0: |τ| is τ tanh(τ/(0.01 T<sub>r</sub>)).</p>
+<p>Friction at the wave generator, the output <code>tau_friction</code>, is dry friction with the limit M, and f<sub>viscous</sub> <code>friction_viscous · w1</code>, with f = <code>temperature_factor</code> exp(−coefficient (<code>temperature</code> − 293.15 K)) and the coefficient of each, <code>dry_temperature_coefficient</code> and <code>viscous_temperature_coefficient</code>. Dry friction builds up over the angle φ<sub>1</sub>, from rest as M [1 − exp(−φ<sub>1</sub>/presliding)], by 8 sliders with memory: a drive at rest holds a torque below M where it is. At initialization a drive has turned before as its speed says, wherever it is. Smooth through τ = 0: |τ| is τ tanh(τ/(0.01 T<sub>r</sub>)).</p>
 <p>φ(T) = ∫<sub>0</sub><sup>T</sup> dT′ / K<sub>WTS</sub>(T′), &emsp; odd in T</p>
 <p>1/K<sub>WTS</sub> = 1/K<sub>FTS</sub> + 1/K<sub>TS</sub> (Hu 2023, Eq. 46)</p>
 <p>K<sub>TS</sub> = drive_scale · (A<sub>0</sub>/node_area) · K<sub>T</sub>(p) · 2 radius, &emsp; p = mean_over_peak · P(T) (Eq. 45 as printed)</p>
@@ -201,7 +201,7 @@ equation
 <li><b>Beyond rated torque</b> the stiffness settles at that of twice the rated torque, as that of catalogue drives does: an extrapolation.</li>
 <li><b>Range.</b> The table ends at <code>max_torque</code>. Parameters for which the pair loses contact without torque are refused.</li>
 <li><b>Friction and kinematic error</b> are forms, not derived: their parameters come from a catalogue (starting torque, no-load running torque over speed, efficiency, back-driving torque) or a measurement. A catalogue's transmission accuracy is the peak to peak of all harmonics.</li>
-<li><b>Not inside:</b> temperature but as the factor on the friction; wear.</li>
+<li><b>Not inside:</b> what temperature does to stiffness and fits; it acts on the friction alone, by coefficients that are not measured on a drive. Wear.</li>
 </ul>
 <p>Q. Hu, H. Li, G. Wang, L. Li: <em>Research on torsional stiffness of flexspline-flexible bearing contact pair in harmonic drive based on macro-micro scale modeling.</em> Frontiers in Materials 10, 2023. <a href=\"https://doi.org/10.3389/fmats.2023.1211019\">doi:10.3389/fmats.2023.1211019</a></p>
 </html>"));
