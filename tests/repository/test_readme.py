@@ -110,6 +110,7 @@ def test_every_kind_of_command_is_shown():
         "parameters",
         "report",
         "build",
+        "cache",
         "ramp",
         "prove",
         "validate",
