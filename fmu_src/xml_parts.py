@@ -35,7 +35,7 @@ class Listed(NamedTuple):
         return isinstance(self.start, bool)
 
 
-class Unknown(NamedTuple):
+class ModelStructureUnknown(NamedTuple):
     """An output and what it depends on: {value reference: dependenciesKind}.
 
     state, rate : whether it is a continuous state, or the rate of one
@@ -104,7 +104,7 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
     return definitions
 
 
-def unknowns(model: Model, variability: str) -> list[Unknown]:
+def unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
     """All outputs with their dependencies; `variability` is that of the parameters."""
     outputs = [v.name for v in model.outputs]
     names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
@@ -119,7 +119,7 @@ def unknowns(model: Model, variability: str) -> list[Unknown]:
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"
         state, rate = i < model.states, 0 < i <= model.states
-        rows.append(Unknown(index[output], state, rate, knowns, initial | parameters))
+        rows.append(ModelStructureUnknown(index[output], state, rate, knowns, initial | parameters))
     return rows
 
 

@@ -5,7 +5,7 @@ import math
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 
-from ...laboratory.part import Bench, Example, Shown, Turn
+from ...laboratory.part import Example, LaboratoryModel, Shown, Turn
 from .efficiency import parameters, printed_drives
 
 _SPANS = {
@@ -53,8 +53,8 @@ _EXAMPLE = Example(
 )
 
 LABORATORY = {
-    "HarmonicDriveSpring": Bench(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
-    "HarmonicDriveCompliance": Bench(
+    "HarmonicDriveSpring": LaboratoryModel(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
+    "HarmonicDriveCompliance": LaboratoryModel(
         spans=_SPANS,
         path=("tau",),
         points={
