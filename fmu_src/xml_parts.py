@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
-from jointfmu.quantity.units import UNITS, display_unit
+from jointfmu.quantity.units import CELSIUS, KELVIN_AT_ZERO, UNITS, display_unit
 
 VARIABILITIES = ("tunable", "fixed")
 """What a description may say of all parameters: set during a run too, or before it only."""
@@ -35,7 +35,7 @@ class Listed(NamedTuple):
         return isinstance(self.start, bool)
 
 
-class Unknown(NamedTuple):
+class ModelStructureUnknown(NamedTuple):
     """An output and what it depends on: {value reference: dependenciesKind}.
 
     state, rate : whether it is a continuous state, or the rate of one
@@ -99,10 +99,12 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
         SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
         for shown, factor in UNITS[name].display.items():
             SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
+        if name == "K":
+            SubElement(unit, "DisplayUnit", name=CELSIUS, factor="1.0", offset=repr(-KELVIN_AT_ZERO))
     return definitions
 
 
-def unknowns(model: Model, variability: str) -> list[Unknown]:
+def unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
     """All outputs with their dependencies; `variability` is that of the parameters."""
     outputs = [v.name for v in model.outputs]
     names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
@@ -117,7 +119,7 @@ def unknowns(model: Model, variability: str) -> list[Unknown]:
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"
         state, rate = i < model.states, 0 < i <= model.states
-        rows.append(Unknown(index[output], state, rate, knowns, initial | parameters))
+        rows.append(ModelStructureUnknown(index[output], state, rate, knowns, initial | parameters))
     return rows
 
 
@@ -150,7 +152,7 @@ def serialized(root: Element) -> bytes:
 
 
 def _shown(unit: str, typical: float) -> dict[str, str]:
-    return {"unit": unit, "displayUnit": display_unit(unit, typical)}
+    return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical)}
 
 
 def _bounds(interval: Interval) -> dict[str, str]:

@@ -34,7 +34,7 @@ TOOLS = (
 """Names that a part may have: each is of the tool that asks for it."""
 
 
-class Parts:
+class ToolParts:
     """The parts of one joint.
 
     Raises ImportError if a name is of no tool or has no module, or if a tool's module is not named.
@@ -58,7 +58,7 @@ class Parts:
         return import_module(f"{self.package}.{tool}") if tool in self.names else None
 
 
-PARTS: dict[str, Parts] = {}
+PARTS: dict[str, ToolParts] = {}
 """{name of a joint: its parts}, filled by `jointfmu_tools.joints`; a joint of another package is added."""
 
 

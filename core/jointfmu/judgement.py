@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .contact.interface import Law, beyond, stiffness_curve
+from .contact.interface import InterfaceLaw, beyond, stiffness_curve
 from .contact.roughness import GAMMA, height, level
 from .joints import KINDS
 from .parameters import ParameterFile
@@ -85,7 +85,7 @@ def known_height(file: ParameterFile) -> float | None:
 
 
 def judge(
-    law: Law,
+    law: InterfaceLaw,
     pressures: Sequence[float],
     h: float | None,
     peak: float = 0.0,
@@ -117,7 +117,7 @@ def judge(
     return Judgement(found, tuple(warnings))
 
 
-def law_height(law: Law) -> float | None:
+def law_height(law: InterfaceLaw) -> float | None:
     """h [m] of an interface law that has it; else None."""
     h = getattr(law, "h", None)
     return None if h is None else float(h)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from . import chart
 from .data import DataPart
-from .page import Panel
+from .page import RampPanel
 from .terminals import Terminal
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Parts:
     native: "Callable[[], NativePart] | None" = None
     data: DataPart = DataPart()
     terminals: Mapping[str, tuple[Terminal, ...]] = field(default_factory=dict)
-    panels: Mapping[str, tuple[Panel, ...]] = field(default_factory=dict)
+    panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
     drawings: Mapping[str, Mapping[str, Drawing]] = field(default_factory=dict)
 
 

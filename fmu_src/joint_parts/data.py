@@ -12,14 +12,14 @@ from jointfmu.quantity import flatten
 Array = NDArray[np.float64]
 
 
-class Table(NamedTuple):
+class DataTable(NamedTuple):
     """Rows (n, k) of numbers that parameters decide, of which there is room for `most`."""
 
     rows: Array
     most: int
 
 
-Tables = Mapping[str, Table]
+Tables = Mapping[str, DataTable]
 NO_TABLES: Tables = {}
 
 

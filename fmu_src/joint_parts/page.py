@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 
-class Panel(NamedTuple):
+class RampPanel(NamedTuple):
     """One chart of the ramp: quantities of one unit over an input or output."""
 
     over: str

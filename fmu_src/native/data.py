@@ -20,7 +20,7 @@ from jointfmu.quantity import flat_fields
 
 from ..folders import parts_of
 from ..joint_parts.c_text import number, string
-from ..joint_parts.data import NO_TABLES, Split, Table, Tables
+from ..joint_parts.data import NO_TABLES, DataTable, Split, Tables
 from ..naming import LONGEST
 
 Array = NDArray[np.float64]
@@ -132,7 +132,7 @@ def data_of(model: Model, parameters: ParameterFile, given: Split, sources: Mapp
 def placeholder(model: Model, given: Split) -> Data:
     """The block that parts are compiled with."""
     count = 1 + len(model.inputs) + len(model.outputs) + len(given.exposed)
-    tables = {name: Table(table.rows[:0], table.most) for name, table in given.tables.items()}
+    tables = {name: DataTable(table.rows[:0], table.most) for name, table in given.tables.items()}
     return block(PLACEHOLDER, "", [0.0] * count, [0.0] * len(given.fixed), tables)
 
 

@@ -15,7 +15,7 @@ from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
 from ..joint_parts import chart
-from ..joint_parts.page import Panel
+from ..joint_parts.page import RampPanel
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
@@ -24,7 +24,7 @@ from .terminals import terminals
 _POINTS = 41
 
 
-class _Row(NamedTuple):
+class _ParameterRow(NamedTuple):
     """One line of a table of parameters, as text but for the value."""
 
     name: str
@@ -86,7 +86,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
     )
 
 
-def _rows(parameters: ParameterFile) -> list[_Row]:
+def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
     fields, rows = dict(flat_fields(type(parameters.values))), []
     for name, value in parameters.flat.items():
         meta = fields[name].metadata
@@ -97,7 +97,7 @@ def _rows(parameters: ParameterFile) -> list[_Row]:
         if isinstance(value, tuple):
             value = f"{len(value)} numbers from {min(value):.6g} to {max(value):.6g}"
         kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
-        rows.append(_Row(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
+        rows.append(_ParameterRow(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows
 
 
@@ -147,10 +147,10 @@ def evaluated(model: Model, spring: Spring, inputs: Mapping[str, float]) -> dict
     return {name: float(value) for name, value in model.evaluate(spring, inputs).items()}
 
 
-def panels(model: Model) -> tuple[Panel, ...]:
+def panels(model: Model) -> tuple[RampPanel, ...]:
     """What is drawn of the ramp; of a joint that does not say it, the first output over the driven input."""
     own = parts_of(model).panels.get(model.name)
-    return own or (Panel(model.ramp.input, (model.outputs[0].name,)),)
+    return own or (RampPanel(model.ramp.input, (model.outputs[0].name,)),)
 
 
 def _figure(model: Model, spring: Spring, rest: Mapping[str, float]) -> str:

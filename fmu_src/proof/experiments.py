@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load, read_document
-from jointfmu.proof.series import Series
+from jointfmu.proof.series import TimeSeries
 from jointfmu.quantity import changed
 
 from .neighbours import neighbours
-from .reference import Drive, results, rounded, start_of
+from .reference import Stimulus, results, rounded, start_of
 
 Array = NDArray[np.float64]
 
@@ -36,18 +36,18 @@ SPREAD = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class ReferenceExperiment:
     """An experiment; `settings` are those that differ from the FMU's start values."""
 
     purpose: str
     name: str
     doc: str
     settings: Mapping[str, object]
-    drive: Drive
-    results: Series
+    drive: Stimulus
+    results: TimeSeries
 
 
-def experiments(model: Model, parameters: ParameterFile) -> list[Experiment]:
+def experiments(model: Model, parameters: ParameterFile) -> list[ReferenceExperiment]:
     """All experiments, the smoke test first.
 
     Raises ValueError or RuntimeError if the joint refuses its own parameter file.
@@ -112,7 +112,7 @@ def _experiment(
     doc: str,
     settings: Mapping[str, object],
     levels: int,
-) -> Experiment:
+) -> ReferenceExperiment:
     """The load ramp in some levels; a model with states rests under the ramp's end."""
     start, end = start_of(model, parameters)[model.ramp.input], model.ramp.end
     if model.states:
@@ -121,25 +121,29 @@ def _experiment(
     else:
         places = np.array([rounded(x) for x in np.linspace(start, end, levels + 1)])
     interval = model.ramp.interval * (FRACTION if model.moves else 1.0)
-    drive = Drive(model.ramp.input, places, interval)
-    return Experiment(purpose, name, doc, settings, drive, _results(model, parameters, settings, drive))
+    drive = Stimulus(model.ramp.input, places, interval)
+    return ReferenceExperiment(
+        purpose, name, doc, settings, drive, _results(model, parameters, settings, drive)
+    )
 
 
-def _results(model: Model, parameters: ParameterFile, settings: Mapping[str, Any], drive: Drive) -> Series:
+def _results(
+    model: Model, parameters: ParameterFile, settings: Mapping[str, Any], drive: Stimulus
+) -> TimeSeries:
     start = start_of(model, parameters)
     own = {name: value for name, value in settings.items() if name not in start}
     values = changed(parameters.values, own) if own else parameters.values
     return results(model, values, start | {n: v for n, v in settings.items() if n in start}, drive)
 
 
-def _models(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
+def _models(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     for file, differing in models(model, parameters)[1:]:
         yield _experiment(
             model, parameters, "validation", f"model {file.name}", "a shipped model", differing, FEW
         )
 
 
-def _loop(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
+def _loop(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """From rest to the amplitude, and to and fro, in a triangle."""
     if (loop := model.loop) is None:
         return
@@ -147,15 +151,15 @@ def _loop(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
     phase = np.arange(QUARTER * (1 + 4 * CYCLES) + 1) / (4.0 * QUARTER)
     turned = 1.0 - 4.0 * np.abs((phase + 0.25) % 1.0 - 0.5)
     levels = np.array([rounded(middle + loop.amplitude * x) for x in turned])
-    drive = Drive(loop.input, levels, model.ramp.interval)
+    drive = Stimulus(loop.input, levels, model.ramp.interval)
     doc = f"{loop.input} to and fro by {loop.amplitude:g}, from rest"
     with suppress(*_REFUSALS):
         found = _results(model, parameters, loop.settings, drive)
-        yield Experiment("validation", "loop", doc, loop.settings, drive, found)
+        yield ReferenceExperiment("validation", "loop", doc, loop.settings, drive, found)
 
 
-def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
-    found: dict[tuple[str, object], Experiment] = {}
+def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
+    found: dict[tuple[str, object], ReferenceExperiment] = {}
 
     def taken(name: str, value: object) -> bool:
         shown = str(value).lower() if isinstance(value, bool) else f"{value:.9g}"
@@ -169,7 +173,7 @@ def _neighbours(model: Model, parameters: ParameterFile) -> Iterator[Experiment]
         yield replace(found[name, value], doc=doc)
 
 
-def _samples(model: Model, parameters: ParameterFile) -> Iterator[Experiment]:
+def _samples(model: Model, parameters: ParameterFile) -> Iterator[ReferenceExperiment]:
     """Points of an additive recurrence by square roots of primes, but those that the joint refuses."""
     names = _uncertain(model, parameters)
     steps = np.sqrt(list(islice(_primes(), len(names))))

@@ -17,7 +17,7 @@ from jointfmu.quantity import flatten
 
 from ..ssv import Value, parameter_set
 from ..xml_parts import serialized
-from .experiments import Experiment
+from .experiments import ReferenceExperiment
 from .reference import DIGITS
 
 TOLERANCE = 1e-5
@@ -84,7 +84,7 @@ def archive(
     model: Model,
     parameters: ParameterFile,
     models: Sequence[tuple[ParameterFile, Mapping[str, Any]]],
-    experiments: Sequence[Experiment],
+    experiments: Sequence[ReferenceExperiment],
     study: Mapping[str, str],
     native: bool,
 ) -> dict[str, bytes]:
@@ -143,7 +143,7 @@ def slug(name: str) -> str:
 
 
 def _experiment(
-    model: Model, root: Element, number: str, one: Experiment, there: Mapping[str, bytes]
+    model: Model, root: Element, number: str, one: ReferenceExperiment, there: Mapping[str, bytes]
 ) -> dict[str, bytes]:
     """Declare an experiment; its files. Inputs that another experiment has are taken from there."""
     stem = f"experiments/{number}_{slug(one.name)}"
@@ -186,7 +186,7 @@ def _manifest(related: Sequence[_Related], native: bool) -> bytes:
     return serialized(root)
 
 
-def _text(own: str, experiments: Sequence[Experiment], native: bool) -> str:
+def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
     counts = {p: sum(one.purpose == p for one in experiments) for p in manifest.PURPOSES}
     return _PAGE.format(
         standard=manifest.NAME,

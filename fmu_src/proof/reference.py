@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from jointfmu.joints.model import Model, Outputs, Spring
 from jointfmu.parameters import ParameterFile
-from jointfmu.proof.series import Series
+from jointfmu.proof.series import TimeSeries
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ DIGITS = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class Stimulus:
     """How an FMU is driven.
 
     input  : that moves
@@ -39,14 +39,14 @@ class Drive:
         return np.asarray([float(f"{i * self.interval:.12g}") for i in range(self.levels.size)])
 
     @property
-    def stimuli(self) -> Series:
+    def stimuli(self) -> TimeSeries:
         """The input over time."""
         held = np.repeat(self.levels, 2)[1:]
         times = [float(f"{0.5 * i * self.interval:.12g}") for i in range(held.size)]
-        return Series(np.array(times), {self.input: held})
+        return TimeSeries(np.array(times), {self.input: held})
 
 
-def results(model: Model, values: object, start: Mapping[str, float], drive: Drive) -> Series:
+def results(model: Model, values: object, start: Mapping[str, float], drive: Stimulus) -> TimeSeries:
     """Outputs at the instants, from rest.
 
     values : parameter set
@@ -60,10 +60,10 @@ def results(model: Model, values: object, start: Mapping[str, float], drive: Dri
     for name, column in outputs.items():
         if not np.all(np.isfinite(column)):
             raise RuntimeError(f"{model.name}: {name} is not finite")
-    return Series(drive.instants, outputs)
+    return TimeSeries(drive.instants, outputs)
 
 
-def _rows(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive) -> list[Outputs]:
+def _rows(model: Model, spring: Spring, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
     if model.states:
         return _moving(model, spring, inputs, drive)
     memory = None if model.rest is None else model.rest(spring)
@@ -78,7 +78,7 @@ def _rows(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive) 
     return rows
 
 
-def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Drive) -> list[Outputs]:
+def _moving(model: Model, spring: Spring, inputs: dict[str, float], drive: Stimulus) -> list[Outputs]:
     """The motion of a model with states under inputs that rest, by an integration far finer than any step."""
     from scipy.integrate import solve_ivp
 

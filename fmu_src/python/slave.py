@@ -26,7 +26,7 @@ from jointfmu.quantity import build
 T = TypeVar("T")
 
 
-class Way(NamedTuple):
+class AcceptedPath(NamedTuple):
     """The last way that a joint with memory went: memory before and after it, and the inputs it led to."""
 
     before: list[float]
@@ -89,7 +89,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         }
         self.initialized = False
         self.warned: set[int] = set()
-        self.way: Way | None = None
+        self.way: AcceptedPath | None = None
         self._spring: Spring | None = None
         self._outputs: dict[str, float] | None = None
         self._memory: Memory | None = None
@@ -118,7 +118,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
             if self.initialized and self.variability == "fixed":
                 self.refuse(f"{name} is a fixed parameter: it can be set until initialization ends")
             if self.way is not None:  # the path goes on from the inputs that were accepted
-                self.way = Way(self.way.after, self.way.after, {})
+                self.way = AcceptedPath(self.way.after, self.way.after, {})
             self._spring = None
         self.values[name] = value
         self._outputs = None
@@ -173,7 +173,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.output(self.model.outputs[0].name)
         inputs = self.inputs()
         if self._memory is not None and (self.way is None or inputs != self.way.inputs):
-            self.way = Way(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
+            self.way = AcceptedPath(self.memory(inputs).tolist(), self._memory.tolist(), inputs)
 
     def spring(self) -> Spring:
         """The tabulated joint of the present parameters."""
@@ -215,7 +215,7 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         changed = any(self.values[name] != state["values"][name] for name in self.start)
         self.values, self.initialized = dict(state["values"]), state["initialized"]
         self.warned = set(state["warned"])
-        self.way = Way(*state["way"]) if state.get("way") else None
+        self.way = AcceptedPath(*state["way"]) if state.get("way") else None
         self._outputs = None
         if changed:
             self._spring = None

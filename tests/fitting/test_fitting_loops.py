@@ -11,7 +11,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import branches, decay
 from jointfmu_tools.fitting.heads import LEAST, Heads, read
-from jointfmu_tools.fitting.hysteresis import Elastic, Hysteresis
+from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from jointfmu_tools.fitting.oscillator import Oscillator
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS
@@ -23,9 +23,9 @@ from jointfmu.quantity.units import sizes
 
 PRELOAD = measurements.PRELOAD
 K, C = 2e9, 4e13
-PARABOLA = Hysteresis(lambda u: K * u - C * u**2, lambda u: K * u**2 / 2.0 - C * u**3 / 3.0)
+PARABOLA = HysteresisLaw(lambda u: K * u - C * u**2, lambda u: K * u**2 / 2.0 - C * u**3 / 3.0)
 """B = K u - C u^2: everything below about it is worked out by hand."""
-SPRING = Elastic(lambda u: K * u, lambda u: 0.5 * K * u**2)
+SPRING = NonlinearSpring(lambda u: K * u, lambda u: 0.5 * K * u**2)
 AMPLITUDES = np.array([1e-7, 1e-6, 1e-5])
 
 # The law of a loop
@@ -82,7 +82,7 @@ def test_decay_of_a_parabola():
 
 def test_decay_of_a_viscous_spring():
     """No friction: sqrt(K/M), and the decrement pi d/(2 sqrt(K M)) of half a period."""
-    law = Hysteresis(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous=200.0)
+    law = HysteresisLaw(lambda u: 0.0 * u, lambda u: 0.0 * u, SPRING, viscous=200.0)
     omega, decrement = law.decay(AMPLITUDES, 5.0)
     np.testing.assert_allclose(omega, np.sqrt(K / 5.0), rtol=1e-9)
     np.testing.assert_allclose(decrement, 0.5 * np.pi * 200.0 / np.sqrt(K * 5.0), rtol=1e-5)  # second order
@@ -150,7 +150,7 @@ def swung(law, turns):
 @pytest.mark.parametrize("middle", [0.0, 4e-6])
 def test_the_place_of_rest_is_found_in_loops(middle):
     """Of a spring that stiffens, wherever the motion has its zero, also where it is loaded to one side."""
-    hardening = Elastic(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
+    hardening = NonlinearSpring(lambda u: K * u + 1e20 * u**3, lambda u: 0.5 * K * u**2 + 2.5e19 * u**4)
     law = replace(PARABOLA, elastic=hardening)
     motion, force = swung(law, [middle + a for a in (5e-6, -5e-6, 5e-6, -5e-6)])
     found = branches.cut([("", motion + 3e-5, force - 7e3)])

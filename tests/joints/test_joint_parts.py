@@ -7,7 +7,7 @@ import jointfmu_fmu_src.joints as builders
 import jointfmu_tools as tools
 import pytest
 from jointfmu_fmu_src.folders import parts_of
-from jointfmu_tools.joint_parts import TOOLS, Parts, part
+from jointfmu_tools.joint_parts import TOOLS, ToolParts, part
 
 from jointfmu.joints import KINDS, MODELS
 
@@ -39,7 +39,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_a_part_is_a_module(package: str) -> None:
-    parts = Parts(package, ("export",))
+    parts = ToolParts(package, ("export",))
     assert parts.load("export") is sys.modules[f"{package}.export"]
     assert parts.load("fit") is None
 
@@ -55,7 +55,7 @@ def test_a_part_is_a_module(package: str) -> None:
 )
 def test_a_wrong_name_fails_at_import(package: str, names: tuple[str, ...], what: str) -> None:
     with pytest.raises(ImportError, match=what):
-        Parts(package, names)
+        ToolParts(package, names)
 
 
 def test_a_joint_without_parts_cannot_be_built(monkeypatch: pytest.MonkeyPatch) -> None:

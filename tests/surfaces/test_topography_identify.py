@@ -14,7 +14,7 @@ from jointfmu_tools.surfaces.form import without_form
 from jointfmu_tools.surfaces.heights import Areal, Profile
 from jointfmu_tools.surfaces.identify import identify
 from jointfmu_tools.surfaces.joint_parameters import changes, with_surface
-from jointfmu_tools.surfaces.results import Roughness
+from jointfmu_tools.surfaces.results import RoughnessEstimate
 from jointfmu_tools.surfaces.spectrum import psd
 from jointfmu_tools.surfaces.structure import structure
 from scipy.integrate import quad
@@ -222,11 +222,11 @@ def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
 
 
 def test_roughness_leaves_the_floating_point_numbers():
-    inside = Roughness.of_logarithms(-300.0, -700.0, 100.0)
+    inside = RoughnessEstimate.of_logarithms(-300.0, -700.0, 100.0)
     assert inside.determined
     assert (inside.value, inside.low, inside.high) == tuple(np.exp([-300.0, -700.0, 100.0]))
     for value, low, high in ((-300.0, -800.0, 0.0), (-750.0, -760.0, -740.0), (600.0, 500.0, 800.0)):
-        outside = Roughness.of_logarithms(value, low, high)
+        outside = RoughnessEstimate.of_logarithms(value, low, high)
         assert not outside.determined
         assert outside.decades == pytest.approx((high - low) / np.log(10.0), rel=1e-14)  # round-off
 

@@ -15,7 +15,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.uncertainty import journal
 from jointfmu_tools.uncertainty.problem import pose
 from jointfmu_tools.uncertainty.sweep import plan, sweep
-from jointfmu_tools.uncertainty.worker import Drive
+from jointfmu_tools.uncertainty.worker import LoadRamp
 
 from jointfmu.fmi import ramp
 from jointfmu.parameters import default
@@ -23,7 +23,7 @@ from jointfmu.parameters import default
 pytestmark = pytest.mark.slow
 
 RAMP = ("--input", "tau", "--to", "5", "--step", "1")
-DRIVE = Drive("tau", 5.0, 1.0)
+DRIVE = LoadRamp("tau", 5.0, 1.0)
 GIVEN = {"surface.D": "2.45..2.6", "eccentricity": "normal(5e-6, 5e-6)"}
 SETTINGS = ("--set", *(f"{name}={text}" for name, text in GIVEN.items()))
 
@@ -176,7 +176,7 @@ def test_runs_are_the_ramp_of_the_fmu(fmu, cluster, tmp_path):
 )
 def test_fmus_and_reduced_evaluation_agree(flavour, name, load, to, given, native, cluster, tmp_path):
     """The FMUs themselves, sample by sample, with the evaluation that `jointfmu uncertainty` uses."""
-    path, drive = native / flavour / f"{name}.fmu", Drive(load, to, to / 6.0)
+    path, drive = native / flavour / f"{name}.fmu", LoadRamp(load, to, to / 6.0)
     record, runs = plan(path, drive, given, 16, 3)
     journal.claim(tmp_path, record)
     assert sweep(path, drive, runs, tmp_path, scheduler=cluster).failed == 0

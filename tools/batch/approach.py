@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.interface import SIDE, Law, checked_spots
+from jointfmu.contact.interface import SIDE, InterfaceLaw, checked_spots
 from jointfmu.contact.powerlaw import Spots
 from jointfmu.mechanics.curve import CLOSING_RATIO, closing, closing_reach
 
@@ -70,7 +70,9 @@ class Rows:
         return np.asarray(np.clip(np.cumsum(count[:, :m], axis=1), 1, k - 1))
 
 
-def tabulate(law: Law, lowest: Array, highest: Array, names: tuple[str, ...] = ()) -> tuple[Rows, Array]:
+def tabulate(
+    law: InterfaceLaw, lowest: Array, highest: Array, names: tuple[str, ...] = ()
+) -> tuple[Rows, Array]:
     """Rows of `k` (stiffness per area [N/m3]), `s` (approach from first touch [m]) and further totals of
     the law by name between pressures (n, 1) [Pa]; and the pressures (n, 1) [Pa] at which the closing of
     the contact ends.

@@ -15,11 +15,11 @@ from jointfmu.files.writing import check_writable, write_text
 from jointfmu.parameters import dump, load
 
 from ..drawing.reading import number
-from ..fitting.procedure import Option, Procedure, procedures
+from ..fitting.procedure import FitOption, Procedure, procedures
 from ..pressing import judge_file
 
 if TYPE_CHECKING:
-    from ..fitting.outcome import Outcome
+    from ..fitting.outcome import FitResult
 
 
 def add(commands: Commands) -> None:
@@ -46,7 +46,7 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
         _option(sub, option)
 
 
-def _option(sub: argparse.ArgumentParser, option: Option) -> None:
+def _option(sub: argparse.ArgumentParser, option: FitOption) -> None:
     metavar = "TEXT" if option.word else "VALUE"
     sub.add_argument(
         flag(option.name),
@@ -78,7 +78,7 @@ def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, Any]:
     return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
 
 
-def _value(option: Option, args: argparse.Namespace) -> Any:
+def _value(option: FitOption, args: argparse.Namespace) -> Any:
     value = getattr(args, option.name)
     if not option.unit or value is None:
         return value
@@ -111,7 +111,7 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     return found[0]
 
 
-def _finish(args: argparse.Namespace, outcome: "Outcome") -> int:
+def _finish(args: argparse.Namespace, outcome: "FitResult") -> int:
     """Write and print what was found."""
     from ..fitting.outcome import percent
     from ..fitting.picture import draw, size

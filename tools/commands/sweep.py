@@ -40,13 +40,13 @@ def _sweep(args: argparse.Namespace) -> int:
     from ..uncertainty import journal, study
     from ..uncertainty.cluster import leave
     from ..uncertainty.sweep import plan, sweep
-    from ..uncertainty.worker import Drive
+    from ..uncertainty.worker import LoadRamp
 
     if args.workers is not None and args.workers < 1:
         raise ValueError(f"workers = {args.workers} is outside [1, inf)")
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
-    drive = Drive(args.input, args.to, args.step)
+    drive = LoadRamp(args.input, args.to, args.step)
     given = study.settings(args.study, args.settings)
     record, runs = plan(args.fmu, drive, given, count, args.seed)
     try:

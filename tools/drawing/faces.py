@@ -13,7 +13,7 @@ from ..surfaces import roughness as scanned
 from .part import Given, Option
 from .reading import both, flag, number
 from .sheet import Sheet
-from .tables import Known, Row, row
+from .tables import Known, TableRow, row
 
 OPTIONS = (
     Option(
@@ -61,7 +61,7 @@ class Face(NamedTuple):
     stated: dict[str, float]
 
 
-def materials(given: Given) -> tuple[Row, Row]:
+def materials(given: Given) -> tuple[TableRow, TableRow]:
     """The two materials. Raises ValueError for one that the table lacks."""
     names = both("material", given["material"])
     assert names is not None  # it is required
@@ -188,7 +188,7 @@ def _of_finish(name: str) -> Face:
     return Face(Rq, least, most, slope, hurst, _cut_off(Ra), text, {"Ra": Ra})
 
 
-def _of_number(name: str, text: str, finish: Row | None) -> Face:
+def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
     value = number(name, text, "um", "m")
     if value > roughness.ROUGHEST:
         most = roughness.ROUGHEST * 1e6

@@ -36,7 +36,7 @@ FINISH = {
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TableRow:
     """A row of a table: its name, other names, a title, and numbers by column."""
 
     name: str
@@ -46,7 +46,7 @@ class Row:
 
 
 @cache
-def table(name: str) -> dict[str, Row]:
+def table(name: str) -> dict[str, TableRow]:
     """`materials` or `finishes`: {name: row}."""
     path, document = _document(name)
     columns = {"materials": MATERIAL, "finishes": FINISH}[name]
@@ -55,11 +55,11 @@ def table(name: str) -> dict[str, Row]:
         plain = {key: body.pop(key) for key in ("also", "title")}
         values, kinds, sources = entries(path, columns, body)
         known = {key: Known(float(value), kinds[key], sources[key]) for key, value in values.items()}
-        rows[title] = Row(title, tuple(plain["also"]), plain["title"], known)
+        rows[title] = TableRow(title, tuple(plain["also"]), plain["title"], known)
     return rows
 
 
-def row(name: str, wanted: str) -> Row:
+def row(name: str, wanted: str) -> TableRow:
     """The row of a table by one of its names, whatever its case and hyphens; ValueError if there is none."""
     rows = table(name)
     for found in rows.values():

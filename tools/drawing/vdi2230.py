@@ -68,7 +68,7 @@ def cone_diameter(height: float, bearing: float, slope: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Layer:
+class ClampedPart:
     """A clamped part: thickness [m] and Young's modulus [Pa]."""
 
     thickness: float
@@ -76,7 +76,7 @@ class Layer:
 
 
 def members_compliance(
-    layers: Sequence[Layer], bearing: float, hole: float, outer: float, slope: float, tapped: bool
+    layers: Sequence[ClampedPart], bearing: float, hole: float, outer: float, slope: float, tapped: bool
 ) -> float:
     """delta_P [m/N] of the clamped parts: cones that widen from the head (and the nut), inside D_A a sleeve.
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .mesh import Mesh
     from .placing import Placing
     from .springs import Springs
-    from .tables import Table
+    from .tables import LoadTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +35,7 @@ class LoadCurve:
     meaning: str
     columns: Sequence[Variable]
     name: str
-    table: "Callable[[Any, Any, float], Table]"
+    table: "Callable[[Any, Any, float], LoadTable]"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

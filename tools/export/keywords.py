@@ -9,7 +9,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from .placing import Placing, header
 from .springs import Springs
-from .tables import Table
+from .tables import LoadTable
 from .units import Units
 
 Array = NDArray[np.float64]
@@ -55,7 +55,7 @@ def _nodes(springs: Springs, placing: Placing) -> Iterable[str]:
             yield f"{node}, " + ", ".join(f"{v:.12E}" for v in xyz)
 
 
-def contact_text(table: Table, units: Units, about: Sequence[str], most: int | None = None) -> str:
+def contact_text(table: LoadTable, units: Units, about: Sequence[str], most: int | None = None) -> str:
     """The text of the file: a surface interaction JOINT with the pressure over the overclosure.
 
     most : rows that the solver can hold, or None. Raises ValueError if the table has more.

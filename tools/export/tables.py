@@ -27,7 +27,7 @@ _FEWEST = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class LoadTable:
     """A load over a displacement.
 
     rows      : (n, 3) displacement, load, stiffness of the curve there
@@ -40,7 +40,7 @@ class Table:
     monotone: tuple[float, float]
 
 
-def law_table(curve: Curve, error: float) -> Table:
+def law_table(curve: Curve, error: float) -> LoadTable:
     """Pressure [Pa] over approach [m] from first touch, stiffness [N/m3], up to the hardness.
 
     One line leads over the closing of the contact, where the law itself does not reach; the errors are
@@ -50,17 +50,17 @@ def law_table(curve: Curve, error: float) -> Table:
     some = x >= 0.0
     table = thinned(x[some] - curve.displacement[0], y[some], k[some], error)
     rows = np.vstack([[0.0, 0.0, 0.0], table.rows])
-    return Table(rows, table.straight, table.monotone)
+    return LoadTable(rows, table.straight, table.monotone)
 
 
-def load_table(curve: Curve, area: float, error: float) -> Table:
+def load_table(curve: Curve, area: float, error: float) -> LoadTable:
     """`law_table` of an area [m2]: load [N] and stiffness [N/m], and a row without load before it."""
     table = law_table(curve, error)
     rows = table.rows * [1.0, area, area]
-    return Table(np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.straight, table.monotone)
+    return LoadTable(np.vstack([[-rows[-1, 0], 0.0, 0.0], rows]), table.straight, table.monotone)
 
 
-def odd_table(curve: Curve, error: float) -> Table:
+def odd_table(curve: Curve, error: float) -> LoadTable:
     """A curve through zero with its mirror image; the stiffness within STIFFNESS, if it has no jump."""
     half = _dense(curve, _FINE)
     try:
@@ -69,7 +69,7 @@ def odd_table(curve: Curve, error: float) -> Table:
         rows = thinned(*half, error).rows
     rows = np.vstack([rows[:0:-1] * [-1.0, -1.0, 1.0], rows])
     x, y, k = (np.concatenate([sign * v[:0:-1], v]) for sign, v in zip((-1.0, -1.0, 1.0), half, strict=True))
-    return Table(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
+    return LoadTable(rows, *_errors(rows, x, y, k, (0.0, 0.0)))
 
 
 def thinned(
@@ -80,7 +80,7 @@ def thinned(
     floor: tuple[float, float] = (0.0, 0.0),
     keep: Collection[int] = (),
     stiffness: float = np.inf,
-) -> Table:
+) -> LoadTable:
     """The fewest of the points (n) of a curve, taken one after the other, whose lines keep to it.
 
     error : [1] largest error of y by straight lines, relative to y or floor[0], the larger
@@ -111,7 +111,7 @@ def thinned(
             f"error = {error:g} is too small for a table; it would have {index.size} rows or more"
         )
     rows = np.stack([x[index], y[index], k[index]], axis=1)
-    return Table(rows, *_errors(rows, x, y, k, floor))
+    return LoadTable(rows, *_errors(rows, x, y, k, floor))
 
 
 def _errors(

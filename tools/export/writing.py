@@ -109,7 +109,7 @@ def curve(form: str, file: ParameterFile, state: object, units: Units, error: fl
     return Written(columns.table_csv(table.rows, heads, units, about), _facts(table), _warnings(table))
 
 
-def _warnings(table: tables.Table) -> tuple[str, ...]:
+def _warnings(table: tables.LoadTable) -> tuple[str, ...]:
     """What a reader of the slope should know."""
     straight, cubic = table.straight[1], table.monotone[1]
     if straight <= tables.STIFFNESS:
@@ -120,7 +120,7 @@ def _warnings(table: tables.Table) -> tuple[str, ...]:
     )
 
 
-def _facts(table: tables.Table) -> dict[str, object]:
+def _facts(table: tables.LoadTable) -> dict[str, object]:
     return {
         "rows": len(table.rows),
         "error": table.straight[0],

@@ -7,7 +7,7 @@ import numpy as np
 
 from jointfmu.mechanics.curve import approach_curve
 
-from ..fields.clamped import Clamped
+from ..fields.clamped import BoltedInterface
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .elasticity import Array
@@ -38,7 +38,7 @@ def uniform(joint: BoltedContact, law: PressureLaw, force: float, shear: float, 
 
 def frequencies(
     assembly: Assembly,
-    joint: Clamped,
+    joint: BoltedInterface,
     shear: float,
     states: Sequence[tuple[float, float]],
     refinement: float = REFINEMENT,

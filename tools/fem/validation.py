@@ -3,14 +3,14 @@
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default
 from jointfmu.published.reference import guesses, points
-from jointfmu.published.validation import Row, compare
+from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..fields.clamped import clamping
 from ..joint_parts import part
 from .frequencies import MeasuredFrequencies
 
 
-def natural_frequencies() -> list[Row]:
+def natural_frequencies() -> list[ValidatedPoint]:
     """Measured frequencies of assemblies beside those of finite elements: half a minute each.
 
     Raises ImportError without the extra `fem`.
@@ -19,7 +19,7 @@ def natural_frequencies() -> list[Row]:
     return [row for name, own in parts.items() if own for row in _frequencies(name, own.FREQUENCIES)]
 
 
-def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[Row]:
+def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[ValidatedPoint]:
     from jointfmu_tools.fem import assembly, assembly_modes
 
     published, values = points(measured.points), default(joint).values

@@ -25,7 +25,7 @@ _COLUMN = re.compile(r"[A-Z]+\d*(?:\..*)?")
 _SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
 
 
-class Row(NamedTuple):
+class ListingRow(NamedTuple):
     """What a listing says of a node.
 
     where  : file and line
@@ -128,7 +128,7 @@ def _text(path: Path) -> list[str]:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an Abaqus listing") from None
 
 
-def _report(path: Path, lines: list[str]) -> Iterator[Row]:
+def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """The rows of a field report whose nodes stand for themselves, not for an element."""
     step = frame = part = ""
     head: list[str] | None = None  # between the part and the rows
@@ -187,15 +187,15 @@ def _known(name: str) -> str:
     return first.removeprefix("COORD.") if first.startswith("COORD.") else first
 
 
-def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> Row:
+def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> ListingRow:
     numbers = words[-len(columns) :]
     if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(_NUMBER.fullmatch, numbers)):
         raise ValueError(f"{where}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
     values = [float(word.upper().replace("D", "E")) for word in numbers]
-    return Row(where, frame, part, int(words[0]), dict(zip(columns, values, strict=True)))
+    return ListingRow(where, frame, part, int(words[0]), dict(zip(columns, values, strict=True)))
 
 
-def _printed(path: Path, lines: list[str]) -> Iterator[Row]:
+def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
     """The rows of the node tables of a data file."""
     step = increment = ""
     columns: list[str] = []

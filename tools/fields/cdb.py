@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from .mesh import Mesh, cells_of, no_reader
+from .mesh import FiniteElementMesh, cells_of, no_reader
 
 CONTACT = (173, 174)
 SOLIDS = (45, 62, 64, 65, 72, 73, 90, 92, 95, 185, 186, 187, 285)
@@ -26,7 +26,7 @@ _REPEATED = {
 _TETRAS = {4: "tetra", 10: "tetra10"}
 
 
-def read(path: Path) -> Mesh:
+def read(path: Path) -> FiniteElementMesh:
     """The contact elements (CONTA173, CONTA174), or the solids if there are none.
 
     Raises ValueError, one line: mapdl-archive is missing or cannot read the file, no such elements, an
@@ -50,7 +50,9 @@ def read(path: Path) -> Mesh:
         raise ValueError(f"{path}: has no contact elements (CONTA173, CONTA174) and no solids")
     names = np.asarray(archive.nnum, dtype=np.int64)
     try:
-        return Mesh(names, np.asarray(archive.nodes, dtype=np.float64)[:, :3], cells_of(rows, names))
+        return FiniteElementMesh(
+            names, np.asarray(archive.nodes, dtype=np.float64)[:, :3], cells_of(rows, names)
+        )
     except ValueError as error:
         raise ValueError(f"{path}: {error}; expected elements of the nodes in the file") from None
 

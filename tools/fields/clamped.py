@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.interface import Law
+from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
 from jointfmu.mechanics.footprint.shape import PressureShape
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 Pressures = Callable[[Any, PressureShape, Array, Array], Array]
 
 
-class Clamped(Law, Protocol):
+class BoltedInterface(InterfaceLaw, Protocol):
     """Parameters of such a joint: an interface law and its bolts. They are a frozen dataclass.
 
     A solution by finite elements sets `A_0`, `side1.E`, `side1.nu`, `side2.E`, `side2.nu`, `n_bolts`,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .mesh import Mesh, cells_of
+from .mesh import FiniteElementMesh, cells_of
 
 _SOLID = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
 _SHELL = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
@@ -26,7 +26,7 @@ REFUSED = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "
 """Keywords that make or move nodes and elements elsewhere."""
 
 
-def read(path: Path) -> Mesh:
+def read(path: Path) -> FiniteElementMesh:
     """The nodes, the solids, and the shells if there are no solids; other elements are passed over.
 
     Raises ValueError, one line with file and line: no deck, a keyword of REFUSED, a line that is none, an
@@ -57,7 +57,7 @@ def read(path: Path) -> Mesh:
         raise ValueError(f"{path}: has no nodes and elements, expected an input deck with *NODE and *ELEMENT")
     names = np.array(list(places), dtype=np.int64)
     try:
-        return Mesh(names, np.array(list(places.values())), cells_of(rows, names))
+        return FiniteElementMesh(names, np.array(list(places.values())), cells_of(rows, names))
     except ValueError as error:
         raise ValueError(f"{path}: {error}; expected elements of the nodes in the file") from None
 

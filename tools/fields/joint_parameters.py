@@ -9,7 +9,7 @@ from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import build
 from jointfmu.quantity.refusal import Refusal
 
-from .clamped import Clamped, clamping
+from .clamped import BoltedInterface, clamping
 from .contact import Array, ContactField
 from .reduction import Reduction, reduce
 
@@ -89,7 +89,7 @@ def _rule(tilted: ContactField | None, moment: float | None) -> str:
 
 
 def pressure_shape(
-    joint: Clamped,
+    joint: BoltedInterface,
     field: ContactField,
     preload: float,
     tilted: ContactField | None = None,
@@ -125,7 +125,7 @@ def pressure_shape(
     return PressureShape(share, position, equal, added * joint.row_distance * area / moment)
 
 
-def _force(joint: Clamped, field: ContactField, preload: float, name: str, tolerance: float) -> float:
+def _force(joint: BoltedInterface, field: ContactField, preload: float, name: str, tolerance: float) -> float:
     """The bolts' force over the field's [1], 1 within the tolerance."""
     if not 0.0 < tolerance < 1.0:
         raise Refusal(f"force_tolerance = {tolerance:g} is outside (0, 1)", "force_tolerance")

@@ -9,7 +9,7 @@ from scipy.stats import qmc
 
 from jointfmu.mechanics.footprint.shape import PressureShape
 
-from .clamped import Clamped
+from .clamped import BoltedInterface
 
 PRELOADS = (0.05, 3.0)
 """Range of the preload over the one of the field [1]."""
@@ -33,7 +33,7 @@ class Load(NamedTuple):
     apart: float
 
 
-def largest_moment(joint: Clamped, shape: PressureShape) -> float:
+def largest_moment(joint: BoltedInterface, shape: PressureShape) -> float:
     """Over the one at which a row of bolts has no force left [1]: up to where the sums are to be kept.
 
     There, or where nodes that carried the part OPENED of the preload are open.

@@ -13,7 +13,7 @@ from .nodal_result import Array, NodalResult, Nodes
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class FiniteElementMesh:
     """Nodes and cells of a file.
 
     names : (n) number of each node; `place` (n, 3) in the file's unit

@@ -19,7 +19,7 @@ from jointfmu.mechanics.footprint.reproducible import rounded, to_digits
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.progress import track
 
-from .clamped import Clamped, Pressures
+from .clamped import BoltedInterface, Pressures
 from .loads import PRELOADS, SEED, Load, first_loads, further_loads, largest_moment
 from .nodal_result import Array, Nodes
 from .recombination import recombined
@@ -78,7 +78,7 @@ class Reduction:
         return int(self.shape.share.size)
 
 
-def reduce(joint: Clamped, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
+def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
     """The fewest points found that keep a field's sums within TOLERANCE.
 
     preload   : [N] per bolt, the field's; loads are tried from PRELOADS of it, from pressed together to

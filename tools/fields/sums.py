@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.mechanics.footprint.shape import PressureShape
 
-from .clamped import Clamped, Pressures
+from .clamped import BoltedInterface, Pressures
 from .loads import PRELOADS, Load
 from .nodal_result import Array, Nodes
 
@@ -68,14 +68,14 @@ class Sums:
     table     : pressures, their cubic roots and approaches, where Newton's method begins
     """
 
-    joint: Clamped
+    joint: BoltedInterface
     curve: Curve
     preload: float
     pressures: Pressures
     table: tuple[Array, Array, Array]
 
     @classmethod
-    def of(cls, joint: Clamped, preload: float, pressures: Pressures) -> "Sums":
+    def of(cls, joint: BoltedInterface, preload: float, pressures: Pressures) -> "Sums":
         """Of a joint at a preload [N] per bolt."""
         curve = approach_curve(joint)
         x = curve.displacement

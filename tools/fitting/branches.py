@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 from scipy.signal import find_peaks
 
-from .hysteresis import Hysteresis
+from .hysteresis import HysteresisLaw
 from .least_squares import Array
 
 PROMINENCE = 0.02
@@ -76,7 +76,7 @@ class Loops:
             slopes.append(float(np.polyfit(np.abs(way), np.sign(way) * force, 2)[1]))
         return max(slopes)
 
-    def fitted(self, law: Hysteresis, scale: Array) -> tuple[Array, Array, Array]:
+    def fitted(self, law: HysteresisLaw, scale: Array) -> tuple[Array, Array, Array]:
         """Force and motion (branches) at the turning points that suit the samples best, and misfit (n)."""
         rest, lever = self._shifted(law, 0.0), self._shifted(law, 1.0)
         lever = (lever - rest) / self.doubt[self.branch]
@@ -86,7 +86,7 @@ class Loops:
         shift = -self._sums(weight * rest * lever) / (self._sums(weight * lever**2) + self.doubt**-2.0)
         return force + level * shift, self.start + shift, rest + lever * shift[self.branch]
 
-    def rest(self, law: Hysteresis, scale: Array) -> float:
+    def rest(self, law: HysteresisLaw, scale: Array) -> float:
         """Motion at which the elastic force is zero: the least squares of the misfit, by Gauss and Newton.
 
         Begins at zero or in the middle of the motion. A law that is linear there leaves it where it begins.
@@ -110,12 +110,12 @@ class Loops:
             found += size * float(np.clip(step, -0.5, 0.5))
         return found
 
-    def residuals(self, law: Hysteresis, scale: Array) -> Array:
+    def residuals(self, law: HysteresisLaw, scale: Array) -> Array:
         """Misfit over the scale (n), then the shifts of the turning points over their doubt (branches)."""
         _, start, rest = self.fitted(law.about(self.rest(law, scale)), scale)
         return np.concatenate([rest / scale, (start - self.start) / self.doubt])
 
-    def _shifted(self, law: Hysteresis, doubts: float) -> Array:
+    def _shifted(self, law: HysteresisLaw, doubts: float) -> Array:
         """Force (n) less its change from turning points that are moved by some standard deviations."""
         return self.force - law.change(self.motion, (self.start + doubts * self.doubt)[self.branch])
 

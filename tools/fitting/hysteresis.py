@@ -25,7 +25,7 @@ _SECANTS, _STEEPEST = 12, 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Elastic:
+class NonlinearSpring:
     """A spring without memory: force E and energy V at motions (...); E odd, V even."""
 
     force: Force
@@ -33,7 +33,7 @@ class Elastic:
 
 
 @dataclass(frozen=True, slots=True)
-class Hysteresis:
+class HysteresisLaw:
     """The law of a loop.
 
     friction : B (...), force or torque of first loading from rest at motions (...) >= 0
@@ -44,7 +44,7 @@ class Hysteresis:
 
     friction: Force
     work: Force
-    elastic: Elastic | None = None
+    elastic: NonlinearSpring | None = None
     viscous: float = 0.0
 
     def change(self, motion: Array, start: Array) -> Array:
@@ -55,12 +55,12 @@ class Hysteresis:
             return change
         return np.asarray(change + self.elastic.force(motion) - self.elastic.force(start))
 
-    def about(self, rest: float) -> "Hysteresis":
+    def about(self, rest: float) -> "HysteresisLaw":
         """The same with the elastic force at rest at another motion."""
         if self.elastic is None:
             return self
         force, energy = self.elastic.force, self.elastic.energy
-        return replace(self, elastic=Elastic(lambda u: force(u - rest), lambda u: energy(u - rest)))
+        return replace(self, elastic=NonlinearSpring(lambda u: force(u - rest), lambda u: energy(u - rest)))
 
     def equivalent(self, amplitude: Array) -> tuple[Array, Array]:
         """Stiffness (n) and loss factor (n) [1] of the loops about rest with amplitudes (n).

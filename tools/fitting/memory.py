@@ -10,7 +10,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from .branches import Loops
 from .exchange import Exchange
-from .hysteresis import Hysteresis
+from .hysteresis import HysteresisLaw
 from .least_squares import Array, Residuals, Solution, Unknown, solve
 from .measurement import Measurement
 from .oscillator import Free, Oscillator, Response
@@ -27,11 +27,11 @@ ROUGH_NOISE = 0.01
 QUIET = 1e-9
 """Least noise over the largest [1]: data without any are made by a program."""
 
-Law = Callable[[Mapping[str, float]], Hysteresis]
+Law = Callable[[Mapping[str, float]], HysteresisLaw]
 
 
 @dataclass(frozen=True, slots=True)
-class Model:
+class MeasurementModel:
     """A measurement's model: the law over the unknowns, and what vibrates.
 
     law     : {name: value} of the unknowns -> law of the loop
@@ -43,7 +43,7 @@ class Model:
     inertia: float | None
     damping: float
 
-    def of(self, values: Mapping[str, float]) -> Hysteresis:
+    def of(self, values: Mapping[str, float]) -> HysteresisLaw:
         """The law of the loop at the values."""
         return self.law({name: value for name, value in values.items() if name != DAMPING})
 
@@ -54,13 +54,15 @@ class Model:
             return data.residuals(law, scale)
         return data.residuals(self.oscillator(law, values), scale)
 
-    def oscillator(self, law: Hysteresis, values: Mapping[str, float]) -> Oscillator:
+    def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
         """The mass on the joint."""
         assert self.inertia is not None
         return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
 
 
-def model(measurement: Measurement, law: Law, setting: str, inertia: float | None, damping: float) -> Model:
+def model(
+    measurement: Measurement, law: Law, setting: str, inertia: float | None, damping: float
+) -> MeasurementModel:
     """The model of a measurement; `setting` is the option of the inertia.
 
     Raises ValueError if what vibrates is stated with loops, is missing otherwise, or is out of its range.
@@ -75,7 +77,7 @@ def model(measurement: Measurement, law: Law, setting: str, inertia: float | Non
         raise ValueError(f"{what} = {inertia:g} is outside (0, inf)")
     if not 0.0 <= damping < MOST_DAMPING:
         raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
-    return Model(law, inertia, damping)
+    return MeasurementModel(law, inertia, damping)
 
 
 def damping_unknown() -> Unknown:
@@ -86,7 +88,7 @@ def damping_unknown() -> Unknown:
 def search(
     measurement: Measurement,
     unknowns: Sequence[Unknown],
-    model: Model,
+    model: MeasurementModel,
     starts: Mapping[str, Sequence[float]],
     level: Exchange | None = None,
     moved: bool = False,
@@ -160,7 +162,7 @@ def _best(
 
 
 def facts(
-    measurement: Measurement, solution: Solution, law: Hysteresis, scale: Array
+    measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array
 ) -> dict[str, tuple[float, str, str]]:
     """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
     data, (_, unit) = measurement.data, measurement.heads.unit

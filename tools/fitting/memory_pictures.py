@@ -7,10 +7,10 @@ import numpy as np
 from jointfmu.plots import shown
 
 from .branches import Loops
-from .hysteresis import Hysteresis
+from .hysteresis import HysteresisLaw
 from .least_squares import Array
 from .measurement import Measurement
-from .memory import Model
+from .memory import MeasurementModel
 from .oscillator import Free, Oscillator, Response
 from .outcome import Picture
 
@@ -18,7 +18,7 @@ _LINE = 120
 
 
 def pictures(
-    measurement: Measurement, model: Model, values: Mapping[str, float], scale: Array
+    measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], scale: Array
 ) -> tuple[Picture, Picture | None]:
     """Loops, or amplitudes over the frequency; or frequency and, beside it, damping over the amplitude."""
     law = model.of(values)
@@ -31,7 +31,7 @@ def pictures(
             return _free(measurement, free, model.oscillator(law, values))
 
 
-def _loops(measurement: Measurement, loops: Loops, law: Hysteresis, scale: Array) -> Picture:
+def _loops(measurement: Measurement, loops: Loops, law: HysteresisLaw, scale: Array) -> Picture:
     (force_unit, by), (motion_unit, size) = (
         shown(unit, values)
         for unit, values in zip(measurement.heads.unit, (loops.force, loops.motion), strict=True)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from .decay import Points
-from .hysteresis import Hysteresis
+from .hysteresis import HysteresisLaw
 from .least_squares import Array
 
 REACH = 30.0
@@ -29,7 +29,7 @@ _TABLE, _HALVINGS = 80, 50
 class Oscillator:
     """The law of a loop, the mass or inertia on it, and the damping ratio [1] beside it."""
 
-    law: Hysteresis
+    law: HysteresisLaw
     inertia: float
     damping: float = 0.0
 

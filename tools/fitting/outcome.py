@@ -35,7 +35,7 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class FitResult:
     """A fit.
 
     facts : {name: (value, unit, meaning)} beside the parameters

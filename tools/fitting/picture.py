@@ -4,18 +4,18 @@ from typing import TYPE_CHECKING
 
 from jointfmu import plots
 
-from .outcome import Outcome
+from .outcome import FitResult
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def size(outcome: Outcome) -> tuple[float, float]:
+def size(outcome: FitResult) -> tuple[float, float]:
     """Of the figure [inch]."""
     return (10.8 if outcome.beside else 7.2), 5.6
 
 
-def draw(figure: "Figure", outcome: Outcome) -> None:
+def draw(figure: "Figure", outcome: FitResult) -> None:
     """Data and law above, residuals below; pictures side by side."""
     pictures = [outcome.picture, *filter(None, (outcome.beside,))]
     every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)

@@ -9,11 +9,11 @@ from jointfmu.joints import KINDS
 from ..joint_parts import part
 
 if TYPE_CHECKING:
-    from .outcome import Outcome
+    from .outcome import FitResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Option:
+class FitOption:
     """A number or a word that a procedure takes beside its data.
 
     name     : keyword of the procedure's function
@@ -54,8 +54,8 @@ class Procedure:
     text: str
     file: bool
     column: str = ""
-    options: Sequence[Option] = ()
-    run: "Callable[..., Outcome]"
+    options: Sequence[FitOption] = ()
+    run: "Callable[..., FitResult]"
 
 
 def procedures() -> dict[str, dict[str, Procedure]]:
@@ -68,7 +68,7 @@ def procedures() -> dict[str, dict[str, Procedure]]:
     return found
 
 
-DAMPING_RATIO = Option(
+DAMPING_RATIO = FitOption(
     name="damping_ratio",
     text="of the structure, beside the joint [1]; to fit it, free damping_ratio",
     default=0.0,

@@ -15,7 +15,7 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.parameters import load as load_file
 
 from ..drawing.part import Drawing, NewJoint, Option
-from ..fitting.outcome import Outcome, percent
+from ..fitting.outcome import FitResult, percent
 from ..fitting.picture import draw, size
 from ..fitting.procedure import procedures
 from ..joint_parts import part
@@ -161,7 +161,7 @@ class Fit:
     'HarmonicDriveCompliance.fmu'
     """
 
-    outcome: Outcome
+    outcome: FitResult
 
     @property
     def joint(self) -> Joint:

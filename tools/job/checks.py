@@ -9,7 +9,7 @@ import numpy as np
 from jointfmu.fmi import ramp
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.published.reference import Point, points
-from jointfmu.published.validation import Row, compare
+from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..joint_parts import part
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
@@ -99,7 +99,7 @@ def deviation(value: object, expected: object) -> float:
     return float(np.max(np.abs(a - b))) / scale if scale > 0.0 else float(np.max(np.abs(a)))
 
 
-def published_through_fmus(folder: Path) -> list[Row]:
+def published_through_fmus(folder: Path) -> list[ValidatedPoint]:
     """The published points that an FMU can show, computed by running the FMU: `through_fmu` of its joint."""
     rows = []
     for kind in KINDS.values():

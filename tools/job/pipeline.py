@@ -27,7 +27,7 @@ from .checks import Check, check, check_decays, check_ringing, default_ramp, pub
 
 
 @dataclass(slots=True)
-class Outcome:
+class JobResult:
     """What was built and found; `fmus` is the folder of the FMUs of FMI 2.0."""
 
     fmus: Path
@@ -37,8 +37,8 @@ class Outcome:
     ramps: dict[str, ramp.RampResult] = field(default_factory=dict)
     proofs: list[Proof] = field(default_factory=list)
     checks: list[Check] = field(default_factory=list)
-    rows: list[validation.Row] = field(default_factory=list)
-    fmu_rows: list[validation.Row] = field(default_factory=list)
+    rows: list[validation.ValidatedPoint] = field(default_factory=list)
+    fmu_rows: list[validation.ValidatedPoint] = field(default_factory=list)
     ringing: dict[str, list[Ringing]] = field(default_factory=dict)
     decays: dict[str, list[Decay]] = field(default_factory=dict)
     arms: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
@@ -69,13 +69,13 @@ def shown(fmu: Path) -> str:
     return f"{fmu.parent.name}/{fmu.stem}"
 
 
-def run(out: Path) -> Outcome:
+def run(out: Path) -> JobResult:
     """Build all flavours, prove, check, and write the laboratory and `out/report/index.html`, ramps as CSV.
 
     The ramps shown are those of the flavour `fmi2`; the others must repeat them.
     """
     folder = out / "fmi2"
-    outcome = Outcome(folder)
+    outcome = JobResult(folder)
     with processes() as pool:
         outcome.built = build([], list(FLAVOURS), None, out, pool=pool)
         outcome.systems = build_systems(out, joints=False, pool=pool)
@@ -101,7 +101,7 @@ def _examined(path: Path) -> tuple[list[str], Proof]:
     return [f"{shown(path)}: {problem}" for problem in validate_fmu(str(path))], prove(path)
 
 
-def _compare(outcome: Outcome, out: Path) -> None:
+def _compare(outcome: JobResult, out: Path) -> None:
     """The ramps of all FMUs, and the published numbers."""
     for name in track(MODELS, "ramp", len(MODELS)):
         result = default_ramp(name, outcome.fmus)

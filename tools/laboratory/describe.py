@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from jointfmu_fmu_src.joint_parts.page import Panel
+from jointfmu_fmu_src.joint_parts.page import RampPanel
 from jointfmu_fmu_src.native.page import panels
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
@@ -18,7 +18,7 @@ from jointfmu.quantity import units
 from ..joint_parts import part
 from ..shown import shown_unit
 from .modules import Module
-from .part import Bench
+from .part import LaboratoryModel
 
 _NOMINALS = 2.0
 """Half the span of an input's slider over its nominal value."""
@@ -74,19 +74,19 @@ def _is_energy(one: str, other: str) -> bool:
     return {one, other} in ({"N", "m"}, {"N.m", "rad"})
 
 
-def _bench(model: Model) -> Bench:
+def _bench(model: Model) -> LaboratoryModel:
     """What the joint's folder adds; nothing if it has no part."""
     module = part(KINDS[model.joint], "laboratory")
-    benches: dict[str, Bench] = module.LABORATORY if module else {}
-    return benches.get(model.name, Bench())
+    benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
+    return benches.get(model.name, LaboratoryModel())
 
 
-def _panels(model: Model, bench: Bench) -> Sequence[Panel]:
+def _panels(model: Model, bench: LaboratoryModel) -> Sequence[RampPanel]:
     """The documentation's panels, or its default, and those of the bench."""
     return (*panels(model), *bench.panels)
 
 
-def _row(v: Listed, model: Model, bench: Bench) -> dict[str, object]:
+def _row(v: Listed, model: Model, bench: LaboratoryModel) -> dict[str, object]:
     unit = v.attributes.get("unit", "1")
     row: dict[str, object] = {
         "name": v.name,
@@ -154,7 +154,7 @@ def _set(file: ParameterFile, model: Model) -> dict[str, object]:
     return {"name": file.name, "values": values, "inputs": inputs, "toml": dump(file)}
 
 
-def _points(model: Model, bench: Bench) -> Iterator[dict[str, object]]:
+def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]:
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
     for paper in KINDS[model.joint].papers:
@@ -177,7 +177,7 @@ def _points(model: Model, bench: Bench) -> Iterator[dict[str, object]]:
             }
 
 
-def _map(bench: Bench, file: ParameterFile) -> dict[str, object] | None:
+def _map(bench: LaboratoryModel, file: ParameterFile) -> dict[str, object] | None:
     picture = bench.picture
     if picture is None:
         return None

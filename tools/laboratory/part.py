@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jointfmu_fmu_src.joint_parts.page import Panel
+from jointfmu_fmu_src.joint_parts.page import RampPanel
 
 
 class Shown(NamedTuple):
@@ -14,7 +14,7 @@ class Shown(NamedTuple):
     arguments: Mapping[str, str]
 
 
-class Measured(NamedTuple):
+class MeasuredCurve(NamedTuple):
     """A measured curve beside a panel.
 
     over, quantity : variables of the panel
@@ -75,7 +75,7 @@ class Example(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bench:
+class LaboratoryModel:
     """One model on the page.
 
     panels   : curves beside those of the FMU's documentation
@@ -88,11 +88,11 @@ class Bench:
     example  : values that a button sets
     """
 
-    panels: Sequence[Panel] = ()
+    panels: Sequence[RampPanel] = ()
     spans: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     path: Sequence[str] = ()
     points: Mapping[str, Shown] = field(default_factory=dict)
-    measured: Sequence[Measured] = ()
+    measured: Sequence[MeasuredCurve] = ()
     picture: Map | None = None
     turn: Turn | None = None
     example: Example | None = None

@@ -25,7 +25,7 @@ from jointfmu.quantity.smooth import STEP
 from ..joint_parts import part
 from ..systems.system import System, systems
 from .blocks import interface, wrapper
-from .records import Component, Record, WorkingPoint
+from .records import ModelicaComponent, ModelicaRecord, WorkingPoint
 from .systems import model_name, system_model
 from .tables import TOLERANCE
 from .text import environment, text
@@ -53,12 +53,12 @@ class _Joint:
 
     kind: Kind
     file: ParameterFile
-    component: Component
-    records: Mapping[WorkingPoint, Record]
+    component: ModelicaComponent
+    records: Mapping[WorkingPoint, ModelicaRecord]
     templates: Environment
 
     @property
-    def record(self) -> Record:
+    def record(self) -> ModelicaRecord:
         """The one that the component shows."""
         return next(iter(self.records.values()))
 
@@ -106,7 +106,7 @@ def _joint(
     kind: Kind, module: ModuleType, file: ParameterFile | None, points: Sequence[WorkingPoint] | None
 ) -> _Joint:
     own = file if file and file.joint == kind.name else default(kind.name)
-    component: Component = module.COMPONENT
+    component: ModelicaComponent = module.COMPONENT
     wanted = points or (*_start(own), *component.points)
     records = dict(zip(wanted, component.records(own, wanted), strict=True))
     return _Joint(kind, own, component, records, environment(Path(str(module.__file__)).parent))
@@ -135,7 +135,7 @@ def _components(joints: Sequence[_Joint]) -> dict[str, str]:
         classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
             joint.component.texts(joint.record),
             meta=_meanings(joint.kind),
-            docs={v.name: v.doc for v in model.outputs},
+            docs={v.name: v.doc for v in (*model.inputs, *model.outputs)},
             html=_documentation(model, joint.file),
             record=joint.record.name,
         )
@@ -175,7 +175,7 @@ def system_text(system: System) -> str:
 
 def _known(
     joints: Mapping[str, _Joint], kind: str, file: ParameterFile, point: WorkingPoint
-) -> Record | None:
+) -> ModelicaRecord | None:
     """The record of the library for a joint's parameters, if they are those of the library."""
     joint = joints[kind]
     special = joint.component.special

@@ -6,7 +6,7 @@ from typing import Any
 
 from jointfmu.parameters import ParameterFile
 
-from .tables import TOLERANCE, Table
+from .tables import TOLERANCE, InterpolationTable
 from .text import COMPUTED, GIVEN, matrix, number, text
 
 WorkingPoint = tuple[float, ...]
@@ -14,7 +14,7 @@ WorkingPoint = tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record:
+class ModelicaRecord:
     """A joint as a table.
 
     name   : of the record, an identifier
@@ -26,7 +26,7 @@ class Record:
 
     name: str
     title: str
-    table: Table
+    table: InterpolationTable
     values: Mapping[str, str] = field(default_factory=dict)
     more: str = ""
 
@@ -49,7 +49,7 @@ class Record:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Component:
+class ModelicaComponent:
     """COMPONENT in the folder `modelica` of a joint.
 
     The templates lie beside it as in the library: Components/NAME.mo and Data/BASE.mo. The component's gets
@@ -70,8 +70,8 @@ class Component:
     name: str
     base: str
     points: Sequence[WorkingPoint] = ((),)
-    records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[Record]]
-    texts: Callable[[Record], Mapping[str, str]]
+    records: Callable[[ParameterFile, Sequence[WorkingPoint]], list[ModelicaRecord]]
+    texts: Callable[[ModelicaRecord], Mapping[str, str]]
     note: str = ""
     flanges: Sequence[str] = ("flange_a", "flange_b")
     of_system: Callable[[ParameterFile], Mapping[str, str]] = lambda file: {}

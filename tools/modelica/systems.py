@@ -14,7 +14,7 @@ from ..joint_parts import part as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
 from ..systems.wiring import End, ends
-from .records import Component, Record
+from .records import ModelicaComponent, ModelicaRecord
 from .text import number, text
 
 _MSL = "Modelica.Mechanics"
@@ -23,7 +23,7 @@ _NOMINAL = {"phi": "1e-3", "w": "0.1", "s": "1e-6", "v": "1e-3"}
 _APART, _ROW = 30, 30
 """Between components and between chains on a diagram."""
 
-Records = Callable[[str, ParameterFile, tuple[float, ...]], Record | None]
+Records = Callable[[str, ParameterFile, tuple[float, ...]], ModelicaRecord | None]
 """(kind, parameters, working point) -> the library's record of these parameters, if it has one."""
 
 
@@ -111,11 +111,11 @@ def _flange(end: End) -> str | None:
     return f"{name}.{flange}" if end.body or flange in _component(end.component).flanges else None
 
 
-def _component(part: Part) -> Component:
+def _component(part: Part) -> ModelicaComponent:
     module = joint_part(KINDS[part.kind], "modelica")
     if module is None or module.COMPONENT.name != part.model:
         raise ValueError(f"{part.name}: the Modelica library has no component of a {part.model}")
-    component: Component = module.COMPONENT
+    component: ModelicaComponent = module.COMPONENT
     return component
 
 

@@ -18,7 +18,7 @@ TOLERANCE = 1e-7
 _INNER = np.linspace(0.0, 1.0, 9)[1:-1]
 
 
-class Table(NamedTuple):
+class InterpolationTable(NamedTuple):
     """A quintic spline: rows (n, 5) of displacement, load, stiffness, and its derivative before and after.
 
     error : [1] largest relative error of load and stiffness against what it was made of
@@ -28,7 +28,7 @@ class Table(NamedTuple):
     error: float
 
 
-def curve_of(table: Table) -> Curve:
+def curve_of(table: InterpolationTable) -> Curve:
     """The table as a curve of the package."""
     x, y, k, before, after = table.rows.T
     return Curve(x, y, k, after[:-1], before[1:])
@@ -39,7 +39,7 @@ def thinned(
     reference: int = -1,
     keep: Collection[int] = (),
     fits: Callable[[int, int], bool] | None = None,
-) -> Table:
+) -> InterpolationTable:
     """The fewest nodes of a curve, taken one after the other, that reproduce it within TOLERANCE.
 
     reference : node whose load and stiffness the errors refer to where the curve's own are smaller;
@@ -60,7 +60,7 @@ def thinned(
     before = np.concatenate([[curve.bend_start[0]], curve.bend_end[index[1:] - 1]])
     after = np.concatenate([curve.bend_start[index[:-1]], [curve.bend_end[-1]]])
     columns = [curve.displacement[index], curve.load[index], curve.stiffness[index], before, after]
-    return Table(np.column_stack(columns), worst)
+    return InterpolationTable(np.column_stack(columns), worst)
 
 
 def _segment_error(curve: Curve, i: int, j: int, floor: tuple[float, float]) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
 from numpy.typing import NDArray
 
-from jointfmu.fmi.loops import Loops, Swing, conjugate, of
+from jointfmu.fmi.loops import HysteresisLoops, Swing, conjugate, of
 from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
@@ -60,7 +60,7 @@ class Course:
         given = self.model.loop.settings
         return {name: value or float(given.get(name, 0.0)) for name, value in self.rest.items()}
 
-    def loops(self) -> Loops:
+    def loops(self) -> HysteresisLoops:
         """Loops of growing amplitude, each from rest, of a joint with memory."""
         loop, driven = self.model.loop, {v.name: v.unit for v in self.model.inputs}
         assert loop

@@ -11,7 +11,7 @@ from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
 from jointfmu.files.writing import write_text
-from jointfmu.fmi.loops import Loops
+from jointfmu.fmi.loops import HysteresisLoops
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
@@ -45,7 +45,7 @@ TOPICS = (
 """Headings of docs/validity.md for those who want to know more."""
 
 
-class _Row(NamedTuple):
+class _ReportRow(NamedTuple):
     """A number of the file, as text: shown in a display unit, and in SI where that is another."""
 
     name: str
@@ -94,10 +94,10 @@ def _page(model: Model, file: ParameterFile) -> str:
     )
 
 
-def _rows(file: ParameterFile) -> list[_Row]:
+def _rows(file: ParameterFile) -> list[_ReportRow]:
     """Every number of the file."""
     return [
-        _Row(one.name, *quantity(one.value, one.unit), _exact(one), one.doc, one.kind, one.source)
+        _ReportRow(one.name, *quantity(one.value, one.unit), _exact(one), one.doc, one.kind, one.source)
         for one in stated(file)
     ]
 
@@ -139,7 +139,7 @@ def curves(course: Course) -> Figure:
     return Figure("Curves over the load", text, drawn)
 
 
-def looped(course: Course, loops: Loops) -> Figure:
+def looped(course: Course, loops: HysteresisLoops) -> Figure:
     """The loops of a joint with memory."""
     units = loops.units
     x_unit, y_unit = (
@@ -165,7 +165,7 @@ def looped(course: Course, loops: Loops) -> Figure:
     return Figure("Loops", text, [panel])
 
 
-def _loop_rows(loops: Loops) -> list[dict[str, str]]:
+def _loop_rows(loops: HysteresisLoops) -> list[dict[str, str]]:
     """The table of the loops, in display units."""
     stiffness = "N/m" if loops.units[0] == "m" else "N.m/rad"
     units = {"motion": loops.units[0], "force": loops.units[1], "secant_stiffness": stiffness, "loss": "J"}

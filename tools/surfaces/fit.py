@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from .heights import Array
-from .series import Series
+from .series import ScaleSeries
 
 FLOOR = 0.03
 """Least standard deviation of ln(value) from the law at every scale [1]."""
@@ -77,7 +77,7 @@ class SelfAffineLaw:
         return float(np.log10(self.high / self.low))
 
 
-def fit(series: Series, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
+def fit(series: ScaleSeries, low: float | None = None, high: float | None = None) -> SelfAffineLaw:
     """Fit over the given range of scales [m], or over the longest straight one.
 
     Raises ValueError if fewer than four values lie in the range.
@@ -95,7 +95,7 @@ def fit(series: Series, low: float | None = None, high: float | None = None) -> 
     return _search(series.within(sure))
 
 
-def _search(series: Series) -> SelfAffineLaw:
+def _search(series: ScaleSeries) -> SelfAffineLaw:
     """The longest straight range; if there is none, the straightest."""
     n = series.scale.size
     step = max(1, n // 10)
@@ -123,7 +123,7 @@ def _search(series: Series) -> SelfAffineLaw:
     return min(tried, key=lambda fitted: abs(fitted.drift) + fitted.deviation)
 
 
-def _fit(series: Series) -> SelfAffineLaw:
+def _fit(series: ScaleSeries) -> SelfAffineLaw:
     x, y = np.log(series.scale), np.log(series.value)
     reference = float(np.exp(x.mean()))
     offset = series.method == "structure"

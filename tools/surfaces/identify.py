@@ -18,12 +18,12 @@ from .results import (
     Identification,
     ProfileFractal,
     Result,
-    Roughness,
+    RoughnessEstimate,
     texture,
     warnings,
 )
 from .roughness import check_wave, default_wave, of_scan
-from .series import Series
+from .series import ScaleSeries
 from .spectrum import psd
 from .structure import structure
 
@@ -85,12 +85,12 @@ def identify(
     return Identification(names, tuple(results), tuple(repairs), notes, textured, scans, side)
 
 
-def doubled(series: Series) -> Series:
+def doubled(series: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface of two sides of one finish, of which one is known."""
     return replace(series, value=2.0 * series.value, raw=2.0 * series.raw)
 
 
-def added(first: Series, second: Series) -> Series:
+def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
     """Series of the equivalent surface: values add at equal scale, over the range both have."""
     keep = (first.scale >= second.scale[0] * 0.999) & (first.scale <= second.scale[-1] * 1.001)
     if keep.sum() < 4:
@@ -115,7 +115,7 @@ def _interpolation(at: Array, x: Array) -> Array:
     return np.stack([np.interp(at, x, unit) for unit in np.eye(x.size)], axis=1)
 
 
-def _result(series: Series, fitted: SelfAffineLaw) -> Result:
+def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
     """Both kinds of parameters; the one that was not measured follows if the surface is isotropic."""
     rng = np.random.default_rng(0)
     root = np.linalg.cholesky(fitted.covariance)
@@ -142,8 +142,8 @@ def _estimate(values: Array) -> Estimate:
     return Estimate(*_interval(values))
 
 
-def _roughness(logarithms: Array) -> Roughness:
-    return Roughness.of_logarithms(*_interval(logarithms))
+def _roughness(logarithms: Array) -> RoughnessEstimate:
+    return RoughnessEstimate.of_logarithms(*_interval(logarithms))
 
 
 def _interval(values: Array) -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ from .fit import SelfAffineLaw
 from .form import Repair
 from .heights import Areal
 from .roughness import ScanRoughness
-from .series import Series
+from .series import ScaleSeries
 
 TEXTURE = 0.3
 """Share of the mean line in the lines of a map above which the map is textured."""
@@ -25,7 +25,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, slots=True)
-class Roughness(Estimate):
+class RoughnessEstimate(Estimate):
     """A roughness G [m] with its interval, worked out in logarithms.
 
     As D goes to 1 the interval spans hundreds of decades. Where it leaves the positive floating-point numbers
@@ -42,7 +42,7 @@ class Roughness(Estimate):
         return bool(np.isfinite(self.value))
 
     @classmethod
-    def of_logarithms(cls, value: float, low: float, high: float) -> "Roughness":
+    def of_logarithms(cls, value: float, low: float, high: float) -> "RoughnessEstimate":
         """From the natural logarithms of the value and of the ends of its interval."""
         decades = (high - low) / np.log(10.0)
         least, most = np.log([np.finfo(float).tiny, np.finfo(float).max])
@@ -56,7 +56,7 @@ class ProfileFractal:
     """Fractal parameters of a profile, 1 < D < 2 (Zhao 2018, Yu 2022)."""
 
     D: Estimate
-    G: Roughness
+    G: RoughnessEstimate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +64,7 @@ class ArealFractal:
     """Fractal parameters of an isotropic surface, 2 < D_s < 3 (Hu 2023, Eq. 1)."""
 
     D_s: Estimate
-    G_s: Roughness
+    G_s: RoughnessEstimate
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ class Result:
 
     method: str
     direction: str
-    series: Series
+    series: ScaleSeries
     fit: SelfAffineLaw
     profile: ProfileFractal
     areal: ArealFractal

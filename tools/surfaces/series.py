@@ -1,6 +1,6 @@
 """Values over scale of height data, with what a self-affine surface would give.
 
-A `Series` holds values over scale together with the expectation and the covariance that a Gaussian
+A `ScaleSeries` holds values over scale together with the expectation and the covariance that a Gaussian
 self-affine surface of the same size and sampling has, so that the fit knows how sure each value is.
 """
 
@@ -25,7 +25,7 @@ KERNEL = 0.3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Series:
+class ScaleSeries:
     """Values over scale.
 
     method : "structure" or "psd"; direction : "profile", "x", "y" or "areal"
@@ -44,7 +44,7 @@ class Series:
     expected: Callable[[float], Array]
     covariance: Callable[[float], Array]
 
-    def within(self, keep: NDArray[Any]) -> "Series":
+    def within(self, keep: NDArray[Any]) -> "ScaleSeries":
         """The values of a boolean or index array."""
         return replace(
             self,

@@ -3,13 +3,13 @@
 import numpy as np
 
 from .heights import Areal, Array, Heights
-from .series import KERNEL, LEAST, Series
+from .series import KERNEL, LEAST, ScaleSeries
 
 HANN = 35.0 / 18.0
 """Neighbouring Fourier modes of a Hann window that count as one, per direction."""
 
 
-def psd(heights: Heights, direction: str) -> Series:
+def psd(heights: Heights, direction: str) -> ScaleSeries:
     """Power spectral density of a profile, of the lines along x or y, or radial ("areal").
 
     Hann window; Phi = frequency times one-sided density, smoothed over ln(frequency) with a Gaussian
@@ -45,7 +45,7 @@ def psd(heights: Heights, direction: str) -> Series:
         return np.asarray((weight * (per_mode / count)) @ weight.T)
 
     value = np.maximum(kernel @ power / norm, LEAST)
-    return Series(
+    return ScaleSeries(
         method="psd",
         direction=direction,
         scale=wavelength,

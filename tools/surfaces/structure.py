@@ -8,13 +8,13 @@ import numpy as np
 from jointfmu.contact.fractal import second_difference, structure_constant
 
 from .heights import Areal, Array, Heights
-from .series import KERNEL, LEAST, Series
+from .series import KERNEL, LEAST, ScaleSeries
 
 MODES = 256
 """Fourier modes per direction that enter a covariance; shorter waves hardly contribute."""
 
 
-def structure(heights: Heights, direction: str) -> Series:
+def structure(heights: Heights, direction: str) -> ScaleSeries:
     """Structure function along a profile, along x or y of a map, or the mean of both ("areal").
 
     S(tau) = <(z(x + tau) - z(x))^2>, V(tau) = <(z(x + tau) - 2 z(x) + z(x - tau))^2>. Pairs with a
@@ -43,7 +43,7 @@ def _differences(z: Array) -> tuple[Array, Array, Array]:
 
 def _smoothed(
     direction: str, lag: Array, value: Array, raw: Array, covariance: Callable[[float], Array]
-) -> Series:
+) -> ScaleSeries:
     """The structure function smoothed over ln(lag) as the spectrum is over ln(frequency)."""
     x = np.log(lag)
     scale = np.exp(np.arange(x[0] + KERNEL, x[-1], 0.2))
@@ -56,7 +56,7 @@ def _smoothed(
         law = law / law.sum(axis=1, keepdims=True)
         return np.asarray(law @ covariance(H) @ law.T)
 
-    return Series(
+    return ScaleSeries(
         method="structure",
         direction=direction,
         scale=scale,
@@ -117,7 +117,7 @@ def _times(a: Array, b: Array) -> Array:
     return np.asarray(np.einsum("ik,jk->ij", a, b))
 
 
-def _mean_of_directions(heights: Areal) -> Series:
+def _mean_of_directions(heights: Areal) -> ScaleSeries:
     """V and S averaged over x and y, at the lags along x that y has too."""
     lag_x, *along_x = _differences(heights.z)
     lag_y, *along_y = _differences(heights.z.T)

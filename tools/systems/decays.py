@@ -13,7 +13,7 @@ from jointfmu.fmi import loops
 from jointfmu.progress import track
 
 from ..fitting import decay
-from ..fitting.hysteresis import Hysteresis
+from ..fitting.hysteresis import HysteresisLaw
 from .master import Array, Slave, motion
 from .ringing import PER_PERIOD, Body, Rest, Rung, rings
 
@@ -146,7 +146,7 @@ def _of_loops(
     return frequency, decrement / np.hypot(np.pi, decrement), law
 
 
-def of_loop(loop: loops.Loop, viscous: float) -> Hysteresis:
+def of_loop(loop: loops.HysteresisLoop, viscous: float) -> HysteresisLaw:
     """The law by Masing's rule whose branches are the mean of a loop's two."""
     motion, force = loop.motion[loop.closed :], loop.force[loop.closed :]
     half = motion.size // 2
@@ -154,4 +154,4 @@ def of_loop(loop: loops.Loop, viscous: float) -> Hysteresis:
     way = 0.5 * (motion[0] - motion[falling])
     friction = 0.25 * (force[0] - force[falling] + force[rising] - force[half])
     curve = CubicSpline(way, friction)
-    return Hysteresis(curve, curve.antiderivative(), viscous=viscous)
+    return HysteresisLaw(curve, curve.antiderivative(), viscous=viscous)

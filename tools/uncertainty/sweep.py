@@ -25,7 +25,7 @@ from .cluster import client
 from .journal import Journal
 from .propagate import QUANTILES
 from .study import samples_of, split, unit_design
-from .worker import Drive, one_run
+from .worker import LoadRamp, one_run
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class Summary:
 
 
 def plan(
-    fmu: Path, drive: Drive, given: Mapping[str, object], count: int, seed: int
+    fmu: Path, drive: LoadRamp, given: Mapping[str, object], count: int, seed: int
 ) -> tuple[dict[str, object], list[dict[str, object]]]:
     """The study as a record for its folder, and the settings of each of `count` runs.
 
@@ -87,7 +87,7 @@ def plan(
 
 def sweep(
     fmu: Path,
-    drive: Drive,
+    drive: LoadRamp,
     runs: Sequence[Mapping[str, object]],
     out: Path,
     scheduler: str | None = None,
@@ -112,7 +112,7 @@ def sweep(
 
 
 def _finished(
-    dask_client: Any, fmu: Path, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+    dask_client: Any, fmu: Path, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     """Finished runs as they come; never more than AHEAD per worker are under way."""
     from .plugin import Bring
@@ -131,7 +131,7 @@ def _finished(
 
 
 def _as_completed(
-    dask_client: Any, key: str, drive: Drive, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
+    dask_client: Any, key: str, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     from distributed import KilledWorker, as_completed
 

@@ -13,7 +13,7 @@ from jointfmu.fmi import ramp
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class LoadRamp:
     """What every run of a sweep does with the FMU: see `ramp.run`."""
 
     input: str
@@ -21,7 +21,7 @@ class Drive:
     step: float
 
 
-def one_run(fmu: str, drive: Drive, index: int, settings: Mapping[str, Any]) -> dict[str, Any]:
+def one_run(fmu: str, drive: LoadRamp, index: int, settings: Mapping[str, Any]) -> dict[str, Any]:
     """One run, on a worker that has the FMU: its ramp. A refusal is a result, too."""
     path = FILES[fmu]
     entry = {"run": index, "parameters": dict(settings)}

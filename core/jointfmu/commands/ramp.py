@@ -155,7 +155,7 @@ def _loops(args: argparse.Namespace) -> int:
     return 0
 
 
-def _document(fmu: Path, found: loops.Loops) -> dict[str, Any]:
+def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, Any]:
     """What was found as one JSON object; forces act on the joint, positive with the motion."""
     rows = found.rows()
     for row, loop in zip(rows, found.loops, strict=True):
@@ -169,7 +169,7 @@ def _document(fmu: Path, found: loops.Loops) -> dict[str, Any]:
     }
 
 
-def _draw(figure: "Figure", found: loops.Loops, swing: loops.Swing) -> None:
+def _draw(figure: "Figure", found: loops.HysteresisLoops, swing: loops.Swing) -> None:
     """Loops with first loading and ends; loss, and stiffness, over the amplitude."""
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.3, 1.0, 1.0))
     every = sorted(found.loops, key=lambda loop: loop.amplitudes[0])

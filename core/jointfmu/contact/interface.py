@@ -33,7 +33,7 @@ _NOT_REPRESENTABLE = (
 _BLOCK = 16384
 
 
-class Law(Protocol):
+class InterfaceLaw(Protocol):
     """An interface law: parameters that give spots and quantities."""
 
     @property
@@ -72,7 +72,7 @@ def newton_step(spots: Spots, u: Number, log_load: Number) -> tuple[Number, Numb
     return step, lower, upper, residual
 
 
-def largest_spot(law: Law, pressure: ArrayLike) -> Array:
+def largest_spot(law: InterfaceLaw, pressure: ArrayLike) -> Array:
     """Log-area u = ln(a_L/a_ref) [1] of the largest spot under a nominal pressure.
 
     Parameters
@@ -111,7 +111,7 @@ def largest_spot(law: Law, pressure: ArrayLike) -> Array:
     return _solve(spots, np.broadcast_to(load, shape))
 
 
-def checked_spots(law: Law) -> Spots:
+def checked_spots(law: InterfaceLaw) -> Spots:
     """The law's spots, unless their reference area or load over- or underflows (D close to 1).
 
     Raises ValueError.
@@ -119,7 +119,7 @@ def checked_spots(law: Law) -> Spots:
     return _checked(law)[0]
 
 
-def _checked(law: Law) -> tuple[Spots, list[Number]]:
+def _checked(law: InterfaceLaw) -> tuple[Spots, list[Number]]:
     """The same, and the loads [N] at the log-areas LEAST, 0 and MOST."""
     ends = (LEAST, 0.0, MOST)
     with np.errstate(all="ignore"):
@@ -156,7 +156,7 @@ def _solve(spots: Spots, load: Array) -> Array:
     return np.where(empty, -np.inf, u)
 
 
-def evaluate(law: Law, u: Number) -> dict[str, Number]:
+def evaluate(law: InterfaceLaw, u: Number) -> dict[str, Number]:
     """All quantities of the whole area A_0 at the log-area u, with the spot and the pressure.
 
     Without load (u minus infinity) sums are zero and ratios have their limit.
@@ -170,12 +170,12 @@ def evaluate(law: Law, u: Number) -> dict[str, Number]:
     return {"largest_spot": spot, "pressure": state["F"] / law.A_0, **state}
 
 
-def at_pressure(law: Law, pressure: ArrayLike) -> dict[str, Number]:
+def at_pressure(law: InterfaceLaw, pressure: ArrayLike) -> dict[str, Number]:
     """All quantities of the whole area A_0 under a nominal pressure (...) [Pa]."""
     return evaluate(law, largest_spot(law, pressure))
 
 
-def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
+def at_largest_spot(law: InterfaceLaw, area: ArrayLike) -> dict[str, Number]:
     """All quantities of the whole area A_0 for a largest spot of the given area (...) [m2].
 
     The area is the paper's: truncated for Zhao 2018, real for Hu 2023 and Yu 2022.
@@ -196,7 +196,7 @@ def at_largest_spot(law: Law, area: ArrayLike) -> dict[str, Number]:
     return evaluate(law, u)
 
 
-def stiffness_curve(law: Law, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:
+def stiffness_curve(law: InterfaceLaw, pressure: ArrayLike, name: str = "normal") -> tuple[Array, Array]:
     """Stiffness per nominal area k [N/m3] and dk/dp [1/m] at pressures (...) [Pa] > 0.
 
     The derivative is exact: (dK/du)/(dF/du) of the same integral.
@@ -207,7 +207,7 @@ def stiffness_curve(law: Law, pressure: ArrayLike, name: str = "normal") -> tupl
     return k, spots.slope(name, u) / spots.slope("load", u)
 
 
-def beyond(law: Law, pressure: float, least: float | None = None) -> list[str]:
+def beyond(law: InterfaceLaw, pressure: float, least: float | None = None) -> list[str]:
     """What a law no longer means at a nominal pressure [Pa], one line each with its limit; mostly nothing.
 
     least : [Pa] where a law is not proven for too small a load; None: as the pressure
@@ -233,7 +233,7 @@ def beyond(law: Law, pressure: float, least: float | None = None) -> list[str]:
     return found
 
 
-def _full_contact(law: Law, pressure: float) -> float | None:
+def _full_contact(law: InterfaceLaw, pressure: float) -> float | None:
     """Pressure [Pa] at which the real area is A_0; None if it is less at the given one."""
     with np.errstate(over="ignore"):
         if not float(at_pressure(law, pressure)["A_r"]) > law.A_0:

@@ -63,7 +63,7 @@ class Swing:
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class HysteresisLoop:
     """One amplitude.
 
     motion, force : (n) of first loading and cycles; the force on the joint, positive with the motion
@@ -110,7 +110,7 @@ class Loop:
 
 
 @dataclass(frozen=True, slots=True)
-class Loops:
+class HysteresisLoops:
     """Loops of one FMU.
 
     motion, force : names of the variables; units : of both
@@ -122,7 +122,7 @@ class Loops:
     force: str
     units: tuple[str, str]
     sign: float
-    loops: Sequence[Loop]
+    loops: Sequence[HysteresisLoop]
 
     @property
     def names(self) -> tuple[str, str]:
@@ -181,7 +181,7 @@ def run(
     swing: Swing,
     output: str | None = None,
     settings: Mapping[str, object] | None = None,
-) -> Loops:
+) -> HysteresisLoops:
     """Drive one input to and fro, each amplitude from rest in an instance of its own; all else stays.
 
     output : conjugate to the input; None: that of its suffix, `f_x` to `s_rel_x`, `tau2` to `phi2`
@@ -194,7 +194,7 @@ def run(
     return of([ramp.along(fmu, input_name, each, settings) for each in points], input_name, output, swing)
 
 
-def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: Swing) -> Loops:
+def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: Swing) -> HysteresisLoops:
     """The loops of an input that swung, one for each amplitude, with an output that is conjugate to it."""
     first = max(results, key=lambda result: float(np.ptp(result.columns[input_name])))
     driven = units.base(first.units[input_name]) in FORCES
@@ -202,8 +202,8 @@ def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: 
     x, y = first.columns[motion], first.columns[force]
     sign = -1.0 if np.sum((x - x.mean()) * (y - y.mean())) < 0.0 else 1.0
     closed = swing.points // 4 + (swing.cycles - 1) * swing.points
-    loops = [Loop(r.columns[motion], sign * r.columns[force], closed, r) for r in results]
-    return Loops(motion, force, (first.units[motion], first.units[force]), sign, loops)
+    loops = [HysteresisLoop(r.columns[motion], sign * r.columns[force], closed, r) for r in results]
+    return HysteresisLoops(motion, force, (first.units[motion], first.units[force]), sign, loops)
 
 
 def variables(description: Any) -> tuple[dict[str, str], dict[str, str]]:

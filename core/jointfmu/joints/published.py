@@ -8,7 +8,7 @@ from .kind import Kind
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
+class CalibrationFit:
     """Unknowns with starting values and the calibration points that fix them.
 
     All unknowns are fitted in logarithms, so they stay positive.
@@ -27,7 +27,7 @@ class Published:
     """
 
     observables: Mapping[str, Callable[..., float | bool]] = field(default_factory=dict)
-    calibration: Sequence[Fit] = ()
+    calibration: Sequence[CalibrationFit] = ()
 
 
 def published(kind: Kind) -> Published:

@@ -13,7 +13,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..contact.interface import CLOSE, MOST_STEPS, SIDE, Law, checked_spots, largest_spot
+from ..contact.interface import CLOSE, MOST_STEPS, SIDE, InterfaceLaw, checked_spots, largest_spot
 from ..contact.powerlaw import Spots
 from ..quantity import Number
 
@@ -244,7 +244,7 @@ def closing_reach(p: Number, k: Number, bend: Number) -> Number:
     return 40.0 / (8.0 + np.sqrt(np.maximum(64.0 - 80.0 * bend * p / k**2, 4.0)))
 
 
-def approach_curve(law: Law) -> Curve:
+def approach_curve(law: InterfaceLaw) -> Curve:
     """Pressure [Pa] over approach [m] of an interface: the integral of dp/k from separation.
 
     The table runs over the log-area u of the largest spot, in which load and stiffness are explicit,

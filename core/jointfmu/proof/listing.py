@@ -14,7 +14,7 @@ from ..fmi import host
 from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
-from .series import Series, text
+from .series import TimeSeries, text
 
 KNOWN = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platforms of the rules, for FMI 2.0; those of FMI 3.0 are named as the FMU has them."""
@@ -73,7 +73,7 @@ def _files(proof: Proof, chosen: Outcome, description: Any) -> dict[str, bytes]:
     start, stop = _ends(one)
     tolerance = TOLERANCE if one.tolerance is None else one.tolerance
     options = {"StartTime": start, "StopTime": stop, "StepSize": one.step or 0.0, "RelTol": tolerance}
-    series: dict[str, Series] = {"ref": one.references, **({"in": one.stimuli} if one.stimuli else {})}
+    series: dict[str, TimeSeries] = {"ref": one.references, **({"in": one.stimuli} if one.stimuli else {})}
     return {
         f"{name}.fmu": proof.fmu.read_bytes(),
         **{f"{name}_{key}.csv": text(values).encode() for key, values in series.items()},

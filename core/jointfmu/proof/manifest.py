@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from . import checksum
-from .series import Series, parse
+from .series import TimeSeries, parse
 
 NAME = "org.fmi-standard.fmi-ls-ref"
 """Of the layered standard."""
@@ -67,8 +67,8 @@ class Experiment:
     step: float | None = None
     tolerance: float | None = None
     settings: Mapping[str, Setting] = field(default_factory=dict)
-    stimuli: Series | None = None
-    references: Series | None = None
+    stimuli: TimeSeries | None = None
+    references: TimeSeries | None = None
     interfaces: Sequence[str] = INTERFACES
     unfit: str = ""
 

@@ -10,7 +10,7 @@ from .manifest import Experiment
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class WorstPoint:
     """An output where it is furthest from its reference, measured by what is allowed."""
 
     output: str
@@ -49,7 +49,7 @@ class Outcome:
 
     experiment: Experiment
     interface: str
-    points: Sequence[Point] = ()
+    points: Sequence[WorstPoint] = ()
     compared: int = 0
     error: str = ""
 
@@ -65,7 +65,7 @@ class Outcome:
         return "" if self.interface else text
 
     @property
-    def worst(self) -> Point | None:
+    def worst(self) -> WorstPoint | None:
         """The worst of all outputs."""
         return max(self.points, key=lambda point: point.share, default=None)
 
@@ -97,7 +97,7 @@ class Proof:
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
     @property
-    def worst(self) -> Point | None:
+    def worst(self) -> WorstPoint | None:
         """The output that is furthest off, measured by what is allowed."""
         points = [outcome.worst for outcome in self.outcomes if outcome.worst]
         return max(points, key=lambda point: point.share, default=None)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .manifest import MODEL_EXCHANGE, Experiment
-from .outcome import Outcome, Point
+from .outcome import Outcome, WorstPoint
 from .task import FLOOR
 from .values import course, kind, setting
 
@@ -27,7 +27,7 @@ STEPS, MOST_STEPS = 500, 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class ExperimentPlan:
     """An experiment with what an importer needs; if it cannot be executed, `task` is empty.
 
     interface : of the FMU; empty if it is left out
@@ -42,7 +42,9 @@ class Plan:
     refused: str = ""
 
     @classmethod
-    def of(cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: Any) -> "Plan":
+    def of(
+        cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: Any
+    ) -> "ExperimentPlan":
         """The plan of an experiment with an unpacked FMU."""
         if not interface:
             return cls(experiment, interface, {}, {})
@@ -96,7 +98,7 @@ class Plan:
             with np.errstate(invalid="ignore"):
                 share = np.where(np.isfinite(found), np.abs(found - due) / allowed, np.inf)
             i = int(np.argmax(share))
-            points.append(Point(name, float(at[i]), float(found[i]), float(due[i]), float(allowed[i])))
+            points.append(WorstPoint(name, float(at[i]), float(found[i]), float(due[i]), float(allowed[i])))
         return Outcome(self.experiment, self.interface, points, int(np.sum(inside)))
 
 

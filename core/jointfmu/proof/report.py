@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from .manifest import PURPOSES
-from .outcome import Outcome, Point, Proof
+from .outcome import Outcome, Proof, WorstPoint
 
 _NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
 _EXPERIMENT = ("experiment", "interface", "verdict", "points", "worst output", *_NUMBERS)
@@ -13,7 +13,7 @@ _OUTPUT = ("output", "worst in", "interface", *_NUMBERS)
 def lines(proof: Proof) -> Iterator[str]:
     """Two tables, of experiments and of outputs, each with its worst point; then what missed."""
     experiments: list[tuple[str, ...]] = [_EXPERIMENT]
-    worst: dict[str, tuple[Outcome, Point]] = {}
+    worst: dict[str, tuple[Outcome, WorstPoint]] = {}
     for outcome in proof.outcomes:
         point = outcome.worst
         verdict = _verdict(outcome), str(outcome.compared or ""), point.output if point else ""
@@ -81,7 +81,7 @@ def _experiment(outcome: Outcome) -> dict[str, object]:
     }
 
 
-def _point(point: Point) -> Mapping[str, object]:
+def _point(point: WorstPoint) -> Mapping[str, object]:
     value = point.value if point.finite else None
     return {
         "output": point.output,
@@ -102,7 +102,7 @@ def _verdict(outcome: Outcome) -> str:
     return "passed" if outcome.points else "runs, no reference"
 
 
-def _cells(point: Point) -> tuple[str, ...]:
+def _cells(point: WorstPoint) -> tuple[str, ...]:
     numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
     return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")
 

@@ -15,7 +15,7 @@ from ..progress import track
 from .importers import PACKAGES, VERSIONS, interfaces
 from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof
-from .plan import Plan, task
+from .plan import ExperimentPlan, task
 from .values import has_start, start
 
 
@@ -58,7 +58,7 @@ def prove(fmu: Path, importer: str = "fmpy", expected: Expected | None = None) -
                 f"{fmu}: is for {' and '.join(offered)}, {importer} runs {' and '.join(interfaces(importer))}"
             )
         plans = [
-            Plan.of(fmu, folder, one, interface, description)
+            ExperimentPlan.of(fmu, folder, one, interface, description)
             for one in experiments
             for interface in _executed(one, common)
         ]

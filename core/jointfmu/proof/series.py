@@ -14,7 +14,7 @@ TIME = "time"
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class TimeSeries:
     """Values over time: `time` (n) [s], `columns` {variable: (n)}."""
 
     time: Array
@@ -37,7 +37,7 @@ class Series:
         return self.columns[name][np.maximum(rows, 0)]
 
 
-def text(series: Series, digits: int | None = None) -> str:
+def text(series: TimeSeries, digits: int | None = None) -> str:
     """The series as the text of a file; `digits` of the columns, None: exact."""
     head = ",".join(f'"{name}"' for name in (TIME, *series.columns))
     form = "%r" if digits is None else f"%.{digits}g"
@@ -46,7 +46,7 @@ def text(series: Series, digits: int | None = None) -> str:
     return "\n".join([head, *lines, ""])
 
 
-def parse(content: str, where: str) -> Series:
+def parse(content: str, where: str) -> TimeSeries:
     """The series of a file's text.
 
     Raises ValueError, one line beginning with `where`: no time, a row of another length, no number, a time
@@ -68,4 +68,4 @@ def parse(content: str, where: str) -> Series:
     times, named = table[:, 0], dict(zip(head[1:], table[:, 1:].T, strict=True))
     if np.any(np.diff(times) < 0.0) or not np.all(np.isfinite(times)):
         raise ValueError(f"{where}: the time falls or is not finite; expected rising times")
-    return Series(times, named)
+    return TimeSeries(times, named)

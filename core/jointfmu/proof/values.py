@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .manifest import Setting
-from .series import Series
+from .series import TimeSeries
 
 Array = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def typed(variable: Any, value: float) -> float | int | bool:
     return bool(number) if own == "boolean" else number
 
 
-def course(variable: Any, stimuli: Series, times: Array, before: bool) -> list[Any]:
+def course(variable: Any, stimuli: TimeSeries, times: Array, before: bool) -> list[Any]:
     """An input at times: straight between rows if it is real, else held; see `Series.at`."""
     if kind(variable) != "real":
         return [typed(variable, value) for value in stimuli.held(variable.name, times).tolist()]

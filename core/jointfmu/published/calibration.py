@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..joints import KINDS
-from ..joints.published import Fit, published
+from ..joints.published import CalibrationFit, published
 from ..parameters import ParameterFile, default, dump
 from .reference import Point, points
 
@@ -34,7 +34,7 @@ def calibrate(start: ParameterFile) -> ParameterFile:
     return start
 
 
-def _solve(start: ParameterFile, fit: Fit, chosen: Sequence[Point]) -> ParameterFile:
+def _solve(start: ParameterFile, fit: CalibrationFit, chosen: Sequence[Point]) -> ParameterFile:
     names = list(fit.unknowns)
     source = "fitted to " + ", ".join(point.id for point in chosen)
 

@@ -11,7 +11,7 @@ from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.mechanics.sliders import offsets
 from jointfmu.quantity import flatten
 
-from ...joint_parts.data import DataPart, Table
+from ...joint_parts.data import DataPart, DataTable
 
 _SECTIONS = ("pattern.", "plate.", "field.")
 _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
@@ -25,12 +25,12 @@ def _stands(joint: Bolted) -> Mapping[str, object]:
     return own | {f"field.{name}": value for name, value in (_ONE | spread).items()}
 
 
-def _tables(joint: Bolted) -> Mapping[str, Table]:
+def _tables(joint: Bolted) -> Mapping[str, DataTable]:
     patches = spring.patches(joint.pattern)
     return {
-        "nodes": Table(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": Table(_rows(patches), spring.PATCHES),
-        "offsets": Table(offsets(patches.equal)[:, None], spring.PATCHES),
+        "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
+        "patches": DataTable(_rows(patches), spring.PATCHES),
+        "offsets": DataTable(offsets(patches.equal)[:, None], spring.PATCHES),
     }
 
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.contact import loop_sums
 
 from ...joint_parts import chart
-from ...joint_parts.page import Panel
+from ...joint_parts.page import RampPanel
 
-PANELS = {"BoltedJoint": (Panel("preload", ("K_zz", "K_xx")), Panel("preload", ("C_zz", "C_xx")))}
+PANELS = {"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))}
 
 PART = 0.3
 """Preload of the loops over the end of the load ramp [1]."""

@@ -1,5 +1,5 @@
 """What the page's plot of the load ramp shows."""
 
-from ...joint_parts.page import Panel
+from ...joint_parts.page import RampPanel
 
-PANELS = {"GearContact": (Panel("f", ("s_rel",)), Panel("f", ("K_N",)))}
+PANELS = {"GearContact": (RampPanel("f", ("s_rel",)), RampPanel("f", ("K_N",)))}

@@ -1,5 +1,5 @@
 """What the page's plot of the load ramp shows."""
 
-from ...joint_parts.page import Panel
+from ...joint_parts.page import RampPanel
 
-PANELS = {"GearMesh": (Panel("phi1", ("f",)), Panel("s_rel", ("K",)))}
+PANELS = {"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))}

@@ -10,7 +10,7 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import MOST_POINTS, Measured, Node, TableDrive
 from jointfmu.quantity import Number, flatten, quantity
 
-from ...joint_parts.data import NO_TABLES, DataPart, Table
+from ...joint_parts.data import NO_TABLES, DataPart, DataTable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,10 +47,10 @@ def _stands(drive: Drive) -> Mapping[str, Any]:
     return {name: value for name, value in own.items() if not name.startswith("table.")} | midline
 
 
-def _tables(drive: Drive) -> Mapping[str, Table]:
+def _tables(drive: Drive) -> Mapping[str, DataTable]:
     if not isinstance(drive, TableDrive):
         return NO_TABLES
-    return {"midline": Table(np.array(drive.nodes(), dtype=np.float64), MOST_POINTS + 1)}
+    return {"midline": DataTable(np.array(drive.nodes(), dtype=np.float64), MOST_POINTS + 1)}
 
 
 DATA = DataPart(_stands, _of, _tables)

@@ -1,9 +1,9 @@
 """What the page's plot of the load ramp shows."""
 
-from ...joint_parts.page import Panel
+from ...joint_parts.page import RampPanel
 
-_STIFFNESS = Panel("tau", ("K_WTS", "K_TS"))
+_STIFFNESS = RampPanel("tau", ("K_WTS", "K_TS"))
 PANELS = {
-    "HarmonicDriveSpring": (Panel("phi_rel", ("tau",)), _STIFFNESS),
-    "HarmonicDriveCompliance": (Panel("tau", ("phi_rel",)), _STIFFNESS),
+    "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS),
+    "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS),
 }

@@ -64,7 +64,7 @@ def test_members_of_a_textbook():
     """Shigley's Mechanical Engineering Design, example 8-2: two 1/2 in plates of steel and a 0.095 in washer,
     30 Mpsi, frusta of 30 degrees from 1.5 d around a hole of d = 1/2 in: 15.97 Mlbf/in."""
     inch, lbf_in = 0.0254, 4.4482216 / 0.0254
-    layers = [vdi2230.Layer(t * inch, 30e6 * 6894.757) for t in (0.095, 0.5, 0.5)]
+    layers = [vdi2230.ClampedPart(t * inch, 30e6 * 6894.757) for t in (0.095, 0.5, 0.5)]
     d = 0.5 * inch
     compliance = vdi2230.members_compliance(layers, 1.5 * d, d, 10.0, 0.5774, tapped=False)
     assert 1.0 / compliance / lbf_in == pytest.approx(15.97e6, rel=1e-3)
@@ -76,7 +76,7 @@ def test_members_are_the_integral_over_the_cone(outer, tapped):
     """Quadrature of dz/(E A) over the cone, cut off at D_A; and Eq. 36 of VDI 2230 for a free one."""
     grip, bearing, hole, E = 0.04, 0.0166, 0.0135, 210e9
     slope = vdi2230.cone_slope(grip, bearing, outer, tapped)
-    layers = [vdi2230.Layer(0.015, E), vdi2230.Layer(0.025, 2.0 * E)]
+    layers = [vdi2230.ClampedPart(0.015, E), vdi2230.ClampedPart(0.025, 2.0 * E)]
     z = (np.arange(400_000) + 0.5) * grip / 400_000
     D = np.minimum(bearing + 2.0 * slope * (z if tapped else np.minimum(z, grip - z)), outer)
     area = 0.25 * np.pi * (D**2 - hole**2)
@@ -84,7 +84,7 @@ def test_members_are_the_integral_over_the_cone(outer, tapped):
     found = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
     assert found == pytest.approx(expected, rel=1e-5)
     if outer == 0.2:
-        w, one = (2.0 if tapped else 1.0), [vdi2230.Layer(grip, E)]
+        w, one = (2.0 if tapped else 1.0), [vdi2230.ClampedPart(grip, E)]
         end = bearing + w * grip * slope
         text = (bearing + hole) * (end - hole) / ((bearing - hole) * (end + hole))
         closed = 2.0 / w * math.log(text) / (E * math.pi * hole * slope)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.joints.gear_mesh.new.wheels import Wheels
+from jointfmu_tools.joints.gear_mesh.new.wheels import InvoluteGearPair
 
 from jointfmu.joints.gear_mesh.pairs import pairs
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
@@ -24,7 +24,7 @@ def made(capsys, *words, path=None):
 
 
 def wheels(helix=0.0, width=0.01):
-    return Wheels(4e-3, (29.0, 45.0), width, math.radians(20.0), math.radians(helix))
+    return InvoluteGearPair(4e-3, (29.0, 45.0), width, math.radians(20.0), math.radians(helix))
 
 
 def test_the_pair_of_the_shipped_file_comes_out(capsys, tmp_path):
@@ -105,7 +105,7 @@ def test_a_helix_spreads_the_contact_and_softens_the_tooth():
 def test_the_tooth_knows_its_rack_and_its_load():
     """C_B = 1 - 0.02 (20 - alpha); (F_t/b / 100 N/mm)^0.25 below 100 N/mm, 1 above."""
     spur = wheels()
-    steep = Wheels(4e-3, (29.0, 45.0), 0.01, math.radians(25.0), 0.0)
+    steep = InvoluteGearPair(4e-3, (29.0, 45.0), 0.01, math.radians(25.0), 0.0)
     loaded = spur.tooth_stiffness(STEEL, LOADED)
     assert steep.tooth_stiffness(STEEL, LOADED) == pytest.approx(1.1 * loaded)
     full = 100e3 * 0.01 * 0.058

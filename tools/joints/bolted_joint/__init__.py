@@ -1,8 +1,8 @@
 """What the tools know of the bolted joint."""
 
-from ...joint_parts import Parts
+from ...joint_parts import ToolParts
 
-PARTS = Parts(
+PARTS = ToolParts(
     __name__,
     (
         "checks",

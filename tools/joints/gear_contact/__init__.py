@@ -1,7 +1,7 @@
 """What the tools know of the gear contact."""
 
-from ...joint_parts import Parts
+from ...joint_parts import ToolParts
 
-PARTS = Parts(
+PARTS = ToolParts(
     __name__, ("checks", "export", "figures", "laboratory", "modelica", "new", "pressing", "reduced")
 )

@@ -11,14 +11,14 @@ from ...export.exports import Exports, LoadCurve
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
-    from ...export.tables import Table
+    from ...export.tables import LoadTable
 
 
 def _contact(gear: Contact) -> "tuple[Curve, Sequence[str]]":
     return GearContactSpring.of(gear).curve, ()
 
 
-def _load(gear: Contact, _: None, error: float) -> "Table":
+def _load(gear: Contact, _: None, error: float) -> "LoadTable":
     from ...export.tables import load_table
 
     return load_table(GearContactSpring.of(gear).curve, gear.A_0, error)

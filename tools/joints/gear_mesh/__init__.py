@@ -1,5 +1,5 @@
 """What the tools know of the gear mesh."""
 
-from ...joint_parts import Parts
+from ...joint_parts import ToolParts
 
-PARTS = Parts(__name__, ("checks", "export", "figures", "modelica", "new", "pressing", "reduced"))
+PARTS = ToolParts(__name__, ("checks", "export", "figures", "modelica", "new", "pressing", "reduced"))

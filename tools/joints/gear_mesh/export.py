@@ -12,15 +12,15 @@ from jointfmu.mechanics.curve import Curve, approach_curve
 from ...export.exports import Exports, LoadCurve
 
 if TYPE_CHECKING:
-    from ...export.tables import Table
+    from ...export.tables import LoadTable
 
 
 def _contact(mesh: Mesh) -> tuple[Curve, Sequence[str]]:
     return approach_curve(mesh), ("the flanks alone; what the teeth give way comes on top",)
 
 
-def _load(mesh: Mesh, _: None, error: float) -> "Table":
-    from ...export.tables import Table, law_table
+def _load(mesh: Mesh, _: None, error: float) -> "LoadTable":
+    from ...export.tables import LoadTable, law_table
 
     pair, closing = pair_curve(mesh)
     i = int(np.argmin(np.abs(pair.displacement - closing)))
@@ -28,7 +28,7 @@ def _load(mesh: Mesh, _: None, error: float) -> "Table":
     load, stiffness, start, end = (mesh.contact_ratio * column for column in columns)
     half = law_table(Curve(pair.displacement - pair.displacement[i], load, stiffness, start, end), error)
     rows = np.vstack([half.rows[:0:-1] * [-1.0, -1.0, 1.0], half.rows])
-    return Table(rows, half.straight, half.monotone)
+    return LoadTable(rows, half.straight, half.monotone)
 
 
 EXPORTS = Exports(

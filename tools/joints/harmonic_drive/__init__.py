@@ -1,8 +1,8 @@
 """What the tools know of the harmonic drive."""
 
-from ...joint_parts import Parts
+from ...joint_parts import ToolParts
 
-PARTS = Parts(
+PARTS = ToolParts(
     __name__,
     (
         "catalogue",

@@ -9,10 +9,10 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from ...export.exports import Exports, LoadCurve
 
 if TYPE_CHECKING:
-    from ...export.tables import Table
+    from ...export.tables import LoadTable
 
 
-def _torque(drive: Drive, _: None, error: float) -> "Table":
+def _torque(drive: Drive, _: None, error: float) -> "LoadTable":
     from ...export.tables import odd_table
 
     return odd_table(HarmonicDriveSpring.of(drive).curve, error)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from jointfmu.fmi.ramp import RampResult
-from jointfmu.published.validation import Row
+from jointfmu.published.validation import ValidatedPoint
 
 from ...report.figure import Figure, Panel, Series, published
 from . import efficiency
@@ -74,7 +74,7 @@ def friction(fmu: Path) -> list[Panel]:
     return [*panels, Panel("Back-driving torque", "published [N m]", "FMU [N m]", both)]
 
 
-def stiffness(result: RampResult, rows: list[Row]) -> list[Panel]:
+def stiffness(result: RampResult, rows: list[ValidatedPoint]) -> list[Panel]:
     """K_WTS and the pair's part over torque, with the published points on the curves."""
     c = result.columns
     points = [row.point for row in rows]

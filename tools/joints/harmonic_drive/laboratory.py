@@ -5,7 +5,7 @@ import math
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 
-from ...laboratory.part import Bench, Example, Shown, Turn
+from ...laboratory.part import Example, LaboratoryModel, Shown, Turn
 from .efficiency import parameters, printed_drives
 
 _SPANS = {
@@ -18,6 +18,9 @@ _SPANS = {
     "load_loss": (0.0, 0.5),
     "load_loss_back": (-1.0, 0.5),
     "temperature_factor": (0.5, 5.0),
+    "viscous_temperature_coefficient": (0.0, 0.1),
+    "dry_temperature_coefficient": (0.0, 0.1),
+    "temperature": (253.15, 353.15),
     "phi1": (-0.1, 0.1),
     **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
@@ -50,8 +53,8 @@ _EXAMPLE = Example(
 )
 
 LABORATORY = {
-    "HarmonicDriveSpring": Bench(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
-    "HarmonicDriveCompliance": Bench(
+    "HarmonicDriveSpring": LaboratoryModel(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
+    "HarmonicDriveCompliance": LaboratoryModel(
         spans=_SPANS,
         path=("tau",),
         points={

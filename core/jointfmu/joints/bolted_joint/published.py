@@ -9,7 +9,7 @@ from ...contact.laws import mindlin
 from ...contact.laws import zhao2018 as zhao
 from ...contact.surface import domain_extension
 from ...mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
-from ..published import Fit, Published
+from ..published import CalibrationFit, Published
 from .law import BoltedJoint, bolt_pattern, pressures, row_forces
 
 
@@ -79,7 +79,7 @@ PUBLISHED = Published(
         "frequency_error": frequency_error,
     },
     calibration=(
-        Fit(
+        CalibrationFit(
             {"pattern.decay_length": 0.01, "pattern.decay_exponent": 1.0},
             ("p_max.9kN", "p_between.9kN"),
         ),

@@ -8,7 +8,7 @@ from ...contact.interface import at_largest_spot
 from ...contact.laws import hu2023 as hu
 from ...contact.laws import kogut_etsion
 from ...contact.surface import hardness_coefficient
-from ..published import Fit, Published
+from ..published import CalibrationFit, Published
 from .law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
 
 
@@ -88,7 +88,7 @@ PUBLISHED = Published(
         "least_mean_pressure": least_mean_pressure,
     },
     calibration=(
-        Fit(
+        CalibrationFit(
             {
                 "zero_torque_pressure": 30e6,
                 "rated_pressure": 101e6,

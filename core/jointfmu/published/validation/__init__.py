@@ -1,12 +1,12 @@
 """Every published number beside the computed one."""
 
 from .count import Counts, counts
-from .rows import Row, compare, missed, validate
+from .rows import ValidatedPoint, compare, missed, validate
 from .text import shown_claim, shown_error, shown_tolerance, summary, table
 
 __all__ = [
     "Counts",
-    "Row",
+    "ValidatedPoint",
     "compare",
     "counts",
     "missed",

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..reference import ROLES
-from .rows import Row, missed
+from .rows import ValidatedPoint, missed
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +30,13 @@ class Counts:
     missed: list[str]
 
 
-def counts(rows: Sequence[Row]) -> Counts:
+def counts(rows: Sequence[ValidatedPoint]) -> Counts:
     """Count a comparison."""
     numbers = [row.point for row in rows if row.point.role != "claim"]
     printed = sum(point.printed for point in numbers)
     guessed = [row for row in rows if row.nearer]
 
-    def by_role(some: Sequence[Row]) -> dict[str, int]:
+    def by_role(some: Sequence[ValidatedPoint]) -> dict[str, int]:
         found = Counter(row.point.role for row in some)
         return {role: found[role] for role in ROLES}
 

@@ -12,7 +12,7 @@ from ..reference import PROVES_NOTHING, Point, guesses, points
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class ValidatedPoint:
     """A published point, the computed value, and the verdict.
 
     error : relative to the published value, or in its unit where the tolerance is absolute; 0 or 1
@@ -50,21 +50,21 @@ class Row:
         }
 
 
-def compare(point: Point, computed: float | bool, guess: float | None = None) -> Row:
+def compare(point: Point, computed: float | bool, guess: float | None = None) -> ValidatedPoint:
     """Judge one computed value, and the trivial guess beside it."""
     if isinstance(point.value, bool):
         error = float(computed is not point.value)
-        return Row(point, computed, error, error == 0.0)
+        return ValidatedPoint(point, computed, error, error == 0.0)
     error = _error(point, computed)
     guessed = None if guess is None else _error(point, guess)
-    return Row(point, computed, error, abs(error) <= point.tolerance, guess, guessed)
+    return ValidatedPoint(point, computed, error, abs(error) <= point.tolerance, guess, guessed)
 
 
 def _error(point: Point, value: float) -> float:
     return (value - point.value) / (1.0 if point.absolute else abs(point.value))
 
 
-def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[Row]:
+def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
     """Compute every published point with the default parameter sets, or those given by joint."""
     given, rows = sets or {}, []
     for kind in KINDS.values():
@@ -77,6 +77,6 @@ def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[Row]:
     return rows
 
 
-def missed(rows: Sequence[Row]) -> list[Row]:
+def missed(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
     """Rows that miss, but for those whose value proves nothing: calibrated and circular ones."""
     return [row for row in rows if row.point.role not in PROVES_NOTHING and not row.passed]

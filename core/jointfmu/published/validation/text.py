@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..reference import Point
 from .count import counts
-from .rows import Row
+from .rows import ValidatedPoint
 
 _HEAD = (
     *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
@@ -14,7 +14,7 @@ _ROUNDING = 1e-6
 """An error below this share of the tolerance is shown as zero [1]: calibrated points are met to rounding."""
 
 
-def table(rows: Sequence[Row]) -> str:
+def table(rows: Sequence[ValidatedPoint]) -> str:
     """The comparison as text."""
     lines = [_HEAD, *(_cells(row) for row in rows)]
     widths = [max(len(line[i]) for line in lines) for i in range(len(_HEAD))]
@@ -24,7 +24,7 @@ def table(rows: Sequence[Row]) -> str:
     )
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: ValidatedPoint) -> tuple[str, ...]:
     p = row.point
     if isinstance(p.value, bool):
         shown = (shown_claim(row), str(row.computed).lower(), "-", "-")
@@ -58,13 +58,13 @@ def _scale(point: Point) -> tuple[float, str]:
     return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
 
 
-def shown_claim(row: Row) -> str:
+def shown_claim(row: ValidatedPoint) -> str:
     """A claim as text, with the text's own where its equations give the opposite."""
     p = row.point
     return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
 
 
-def summary(rows: Sequence[Row]) -> str:
+def summary(rows: Sequence[ValidatedPoint]) -> str:
     """One line: what was compared, by role; how often the law beats a trivial guess; what missed."""
     found = counts(rows)
     roles = ", ".join(

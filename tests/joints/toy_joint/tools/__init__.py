@@ -1,5 +1,5 @@
 """The toy joint, for the tools."""
 
-from jointfmu_tools.joint_parts import Parts
+from jointfmu_tools.joint_parts import ToolParts
 
-PARTS = Parts(__name__, ("export", "reduced"))
+PARTS = ToolParts(__name__, ("export", "reduced"))

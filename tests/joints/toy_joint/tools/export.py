@@ -2,7 +2,7 @@
 
 import numpy as np
 from jointfmu_tools.export.exports import Exports, LoadCurve
-from jointfmu_tools.export.tables import Table
+from jointfmu_tools.export.tables import LoadTable
 
 from jointfmu.joints.model import Variable
 
@@ -11,7 +11,7 @@ from .. import KIND
 
 def _line(spring, state, error):
     s = np.array([-1e-3, 0.0, 1e-3])
-    return Table(np.stack([s, spring.c * s, np.full(3, spring.c)], axis=1), (0.0, 0.0), (0.0, 0.0))
+    return LoadTable(np.stack([s, spring.c * s, np.full(3, spring.c)], axis=1), (0.0, 0.0), (0.0, 0.0))
 
 
 COLUMNS = (KIND.variables["s_rel"], Variable("pull", "N", "force that holds it"), KIND.variables["K"])

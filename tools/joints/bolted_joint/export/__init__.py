@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ....export.mesh import Mesh
     from ....export.placing import Placing
     from ....export.springs import Springs
-    from ....export.tables import Table
+    from ....export.tables import LoadTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
     return BoltedJointSpring.of_nodes(joint).curve, [more]
 
 
-def _pull(joint: Bolted, state: State | None, error: float) -> "Table":
+def _pull(joint: Bolted, state: State | None, error: float) -> "LoadTable":
     from .pull import pull_table
 
     if state is None:

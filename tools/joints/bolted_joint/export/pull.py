@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 
-from ....export.tables import Table, thinned
+from ....export.tables import LoadTable, thinned
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ _FINE = 4000
 _BLOCK = 100_000
 
 
-def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> Table:
+def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> LoadTable:
     """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
 
     The bolts' own stiffness acts beside the interface. From STRONGEST times the force at tightening, pressed
@@ -46,4 +46,4 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     pull = held - force + bolts * s
     table = thinned(s, pull, stiffness + bolts, error, (held, stiff), keep=(_FINE - 1,))
     last = [2.0 * opening, held + 2.0 * bolts * opening, bolts]
-    return Table(np.vstack([table.rows, last]), table.straight, table.monotone)
+    return LoadTable(np.vstack([table.rows, last]), table.straight, table.monotone)

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from jointfmu.parameters import ParameterFile
 
-from ....fitting.procedure import DAMPING_RATIO, Option, Procedure
+from ....fitting.procedure import DAMPING_RATIO, FitOption, Procedure
 
 if TYPE_CHECKING:
-    from ....fitting.outcome import Outcome
+    from ....fitting.outcome import FitResult
 
 
 def _preload(
@@ -19,7 +19,7 @@ def _preload(
     direction: str,
     modal_mass: float | None,
     series_stiffness: float | None,
-) -> "Outcome":
+) -> "FitResult":
     from . import preload
 
     return preload.fit(path, start, free, direction=direction, modal_mass=modal_mass, series=series_stiffness)
@@ -32,7 +32,7 @@ def _loop(
     preload: float | None,
     modal_mass: float | None,
     damping_ratio: float,
-) -> "Outcome":
+) -> "FitResult":
     from . import loop
 
     return loop.fit(path, start, free, preload=preload, modal_mass=modal_mass, damping_ratio=damping_ratio)
@@ -44,15 +44,15 @@ FITS = (
         text="stiffness or frequency over preload to the bolted joint",
         file=True,
         options=(
-            Option(
+            FitOption(
                 name="direction",
                 text="of the motion",
                 word=True,
                 default="normal",
                 choices=("normal", "tangential"),
             ),
-            Option(name="modal_mass", text="what vibrates on the joint [kg]"),
-            Option(
+            FitOption(name="modal_mass", text="what vibrates on the joint [kg]"),
+            FitOption(
                 name="series_stiffness",
                 text="of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
             ),
@@ -65,8 +65,8 @@ FITS = (
         file=True,
         column="displacement",
         options=(
-            Option(name="preload", text="of each bolt in the test [N] (default: of the start's inputs)"),
-            Option(name="modal_mass", text="what vibrates on the joint [kg]; with decays and responses"),
+            FitOption(name="preload", text="of each bolt in the test [N] (default: of the start's inputs)"),
+            FitOption(name="modal_mass", text="what vibrates on the joint [kg]; with decays and responses"),
             DAMPING_RATIO,
         ),
         run=_loop,

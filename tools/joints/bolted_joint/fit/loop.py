@@ -25,10 +25,10 @@ from jointfmu.quantity.units import sizes
 from ....fitting import memory, memory_pictures
 from ....fitting.exchange import Exchange
 from ....fitting.heads import Heads
-from ....fitting.hysteresis import Hysteresis
+from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Array
 from ....fitting.measurement import Measurement, measured
-from ....fitting.outcome import Outcome, fitted, unknowns
+from ....fitting.outcome import FitResult, fitted, unknowns
 from .preload import even_shape
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
@@ -47,7 +47,7 @@ _NODES = 48
 """Steps of the table of first loading, graded towards rest."""
 
 
-def first_loading(joint: Bolted, preload: float) -> tuple[Hysteresis, dict[str, tuple[float, str, str]]]:
+def first_loading(joint: Bolted, preload: float) -> tuple[HysteresisLaw, dict[str, tuple[float, str, str]]]:
     """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
 
     Raises ValueError if nothing is in contact or a pressure is beyond the law.
@@ -67,7 +67,7 @@ def first_loading(joint: Bolted, preload: float) -> tuple[Hysteresis, dict[str, 
         inside = np.minimum(motion, end)
         return np.asarray(whole(inside) + limit * (motion - inside))
 
-    return Hysteresis(friction, work), {
+    return HysteresisLaw(friction, work), {
         "friction_limit": (limit, "N", "mu times the normal force"),
         "shear_stiffness": (float(kappa * stiffness[0]), "N/m", "K_xx of the joint at rest: the level"),
         "exponent": (
@@ -104,7 +104,7 @@ def fit(
     preload: float | None = None,
     modal_mass: float | None = None,
     damping_ratio: float = 0.0,
-) -> Outcome:
+) -> FitResult:
     """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
 
     Parameters
@@ -143,7 +143,7 @@ def fit(
     )
     law, described = first_loading(result.values, force)
     picture, beside = memory_pictures.pictures(data, model, solution.values, scale)
-    return Outcome(
+    return FitResult(
         result,
         solution,
         described
@@ -175,7 +175,7 @@ def _own(values: Mapping[str, float]) -> dict[str, float]:
     return {name: value for name, value in values.items() if name != memory.DAMPING}
 
 
-def _reached(data: Measurement, law: Hysteresis, limit: float) -> dict[str, tuple[float, str, str]]:
+def _reached(data: Measurement, law: HysteresisLaw, limit: float) -> dict[str, tuple[float, str, str]]:
     """How near to gross slip the data come."""
     force = float(law.friction(np.array([data.amplitude]))[0])
     return {"slip_reached": (force / limit, "1", "largest friction force of the data over friction_limit")}

@@ -29,7 +29,7 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.units import Sizes, factor, sizes
 
 from ....fitting.least_squares import Array, Solution, Unknown, solve
-from ....fitting.outcome import Outcome, Picture, fitted, unknowns
+from ....fitting.outcome import FitResult, Picture, fitted, unknowns
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -76,7 +76,7 @@ def fit(
     direction: str = "normal",
     modal_mass: float | None = None,
     series: float | None = None,
-) -> Outcome:
+) -> FitResult:
     """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
 
     Parameters
@@ -118,7 +118,7 @@ def fit(
         line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
-    return Outcome(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
+    return FitResult(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.sliders import SPREAD
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import Component, Record, WorkingPoint, computed, given
+from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
 from ....modelica.text import identifier, matrix
 from .tight import ABOVE, BELOW, DAMPING_TOLERANCE, STRONGEST, tightened
 
@@ -14,12 +14,12 @@ TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))
 """Preload [N] per bolt and moment [N.m]: Zhao 2018, Table 3."""
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     spring = BoltedJointSpring.of_nodes(file.values)
     return [_record(file.name, spring, *point) for point in points]
 
 
-def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> Record:
+def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float) -> ModelicaRecord:
     tight = tightened(spring, preload, moment)
     rest = spring.motion(preload, moment, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     values = given(
@@ -35,7 +35,7 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
         }
     ) | computed({"tight": tight.force, "shear": tight.shear, "eta_t": float(rest["eta_t"])})
     force = f"{preload / 1e3:g} kN"
-    return Record(
+    return ModelicaRecord(
         name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.table,
@@ -44,7 +44,7 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
     )
 
 
-COMPONENT = Component(
+COMPONENT = ModelicaComponent(
     name="BoltedJoint",
     base="BoltedJoint",
     points=TIGHTENED,

@@ -9,7 +9,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import NOTHING
 
-from ....modelica.tables import Array, Table, thinned
+from ....modelica.tables import Array, InterpolationTable, thinned
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error of a dissipation factor [1], which is interpolated linearly."""
@@ -36,7 +36,7 @@ class Tightened(NamedTuple):
               friction are taken together
     """
 
-    table: Table
+    table: InterpolationTable
     damping: Array
     shear: float
     force: float

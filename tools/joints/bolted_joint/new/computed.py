@@ -6,13 +6,13 @@ from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 
-from ....drawing.vdi2230 import Layer
+from ....drawing.vdi2230 import ClampedPart
 
 
 def with_computed_field(
     file: ParameterFile,
     plate: BoltedPlate,
-    layers: Sequence[Layer],
+    layers: Sequence[ClampedPart],
     bearing: float,
     density: Sequence[float],
     preload: float,

@@ -38,7 +38,7 @@ class Clamped:
     """
 
     grip: float
-    layers: tuple[vdi2230.Layer, ...]
+    layers: tuple[vdi2230.ClampedPart, ...]
     hole: float
     bearing: float
     outer: float
@@ -115,10 +115,10 @@ def clamped(
         expected = "that of side 1" if tapped else "both plates together, or each"
         raise ValueError(f"--grip has {len(thick)} values, expected {expected}")
     if tapped:
-        layers: tuple[vdi2230.Layer, ...] = (vdi2230.Layer(thick[0], moduli[0]),)
+        layers: tuple[vdi2230.ClampedPart, ...] = (vdi2230.ClampedPart(thick[0], moduli[0]),)
     else:
         pair = thick if len(thick) == 2 else [0.5 * thick[0]] * 2
-        layers = tuple(vdi2230.Layer(t, E) for t, E in zip(pair, moduli, strict=True))
+        layers = tuple(vdi2230.ClampedPart(t, E) for t, E in zip(pair, moduli, strict=True))
     grip = float(sum(layer.thickness for layer in layers))
     if grip > LONGEST * thread.d:
         most = LONGEST * thread.d * 1e3

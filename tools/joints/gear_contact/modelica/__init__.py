@@ -7,20 +7,22 @@ import numpy as np
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import Component, Record, WorkingPoint
-from ....modelica.tables import Table, thinned
+from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint
+from ....modelica.tables import InterpolationTable, thinned
 from ....modelica.text import identifier
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     contact = GearContactSpring.of(file.values)
     pressure = thinned(contact.curve)
     approach = pressure.rows[:, :1] - contact.curve.displacement[0]
-    table = Table(np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.error)
-    return [Record(name=identifier(file.name), title=file.name, table=table)]
+    table = InterpolationTable(
+        np.hstack([approach, contact.joint.A_0 * pressure.rows[:, 1:]]), pressure.error
+    )
+    return [ModelicaRecord(name=identifier(file.name), title=file.name, table=table)]
 
 
-COMPONENT = Component(
+COMPONENT = ModelicaComponent(
     name="GearContact",
     base="GearContact",
     records=_records,

@@ -5,19 +5,21 @@ from collections.abc import Sequence
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import Component, Record, WorkingPoint, computed, given
+from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
 from ....modelica.tables import curve_of, thinned
 from ....modelica.text import COMPUTED, identifier, number
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     spring = GearMeshSpring.of(file.values)
     table = thinned(spring.curve)
     energy = curve_of(table).energy(table.rows[:, 0])
     values = given(_wheels(spring.joint)) | computed({"closing": spring.closing})
     nodes = "{\n      " + ",\n      ".join(number(x, COMPUTED) for x in energy.tolist()) + "}"
     return [
-        Record(name=identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes})
+        ModelicaRecord(
+            name=identifier(file.name), title=file.name, table=table, values={**values, "energy": nodes}
+        )
     ]
 
 
@@ -26,7 +28,7 @@ def _wheels(mesh: Mesh) -> dict[str, float]:
     return {name: getattr(mesh, name) for name in names}
 
 
-COMPONENT = Component(
+COMPONENT = ModelicaComponent(
     name="GearMesh",
     base="GearMesh",
     records=_records,

@@ -25,7 +25,7 @@ DAMPING = 0.06
 
 
 @dataclass(frozen=True, slots=True)
-class Wheels:
+class InvoluteGearPair:
     """Two external involute wheels without profile shift, addendum of one module.
 
     module [m] and angles [rad] are those of the normal section; z: teeth; width [m]
@@ -134,7 +134,7 @@ def mesh(given: Given) -> NewJoint:
     return NewJoint(file, facts, faces.beyond(float(found.pressure), file.flat["H"]))
 
 
-def _wheels(given: Given) -> Wheels:
+def _wheels(given: Given) -> InvoluteGearPair:
     if len(given["teeth"]) != 2:
         raise ValueError(f"--teeth has {len(given['teeth'])} values, expected one of each wheel")
     teeth = [number("teeth", text, "1", "1") for text in given["teeth"]]
@@ -148,10 +148,10 @@ def _wheels(given: Given) -> Wheels:
             raise ValueError(f"--{name.replace('_', '-')} = {given[name]} deg is outside {low}, {most:g})")
         angles.append(angle)
     width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
-    return Wheels(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
+    return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])
 
 
-def _put(sheet: Sheet, wheels: Wheels, given: Given, K: float) -> None:
+def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None:
     """Put what the wheels decide; K: of one pair [N/m]."""
     for i, radius in enumerate(wheels.base_radii):
         sheet.put(f"r_b{i + 1}", radius, "derived", "m_n z cos(alpha_t)/(2 cos(beta)) of the drawing")

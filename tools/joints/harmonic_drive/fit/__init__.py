@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.parameters import ParameterFile
 
-from ....fitting.procedure import Option, Procedure
+from ....fitting.procedure import FitOption, Procedure
 
 if TYPE_CHECKING:
-    from ....fitting.outcome import Outcome
+    from ....fitting.outcome import FitResult
 
 Names = Sequence[str] | None
 
 
 def _torque_angle(
     path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
-) -> "Outcome":
+) -> "FitResult":
     from . import table, torque_angle
 
     if law is None:
@@ -26,7 +26,7 @@ def _torque_angle(
     return table.fit(path, start, rated_torque)
 
 
-def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "Outcome":
+def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "FitResult":
     from . import hysteresis
 
     return hysteresis.fit(path, start, free, inertia)
@@ -40,7 +40,7 @@ def _catalogue(
     ratio: float | None,
     law: str,
     **row: float,
-) -> "Outcome":
+) -> "FitResult":
     from . import catalogue, lines
     from .row import Row
 
@@ -63,8 +63,8 @@ FITS = (
         text="a torque-angle curve to the harmonic drive",
         file=True,
         options=(
-            Option(name="rated_torque", text="of the drive [N.m]; scales max_torque with it", unit="N.m"),
-            Option(
+            FitOption(name="rated_torque", text="of the drive [N.m]; scales max_torque with it", unit="N.m"),
+            FitOption(
                 name="law",
                 text="table: the mid-line itself (default: the law of the start, fitted)",
                 word=True,
@@ -79,7 +79,7 @@ FITS = (
         file=True,
         column="angle",
         options=(
-            Option(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
+            FitOption(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
         ),
         run=_loop,
     ),
@@ -88,18 +88,18 @@ FITS = (
         text="a catalogue row to the harmonic drive",
         file=False,
         options=(
-            *(Option(name=name, text=text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
-            Option(name="T1", text="torque at the first corner [N.m]", required=True, unit="N.m"),
-            Option(name="T2", text="torque at the second corner [N.m]", required=True, unit="N.m"),
-            Option(
+            *(FitOption(name=name, text=text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
+            FitOption(name="T1", text="torque at the first corner [N.m]", required=True, unit="N.m"),
+            FitOption(name="T2", text="torque at the second corner [N.m]", required=True, unit="N.m"),
+            FitOption(
                 name="stiffness_unit",
                 text="of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
                 word=True,
             ),
-            Option(name="rated_torque", text="rated torque [N.m] (default: T2)", unit="N.m"),
-            Option(name="source", text="where the row is printed", word=True, default="catalogue"),
-            Option(name="ratio", text="speed ratio (default: that of the start)"),
-            Option(
+            FitOption(name="rated_torque", text="rated torque [N.m] (default: T2)", unit="N.m"),
+            FitOption(name="source", text="where the row is printed", word=True, default="catalogue"),
+            FitOption(name="ratio", text="speed ratio (default: that of the start)"),
+            FitOption(
                 name="law",
                 text="catalogue: the three lines; hu2023: that of the contact pair, fitted to them",
                 word=True,

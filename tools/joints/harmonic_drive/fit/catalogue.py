@@ -15,7 +15,7 @@ import numpy as np
 from jointfmu.parameters import ParameterFile, default
 
 from ....fitting.least_squares import Array, Solution, solve
-from ....fitting.outcome import Outcome, fitted, model, unknowns
+from ....fitting.outcome import FitResult, fitted, model, unknowns
 from . import drive
 from .row import Row
 from .row_pictures import angle_picture, stiffness_picture
@@ -40,7 +40,7 @@ def fit(
     rated_kind: str = "catalogue",
     ratio: float | None = None,
     source: str = "catalogue",
-) -> Outcome:
+) -> FitResult:
     """The smooth law of a row; `free` None: FREE, and FURTHER if need be; `source`: where it is printed.
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law keeps the angles.
@@ -77,7 +77,7 @@ def fit(
         f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
-    return Outcome(
+    return FitResult(
         result,
         solution,
         facts,

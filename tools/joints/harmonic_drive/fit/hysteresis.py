@@ -18,10 +18,10 @@ from jointfmu.quantity.units import sizes
 from ....fitting import memory, memory_pictures
 from ....fitting.branches import Loops
 from ....fitting.heads import Heads
-from ....fitting.hysteresis import Elastic, Hysteresis
+from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from ....fitting.least_squares import Array
 from ....fitting.measurement import measured
-from ....fitting.outcome import Outcome, fitted, unknowns
+from ....fitting.outcome import FitResult, fitted, unknowns
 from . import drive as own
 
 HEADS = Heads(
@@ -40,7 +40,7 @@ STIFFNESSES = (0.3, 1.0, 3.0, 10.0)
 """Where the fit looks for a start, beside the start file's values: [rad], and over K_WTS [1]."""
 
 
-def law(drive: Drive) -> Hysteresis:
+def law(drive: Drive) -> HysteresisLaw:
     """Midline and friction torque of a drive: exactly the exported ones.
 
     Raises ValueError if there is no such hysteresis.
@@ -59,7 +59,9 @@ def law(drive: Drive) -> Hysteresis:
     def force(motion: Array) -> Array:
         return np.copysign(curve.derivatives(np.abs(motion), 0)[0], motion)
 
-    return Hysteresis(friction, work, Elastic(force, lambda motion: curve.energy(np.abs(motion))), drive.d)
+    return HysteresisLaw(
+        friction, work, NonlinearSpring(force, lambda motion: curve.energy(np.abs(motion))), drive.d
+    )
 
 
 def fit(
@@ -67,7 +69,7 @@ def fit(
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
     inertia: float | None = None,
-) -> Outcome:
+) -> FitResult:
     """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
 
     Parameters
@@ -99,7 +101,7 @@ def fit(
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])
     described = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
-    return Outcome(
+    return FitResult(
         result,
         solution,
         described | memory.facts(data, solution, found, scale),

@@ -15,7 +15,7 @@ from jointfmu.quantity import build, flat_fields
 
 from ....catalogue import Printed
 from ....fitting.least_squares import Solution
-from ....fitting.outcome import Outcome
+from ....fitting.outcome import FitResult
 from . import catalogue
 from . import drive as own
 from .row import Row
@@ -55,7 +55,7 @@ def fit(
     rated_kind: str = "catalogue",
     ratio: float | None = None,
     source: str = "catalogue",
-) -> Outcome:
+) -> FitResult:
     """The law of a row's lines; arguments as those of `catalogue.fit`, but that nothing is free.
 
     Raises ValueError for a name to fit and for numbers outside their intervals.
@@ -80,7 +80,7 @@ def fit(
         also = {PAIR: pair}
         facts |= _pair_facts(row, pair, most)
     torque = catalogue.torques(row, most)
-    return Outcome(
+    return FitResult(
         file,
         _NOTHING,
         facts,

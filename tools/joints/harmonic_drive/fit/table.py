@@ -12,7 +12,7 @@ from jointfmu.quantity import build, flat_fields
 
 from ....fitting import loop
 from ....fitting.least_squares import Array, Solution
-from ....fitting.outcome import Outcome, fitted
+from ....fitting.outcome import FitResult, fitted
 from . import drive as own
 from . import torque_angle
 
@@ -24,7 +24,7 @@ _NOTHING = Solution((), {}, np.zeros(0), 1.0, np.zeros((0, 0)), np.zeros((0, 0))
 """No unknowns."""
 
 
-def fit(path: str | Path, start: ParameterFile | None = None, rated_torque: float | None = None) -> Outcome:
+def fit(path: str | Path, start: ParameterFile | None = None, rated_torque: float | None = None) -> FitResult:
     """The table of a file with the columns torque and angle, as `torque_angle.fit` reads it.
 
     Both directions of the torque are folded upon each other, the law is odd.

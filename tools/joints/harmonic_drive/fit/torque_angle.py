@@ -20,7 +20,7 @@ from jointfmu.quantity.units import Sizes, sizes
 
 from ....fitting import loop
 from ....fitting.least_squares import Array, Solution, solve
-from ....fitting.outcome import Outcome, Picture, fitted, model, unknowns
+from ....fitting.outcome import FitResult, Picture, fitted, model, unknowns
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -51,7 +51,7 @@ def fit(
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
     rated_torque: float | None = None,
-) -> Outcome:
+) -> FitResult:
     """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
 
     The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
@@ -109,7 +109,9 @@ def span(line: loop.Backbone) -> str:
     return f"torque {line.torque[0]:.4g} to {line.torque[-1]:.4g} N.m"
 
 
-def outcome(record: Record, result: ParameterFile, solution: Solution, shift: float, noise: float) -> Outcome:
+def outcome(
+    record: Record, result: ParameterFile, solution: Solution, shift: float, noise: float
+) -> FitResult:
     """What is told of a drive beside its mid-line; offset of the angle and noise of a sample in rad."""
     line = record.line
     rest = line.angle - drive.windup(result.values, line.torque) - shift
@@ -121,7 +123,7 @@ def outcome(record: Record, result: ParameterFile, solution: Solution, shift: fl
         line=(grid, drive.windup(result.values, grid) / ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
-    return Outcome(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
+    return FitResult(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import LIMITS, SPRINGS, TURNED
+from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
 from jointfmu.joints.harmonic_drive.lost_motion import WIDTH
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
 
-from ....modelica.records import Component, Record, WorkingPoint, computed, given
+from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
 from ....modelica.tables import thinned
 from ....modelica.text import identifier, matrix, number
 
@@ -22,14 +22,14 @@ _OWN = tuple(name for name, _ in flat_fields(Drive) if name not in _SPRING)
 """Parameters of the drive that the component has too."""
 
 
-def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[Record]:
+def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
     drive = file.values
     spring = HarmonicDriveSpring.of(drive)
     own = given({name: getattr(drive, name) for name in _OWN})
     found = computed({"K_FTS0": drive.K_FTS} | _hysteresis(spring))
     sliders = np.array(shares(exponent(drive)), dtype=np.float64).T
     return [
-        Record(
+        ModelicaRecord(
             name=identifier(file.name),
             title=file.name,
             table=thinned(spring.curve),
@@ -52,7 +52,7 @@ def _of_system(file: ParameterFile) -> dict[str, str]:
     return own | {"stateSelect": "StateSelect.default"}
 
 
-COMPONENT = Component(
+COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
     base="HarmonicDrive",
     records=_records,
@@ -62,6 +62,7 @@ COMPONENT = Component(
         "end": f"{drive.end:g} N m",
         "brakes": matrix(np.column_stack([SPRINGS, LIMITS])),
         "turned": number(TURNED),
+        "reference": number(REFERENCE),
         "width": number(WIDTH),
     },
     note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "
