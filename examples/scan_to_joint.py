@@ -16,7 +16,7 @@ def shell(words: str) -> None:
 
 # A stand-in for your own scan: 1 mm x 1 mm of a rough surface, heights in metres.
 shell("surface synthesize --size 1e-3 --points 256 --D 2.4 --G 1e-8 --seed 1 --out scan.csv")
-# Both sides are like the scan; its roughness and its D and G go into the parameter file of the joint.
+# Both sides are like the scan, whose roughness goes into the parameter file of the joint.
 shell("surface scan.csv --side both --joint bolted_joint --out scanned.toml --plot scan.png")
 
 scanned, shipped = jointfmu.load("scanned.toml"), jointfmu.load("BoltedJoint")

@@ -12,7 +12,9 @@ from jointfmu_tools import cli
 from jointfmu_tools.fitting import branches, decay
 from jointfmu_tools.fitting.heads import LEAST, Heads, read
 from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring
+from jointfmu_tools.fitting.least_squares import Solution, Unknown
 from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS
 
@@ -424,3 +426,40 @@ def test_titles_as_people_write_them(tmp_path, titles):
     kind, table = read(tmp_path / "a.csv", DRIVE_HEADS)
     assert kind == "loops"
     assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]
+
+
+def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
+    """A record of an elastic bar: its loop has no area but noise."""
+    monkeypatch.chdir(tmp_path)
+    motion = 1e-6 * np.sin(np.linspace(0.0, 6.0 * np.pi, 241))
+    force = 1e9 * motion + np.random.default_rng(0).normal(0.0, 1.0, motion.size)
+    rows = "".join(f"{u!r},{f!r}\n" for u, f in zip(motion.tolist(), force.tolist(), strict=True))
+    (tmp_path / "bar.csv").write_text(f"displacement [m],force [N]\n{rows}")
+    words = ["fit", "loop", "bar.csv", "--preload", "9e3", "--out", "bar.toml"]
+    assert cli.main(words) == 1
+    said = capsys.readouterr().err
+    assert "the fit says nothing of the joint: the area of the widest loop is " in said
+    assert said.endswith("allowed is a factor of 2; bar.toml is not written, --force does it\n")
+    assert not (tmp_path / "bar.toml").exists()
+    assert cli.main([*words, "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["doubt"].startswith("the area of the widest loop")
+    assert cli.main([*words, "--force"]) == 0
+    assert load("bar.toml", "bolted_joint").flat["mu"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("stuck", "deviation", "says"),
+    [
+        (("mu", "h"), 0.01, "mu, h ended on a bound, nothing else was fitted"),
+        (("mu",), 0.01, None),
+        ((), 10.0, "the data determine none of mu, h, nor a combination of them"),
+    ],
+)
+def test_what_a_fit_does_not_say(stuck, deviation, says):
+    """Two unknowns of which the data see a little, or nothing."""
+    wanted = tuple(Unknown(name, "1", 0.1, 1e-3, 10.0) for name in ("mu", "h"))
+    seen, nothing = np.eye(2), np.zeros(2)
+    values = {"mu": 0.1, "h": 0.1}
+    solution = Solution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
+    picture = Picture(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
+    assert FitResult(default("bolted_joint"), solution, {}, picture).doubt() == says

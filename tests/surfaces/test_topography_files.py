@@ -1,6 +1,7 @@
 """Reading, repair and the command `jointfmu surface`: what is read, repaired, refused, written."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,6 +15,8 @@ from jointfmu_tools.surfaces.form import filled, without_form, without_spikes
 from jointfmu_tools.surfaces.heights import Areal, Profile
 from jointfmu_tools.surfaces.reading import read
 
+from jointfmu.contact.interface import at_pressure
+from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography")
@@ -291,7 +294,7 @@ def test_plot(folder, capsys, suffix):
 def test_written_parameters_build(folder, line, capsys):
     """A flank smooth enough for the law, which leaves too rough ones no elastic spot."""
     (folder / "line.csv").write_text(csvfile.text(replace(line, z=0.01 * line.z)))
-    run(capsys, "surface", "line.csv", "--side", "1", "--joint", "gear_contact", "--out", "gear.toml")
+    run(capsys, "surface", "line.csv", "--side=1", "--joint=gear_contact", "--law=yu2022", "--out=gear.toml")
     file = load("gear.toml", "gear_contact")
     assert file.sources["surface1.D"].startswith("identified from line.csv (side 1, the other smooth) by ")
     assert file.values.e == default("gear_contact").values.e
@@ -301,7 +304,15 @@ def test_written_parameters_build(folder, line, capsys):
 
 def test_params_choose_the_start(folder, capsys):
     run(
-        capsys, "surface", "line.csv", "--side=1", "--joint", "bolted_joint", "--write", "a.toml"
+        capsys,
+        "surface",
+        "line.csv",
+        "--side=1",
+        "--joint",
+        "bolted_joint",
+        "--law=zhao2018",
+        "--write",
+        "a.toml",
     )  # the other name of --out
     changed = (folder / "a.toml").read_text().replace("H = { value = 1960000000.0", "H = { value = 2.5e9")
     (folder / "a.toml").write_text(changed)
@@ -549,7 +560,7 @@ def test_roughness_and_level_are_printed(folder, capsys, area):
 
 def test_sides_are_written_where_they_belong(folder, capsys):
     """The other side of a default joint's own surface is not that of the scan; a given file keeps its own."""
-    start = ["surface", "line.csv", "--joint", "bolted_joint", "--out", "s.toml", "--side"]
+    start = ["surface", "line.csv", "--joint=bolted_joint", "--law=zhao2018", "--out=s.toml", "--side"]
     h = json.loads(run(capsys, "surface", "line.csv", "--json").out)["roughness"]["h"]
     for side, names in (("1", ["Rq1"]), ("2", ["Rq2"]), ("both", ["Rq1", "Rq2"])):
         run(capsys, *start, side)
@@ -579,3 +590,43 @@ def test_a_joint_by_its_roughness_gets_h_and_its_kin(folder, capsys):
     assert (file.values.longest_wave, file.values.slope) == (5e-4, out["roughness"]["slope"])
     assert file.values.hurst == pytest.approx(2.0 - 1.42, abs=0.03)
     assert file.values.H == given.values.H
+
+
+@pytest.mark.parametrize("joint", [name for name, kind in KINDS.items() if kind.surfaces])
+def test_the_scan_acts(folder, line, capsys, joint):
+    """Without --law the joint has the law `roughness`, whose h is the scan's: half of it, twice the K."""
+    stiffness, heights = [], []
+    for scale in (0.01, 0.005):
+        (folder / "line.csv").write_text(csvfile.text(replace(line, z=scale * line.z)))
+        words = ("surface", "line.csv", "--side=both", "--joint", joint, "--out=j.toml", "--json")
+        found = json.loads(run(capsys, *words).out)
+        file = load("j.toml", joint)
+        assert (file.law, found["law"]) == ("roughness", "roughness")
+        assert file.flat["h"] == found["roughness"]["h"]
+        heights.append(file.flat["h"])
+        law = KINDS[joint].law_of(file.values)
+        stiffness.append(float(at_pressure(law, np.array([1e5]))["K_N"][0]))
+    assert heights[0] == pytest.approx(2.0 * heights[1], rel=1e-6)  # of the file's seven digits
+    # K ~ 1/h, a little less: the slope halves too, and less of the contact flows
+    assert stiffness[1] / stiffness[0] == pytest.approx(2.0, rel=0.05)
+
+
+def test_another_law_is_shown_beside_the_roughness(folder, capsys):
+    words = ("surface", "line.csv", "--side=both", "--joint=bolted_joint", "--out=j.toml")
+    said = run(capsys, *words, "--law=zhao2018").out
+    assert load("j.toml").law == "zhao2018"
+    assert re.search(r"^law zhao2018: .*p/\(0\.45 h\)", said, re.M)
+    assert "law zhao2018" not in run(capsys, *words).out
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("--law", "yu2022", "--joint", "bolted_joint"), "bolted_joint has no law 'yu2022', but zhao2018"),
+        (("--law", "yu2022"), "law yu2022 needs --joint"),
+        (("--law", "zhao2018", "--params", "j.toml"), "has law = 'roughness'; expected that or none (--law)"),
+    ],
+)
+def test_laws_that_cannot_be(folder, capsys, options, says):
+    run(capsys, "surface", "line.csv", "--side=both", "--joint=bolted_joint", "--out=j.toml")
+    assert says in refused_line(capsys, "surface", "line.csv", *options)

@@ -209,7 +209,8 @@ def test_the_command_says_that_G_is_not_determined(tmp_path, capsys):
     assert said["joints"]["bolted_joint"]["surface.G"] is None
     assert said["determined"]["bolted_joint"] is False
     assert said["not_determined"]["bolted_joint"].startswith("D = 1.02")
-    command = ("surface", path, "--unit", "m", "--joint", "bolted_joint", "--side", "1", "--write", written)
+    joint = ("--joint", "bolted_joint", "--law", "zhao2018", "--side", "1")
+    command = ("surface", path, "--unit", "m", *joint, "--write", written)
     refused = refused_line(capsys, *command, "--force")
     assert f"surface.G of {path} is not determined" in refused
     assert not written.exists()

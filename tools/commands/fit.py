@@ -41,6 +41,7 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
     sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
     written(sub)
+    sub.add_argument("--force", action="store_true", help="write a fit that says nothing of the joint too")
     sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         _option(sub, option)
@@ -119,13 +120,14 @@ def _finish(args: argparse.Namespace, outcome: "FitResult") -> int:
     if args.plot:
         with plots.drawing(args.plot, size(outcome)) as figure:
             draw(figure, outcome)
-    if args.out:
+    doubt = None if args.force else outcome.doubt()
+    if args.out and not doubt:
         write_text(args.out, dump(outcome.parameters))
     if args.json:
         found, document = judge_file(outcome.parameters), outcome.document()
         document["warnings"] += found.warnings
-        print(json.dumps(found.document() | document))
-        return 0
+        print(json.dumps(found.document() | document | {"doubt": doubt}))
+        return int(doubt is not None)
     for row in outcome.rows():
         spread = row["relative_deviation"]
         shown = "spread unknown" if spread is None else percent(spread)
@@ -137,6 +139,9 @@ def _finish(args: argparse.Namespace, outcome: "FitResult") -> int:
     for line in outcome.warnings():
         print(f"note: {line}", file=sys.stderr)
     tell(judge_file(outcome.parameters))
-    for path in filter(None, (args.out, args.plot)):
+    for path in filter(None, (None if doubt else args.out, args.plot)):
         print(f"wrote {path}")
-    return 0
+    if doubt:
+        unwritten = f"; {args.out} is not written, --force does it" if args.out else ""
+        print(f"the fit says nothing of the joint: {doubt}{unwritten}", file=sys.stderr)
+    return int(doubt is not None)

@@ -14,6 +14,9 @@ from jointfmu.quantity import Interval, flat_fields
 from .identifiability import combinations, undetermined
 from .least_squares import Array, Solution, Unknown
 
+WORST_AREA = 2.0
+"""Factor between measured and fitted area of the widest loop beyond which a law is none of these data."""
+
 
 @dataclass(frozen=True, slots=True)
 class Picture:
@@ -63,6 +66,23 @@ class FitResult:
             }
             for u in self.solution.unknowns
         ]
+
+    def doubt(self) -> str | None:
+        """Why the fit says nothing of the joint; None if it says something."""
+        names = [u.name for u in self.solution.unknowns]
+        if names and {*names} == {*self.solution.at_bound}:
+            return f"{', '.join(names)} ended on a bound, nothing else was fitted"
+        loose = undetermined(self.solution)
+        if names and len(loose) == len(names) and not any(c.determined for c in combinations(self.solution)):
+            return f"the data determine none of {', '.join(names)}, nor a combination of them"
+        if "loop_area_law" in self.facts:
+            measured, law = self.facts["loop_area"][0], self.facts["loop_area_law"][0]
+            if not measured / WORST_AREA <= law <= measured * WORST_AREA:
+                return (
+                    f"the area of the widest loop is {measured:.3g} J, of the fitted law {law:.3g} J; "
+                    f"allowed is a factor of {WORST_AREA:g}"
+                )
+        return None
 
     def warnings(self) -> list[str]:
         """What the data do not determine, by name, and where the fit stopped; one line each."""

@@ -179,7 +179,9 @@ class Fit:
             )
             for row in self.outcome.rows()
         ]
-        lines = [f"note: {line}" for line in self.outcome.warnings()]
+        doubt = self.outcome.doubt()
+        lines = [f"warning: the fit says nothing of the joint: {doubt}"] if doubt else []
+        lines += [f"note: {line}" for line in self.outcome.warnings()]
         return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
 
     def __repr__(self) -> str:

@@ -8,9 +8,7 @@ from jointfmu.joints.kind import RoughSurface
 from jointfmu.parameters import ParameterFile
 
 from .results import Estimate, Identification, Result
-
-ROUGHNESS_LAW = "roughness"
-"""The interface law whose parameters are the roughness itself, without D and G."""
+from .series import ROUGHNESS_LAW
 
 
 def changes(

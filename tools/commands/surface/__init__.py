@@ -13,7 +13,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
-from ...surfaces.series import METHODS, SIDES
+from ...surfaces.series import METHODS, ROUGHNESS_LAW, SIDES
 from . import synthesize
 
 if TYPE_CHECKING:
@@ -61,6 +61,14 @@ def add(commands: Commands) -> None:
         "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
     )
     find.add_argument("--joint", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}")
+    laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
+    find.add_argument(
+        "--law",
+        choices=[*laws],
+        metavar="LAW",
+        help=f"of the joint: {ROUGHNESS_LAW} (default), on which h acts, "
+        f"or one on which D and G do: {', '.join(law for law in laws if law != ROUGHNESS_LAW)}",
+    )
     find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
     written(find)
     find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
@@ -125,13 +133,24 @@ def _check(args: argparse.Namespace) -> None:
 
 
 def _base(args: argparse.Namespace) -> ParameterFile | None:
-    """The parameter file to start from, if one is to be made; a default one without its roughness."""
+    """The parameter file to start from, if one is to be made; a default one without its roughness.
+
+    Its law is `roughness`, so that what is measured acts; another one is asked for.
+    """
     if args.params:
-        return load(args.params, args.joint)
+        file = load(args.params, args.joint)
+        if args.law not in (None, file.law):
+            raise Refusal(f"{args.params}: has law = {file.law!r}; expected that or none", "law")
+        return file
     if args.joint:
+        law = args.law or ROUGHNESS_LAW
+        if law not in KINDS[args.joint].laws:
+            raise Refusal(f"{args.joint} has no law {law!r}, but {', '.join(KINDS[args.joint].laws)}", "law")
         from ...surfaces.joint_parameters import without_roughness
 
-        return without_roughness(default(args.joint))
+        return without_roughness(default(args.joint, law))
+    if args.law:
+        raise Refusal(f"law {args.law} needs --joint, one of {', '.join(KINDS)}", "law")
     if args.out:
         raise ValueError(f"--out {args.out} needs --joint, one of {', '.join(KINDS)}, or --params")
     return None

@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.roughness import height, level
 from jointfmu.joints import KINDS
+from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
+from ...pressing import judge_file
 from ...surfaces.heights import Areal, Heights
-from ...surfaces.joint_parameters import ROUGHNESS_LAW, changes, doubt
+from ...surfaces.joint_parameters import changes, doubt
 from ...surfaces.results import Estimate, Identification, Result
+from ...surfaces.series import ROUGHNESS_LAW
 
 UNIT_PRESSURE = 1e6
 """Pressure [Pa] at which the level of the stiffness is stated."""
@@ -26,6 +29,7 @@ def as_dict(
 ) -> dict[str, object]:
     """Everything, SI; `file` is the parameter file with the surface, if one is made."""
     joints = joints_shown(args, file)
+    judged = (judge_file(file) if file else Judgement(None, ())).document()
     return {
         "files": list(identified.names),
         "kind": "areal" if isinstance(heights[0], Areal) else "profile",
@@ -42,8 +46,10 @@ def as_dict(
         "determined": {joint: doubt(identified, joint) is None for joint in joints},
         "not_determined": {joint: why for joint in joints if (why := doubt(identified, joint))},
         "joints": {joint: _joint_dict(identified, joint, args) for joint in joints},
+        "law": file.law if file else None,
+        "level": judged["level"],
         "written": str(args.out) if args.out else None,
-        "warnings": warnings(identified, file, args),
+        "warnings": [*warnings(identified, file, args), *judged["warnings"]],
     }
 
 

@@ -6,13 +6,16 @@ import math
 import sys
 from collections.abc import Sequence
 
+from jointfmu.commands.common import tell
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
+from ...pressing import judge_file
 from ...surfaces.heights import Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
 from ...surfaces.results import Estimate, Identification, Result
 from ...surfaces.roughness import ScanRoughness
+from ...surfaces.series import ROUGHNESS_LAW
 from . import synthesize
 from .document import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
 
@@ -53,6 +56,8 @@ def _print(
     print("brackets: 95 % confidence intervals")
     for joint in joints_shown(args, file):
         print(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
+    if file and file.law != ROUGHNESS_LAW:
+        tell(judge_file(file), of=f"law {file.law}: ")
     if args.out:
         print(f"wrote {args.out}")
     if args.plot:
