@@ -26,7 +26,7 @@ TOOLS = (
     "laboratory",
     "modelica",
     "new",
-    "pressing",
+    "pressure",
     "reduced",
     "report",
     "ringing",

@@ -11,7 +11,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 
 def add(commands: Commands) -> None:

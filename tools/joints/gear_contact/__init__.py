@@ -3,5 +3,5 @@
 from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
-    __name__, ("checks", "export", "figures", "laboratory", "modelica", "new", "pressing", "reduced")
+    __name__, ("checks", "export", "figures", "laboratory", "modelica", "new", "pressure", "reduced")
 )

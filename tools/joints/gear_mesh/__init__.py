@@ -2,4 +2,4 @@
 
 from ...joint_parts import ToolParts
 
-PARTS = ToolParts(__name__, ("checks", "export", "figures", "modelica", "new", "pressing", "reduced"))
+PARTS = ToolParts(__name__, ("checks", "export", "figures", "modelica", "new", "pressure", "reduced"))

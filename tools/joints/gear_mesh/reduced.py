@@ -25,7 +25,7 @@ RAMP_END = 0.05
 
 
 def evaluate(
-    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+    parameters: type[Mesh], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
     """K [N/m] and f [N] (n, m) at the angles factor (n, 1) times loads (m) [rad], ascending.
 

@@ -2,14 +2,14 @@
 
 from jointfmu.joints.gear_contact.spring import GearContact
 
-from ...pressing import Pressing
+from ...pressure import NominalPressure
 
 
 def _pressure(contact: GearContact, load: float) -> float:
     return load / contact.A_0
 
 
-PRESSING = Pressing(
+PRESSURE = NominalPressure(
     load="f",
     usual=lambda contact: min(3e3, 0.1 * contact.hardness * contact.A_0),
     mean=_pressure,

@@ -2,13 +2,13 @@
 
 from jointfmu.joints.gear_mesh.spring import GearMesh
 
-from ...pressing import Pressing
+from ...pressure import NominalPressure
 
 
 def _pressure(mesh: GearMesh, load: float) -> float:
     return load / mesh.A_0
 
 
-PRESSING = Pressing(
+PRESSURE = NominalPressure(
     load="f", usual=lambda mesh: min(3e3, 0.1 * mesh.hardness * mesh.A_0), mean=_pressure, peak=_pressure
 )
