@@ -1,8 +1,11 @@
 """Write the pictures of README and docs: `python build_fmus.py && python docs/figures.py`.
 
-`python docs/figures.py house` needs no FMUs: it draws the packages and layers from pyproject.toml.
+`python docs/figures.py house` needs no FMUs: it draws the packages and layers from pyproject.toml; no more
+does `python docs/figures.py examples`, which runs the scripts in `examples`.
 """
 
+import os
+import subprocess
 import sys
 import tomllib
 from collections.abc import Sequence
@@ -24,12 +27,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from jointfmu import plots
-from jointfmu.files.writing import write_text
+from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.joints import KINDS
 from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
 WIDTH, LEFT, ROW, HEAD, EDGE = 9.4, 6.5, 0.29, 0.36, 0.08
 """Sizes of the house [inch]: width, that of the layers, height of a layer and of a title, margin."""
@@ -41,14 +45,27 @@ LETTER = 0.078
 
 def main() -> None:
     """Write docs/images."""
-    write_text(IMAGES / "house.svg", house())
-    if sys.argv[1:] == ["house"]:
+    if sys.argv[1:] in ([], ["house"]):
+        write_text(IMAGES / "house.svg", house())
+    if sys.argv[1:] in ([], ["examples"]):
+        for script in EXAMPLES:
+            example(script)
+    if sys.argv[1:]:
         return
     result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
     picture = figures.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
     robot(IMAGES / "six_axis_robot.png")
+
+
+def example(script: Path) -> None:
+    """Run an example in an empty folder and keep the picture of its name."""
+    environment = os.environ | {"MPLBACKEND": "agg"}
+    with TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
+        picture = Path(folder) / f"{script.stem}.png"
+        write_bytes(IMAGES / f"example_{picture.name}", picture.read_bytes())
 
 
 def robot(path: Path) -> None:

@@ -3,6 +3,7 @@
 import posixpath
 import re
 from pathlib import Path
+from runpy import run_path
 from typing import Any
 
 from mkdocs.structure.files import File
@@ -12,6 +13,8 @@ CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
 """{text of the repository: page of the site that shows it}."""
 LABORATORY = "laboratory/page.html"
 """Place of the laboratory in the site."""
+REFERENCE = "reference.md"
+"""Place of the reference of Python in the site."""
 _LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
 
 
@@ -25,7 +28,7 @@ def address(path: str) -> str:
     """Address in the site of a file of the repository."""
     if path in CARRIED:
         return CARRIED[path]
-    return f"files/{path}.txt" if path.endswith(".md") else f"files/{path}"
+    return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
 
 
 def carried(name: str) -> str:
@@ -49,10 +52,16 @@ def laboratory() -> str:
     return page()
 
 
+def reference() -> str:
+    """What `docs/reference.py` writes; the folder of the pages is no package."""
+    return str(run_path(str(Path(__file__).with_name("reference.py")))["page"]())
+
+
 def on_files(files: Any, config: Any) -> Any:
-    """Add the laboratory, the texts of the repository that are pages, and every other linked file as
-    `files/PATH`."""
+    """Add the laboratory, the reference, the texts of the repository that are pages, and every other linked
+    file as `files/PATH`."""
     files.append(File.generated(config, LABORATORY, content=laboratory()))
+    files.append(File.generated(config, REFERENCE, content=reference()))
     for name, page in CARRIED.items():
         files.append(File.generated(config, page, content=carried(name)))
     linked = set()

@@ -8,7 +8,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval
-from jointfmu.quantity.units import UNITS, display_unit
+from jointfmu.quantity.units import CELSIUS, KELVIN_AT_ZERO, UNITS, display_unit
 
 VARIABILITIES = ("tunable", "fixed")
 """What a description may say of all parameters: set during a run too, or before it only."""
@@ -99,6 +99,8 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
         SubElement(unit, "BaseUnit", {k: str(n) for k, n in UNITS[name].base.items()})
         for shown, factor in UNITS[name].display.items():
             SubElement(unit, "DisplayUnit", name=shown, factor=repr(factor))
+        if name == "K":
+            SubElement(unit, "DisplayUnit", name=CELSIUS, factor="1.0", offset=repr(-KELVIN_AT_ZERO))
     return definitions
 
 
@@ -150,7 +152,7 @@ def serialized(root: Element) -> bytes:
 
 
 def _shown(unit: str, typical: float) -> dict[str, str]:
-    return {"unit": unit, "displayUnit": display_unit(unit, typical)}
+    return {"unit": unit, "displayUnit": CELSIUS if unit == "K" else display_unit(unit, typical)}
 
 
 def _bounds(interval: Interval) -> dict[str, str]:

@@ -2,36 +2,24 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from jointfmu import __version__
 from jointfmu.commands.common import IMPLIED, Parser, nearest
 
-COMMANDS = (
-    "new",
-    "catalogue",
-    "law",
-    "parameters",
-    "build",
-    "cache",
-    "modelica",
-    "export",
-    "footprint",
-    "modes",
-    "report",
-    "ramp",
-    "prove",
-    "ring",
-    "system",
-    "surface",
-    "fit",
-    "uncertainty",
-    "sweep",
-    "validate",
-)
-"""Each is declared by the module of its name, which `commands` has."""
+GROUPS = {
+    "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
+    "build": ("build", "system", "modelica", "export", "report", "cache"),
+    "run": ("law", "ramp", "ring", "modes"),
+    "check": ("prove", "validate"),
+    "study": ("uncertainty", "sweep"),
+}
+"""{heading: commands}; each is declared by the module of its name, which `commands` has."""
+COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+SHELLS = ("bash", "zsh")
 KERNEL = ("law", "parameters", "ramp")
 """Those that lie in the kernel, as they need no tool."""
 
@@ -48,11 +36,57 @@ class CommandLine(Parser):
             self.error(f"unrecognized arguments: {' '.join(rest)}{hint}")
         return found
 
+    def format_help(self) -> str:
+        """As argparse does, with the commands under their headings."""
+        formatter = self._get_formatter()
+        formatter.add_usage(self.usage, self._actions, self._mutually_exclusive_groups)
+        formatter.add_text(self.description)
+        listed = {action.dest: action for sub in _subs(self) for action in sub._choices_actions}
+        for title, names in GROUPS.items():
+            formatter.start_section(title)
+            formatter.add_arguments([listed[name] for name in names if name in listed])
+            formatter.end_section()
+        formatter.start_section("options")
+        formatter.add_arguments([a for a in self._actions if a.option_strings])
+        formatter.end_section()
+        formatter.add_text("jointfmu COMMAND --help has the options of a command and an example")
+        return formatter.format_help()
+
+
+class Completion(argparse.Action):
+    """Print what completes words in a shell, and leave."""
+
+    def __call__(self, parser: argparse.ArgumentParser, _: Any, shell: Any, option: Any = None) -> None:
+        """Refused in one line without the package that writes the script."""
+        try:
+            import shtab
+        except ImportError:
+            parser.error(f"{option}: the package shtab is missing; install it with: pip install shtab")
+        for command in _all(parser):
+            for action in command._actions:
+                if action.type is Path:
+                    action.complete = shtab.FILE  # type: ignore[attr-defined]
+        print(shtab.complete(parser, shell))
+        parser.exit()
+
+
+def _subs(parser: argparse.ArgumentParser) -> "list[argparse._SubParsersAction[Any]]":
+    """Where a command has its sub-commands."""
+    return [a for a in parser._actions if isinstance(a, argparse._SubParsersAction)]
+
+
+def _all(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """A parser and those of all of its commands."""
+    yield parser
+    for sub in _subs(parser):
+        for one in sub.choices.values():
+            yield from _all(one)
+
 
 def _options(parser: argparse.ArgumentParser, words: Sequence[str]) -> list[str]:
     """Long options of the command that words begin with."""
     for word in words:
-        subs = [a for a in parser._actions if isinstance(a, argparse._SubParsersAction) and word in a.choices]
+        subs = [sub for sub in _subs(parser) if word in sub.choices]
         if not subs:
             break
         parser = subs[0].choices[word]
@@ -71,6 +105,8 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     """The parser of the command that words begin with; without one of all commands, which takes longer."""
     top = CommandLine(prog="jointfmu", description="Joint stiffness from fractal surface roughness.")
     top.add_argument("--version", action="version", version=f"jointfmu {__version__}")
+    text = f"print the script that completes words in a shell: {', '.join(SHELLS)}"
+    top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
         package = "jointfmu.commands" if name in KERNEL else "jointfmu_tools.commands"

@@ -7,7 +7,7 @@ entry per parameter,
     D = { value = 1.42, unit = "1", kind = "published", source = "Zhao 2018, section 2" }
 
 `kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
-A section `[inputs]` of the same form gives start values of the joint's inputs; others start at zero.
+A section `[inputs]` of the same form gives start values of the joint's inputs; others start at their own.
 A section `[roughness]` states what is known of the surfaces, see `roughness`: the law of that name takes its
 h from there, the level of others is judged by it.
 """
@@ -68,8 +68,9 @@ class ParameterFile:
         return KINDS[self.joint].law(self.values)
 
     def start(self, name: str) -> float:
-        """Start value of an input, in its SI unit: zero unless it is given."""
-        return self.inputs.get(name, 0.0)
+        """Start value of an input, in its SI unit: the joint's own unless it is given."""
+        own = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
+        return self.inputs.get(name, own.start if own else 0.0)
 
     def with_values(self, changes: Mapping[str, Any], origin: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""

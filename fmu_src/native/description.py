@@ -10,7 +10,7 @@ from jointfmu import __version__
 from jointfmu.files.timestamp import fixed_time
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity.units import UNITS
+from jointfmu.quantity.units import CELSIUS, UNITS
 
 from ..xml_parts import (
     Listed,
@@ -175,7 +175,7 @@ def _types(variables: Sequence[Listed]) -> dict[str, dict[str, str]]:
         UNITS[name].quantity: {
             "quantity": UNITS[name].quantity,
             "unit": name,
-            "displayUnit": next(iter(UNITS[name].display)),
+            "displayUnit": CELSIUS if name == "K" else next(iter(UNITS[name].display)),
         }
         for name in units(variables)
     }

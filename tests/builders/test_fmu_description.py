@@ -15,17 +15,25 @@ from fmpy.validation import validate_fmu
 from joint_cases import CASES, NAMES, PUBLIC
 from jointfmu_fmu_src.building import build
 from lxml import etree
+from scipy.constants import zero_Celsius
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 from jointfmu.quantity import flatten
 
 DEGREE = math.pi / 180.0
-SHOWN = {"deg": DEGREE, "arcmin": DEGREE / 60.0, "rev/min": 2.0 * math.pi / 60.0, "um2": 1e-12, "mm2": 1e-6}
+SHOWN = {
+    "deg": DEGREE,
+    "arcmin": DEGREE / 60.0,
+    "rev/min": 2.0 * math.pi / 60.0,
+    "um2": 1e-12,
+    "mm2": 1e-6,
+    "degC": 1.0,
+}
 """Units whose SI value the prefixes below do not give."""
 PREFIX = {"M": 1e6, "G": 1e9, "k": 1e3, "m": 1e-3, "u": 1e-6}
 BASE: dict[str, dict[str, int]] = {
-    "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "rad": {"rad": 1}, "1": {},
+    "m": {"m": 1}, "s": {"s": 1}, "kg": {"kg": 1}, "rad": {"rad": 1}, "1": {}, "K": {"K": 1},
     "N": {"kg": 1, "m": 1, "s": -2}, "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2},
 }  # fmt: skip
 
@@ -117,6 +125,8 @@ def test_base_units_and_display_factors_say_what_the_names_say(root: Any) -> Non
         assert base == dimension(unit.get("name")), unit.get("name")
         for shown in unit.findall("DisplayUnit"):
             # FMI 2.0, 2.2.2: display value = factor * value; 1e-12 is a few times the round-off of the table
+            zero = zero_Celsius if shown.get("name") == "degC" else 0.0
+            assert float(shown.get("offset", "0")) == -zero
             assert float(shown.get("factor")) * si_value(shown.get("name")) == pytest.approx(1.0, rel=1e-12)
 
 
@@ -190,8 +200,8 @@ def test_start_values_are_the_default_parameters(root: Any, name: str) -> None:
         expected = values[variable]
         read = start == "true" if isinstance(expected, bool) else float(start)
         assert read == expected, variable  # to the last bit: importers set start values back
-    for node in variables(root, "input").values():
-        assert float(node.find("Real").get("start")) == 0.0
+    for i in MODELS[name].inputs:
+        assert float(variables(root, "input")[i.name].find("Real").get("start")) == i.start
 
 
 def test_the_default_experiment_is_the_load_ramp_one_step_per_second(fmus: Path, name: str) -> None:

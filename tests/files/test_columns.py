@@ -84,7 +84,8 @@ def test_cells_in_quotes(tmp_path):
         (f"{HEAD}\n1,2\n3,4,5", r"line 3 has 3 columns, expected 2"),
         (f"{HEAD}\n1,2\n3,", r"line 3: angle = '' is no finite number with a decimal point"),
         (f"{HEAD}\n1,2\n inf ,4", r"line 3: load = 'inf' is no finite number with a decimal point"),
-        (f"{HEAD.replace(',', ';')}\n1,5;2", r"line 2: load = '1,5' is no finite number"),
+        (f"{HEAD.replace(',', ';')}\n1,5,0;2", r"line 2: load = '1,5,0' is no finite number"),
+        (f"{HEAD.replace(',', ';')}\n1.234,5;2", r"line 2: load = '1.234,5' is no finite number"),
     ],
 )
 def test_faults_are_named_with_their_place(tmp_path, content, said):
@@ -106,3 +107,24 @@ def test_a_column_that_is_missing_is_named_with_its_units(tmp_path):
     found = read(saved(tmp_path, "load [N]\n1\n"), SPEC, 1)
     with pytest.raises(ValueError, match=r"a.csv: has no column 'angle'; expected angle \[rad \| deg"):
         found.require("angle", SPEC)
+
+
+@pytest.mark.parametrize(
+    ("heads", "mark"),
+    [("load [kN],angle [arcmin]", ","), ("Load (kN);Angle (arcmin)", ";"), ("load/kN\tangle / arcmin", "\t")],
+)
+def test_a_unit_is_read_as_people_write_it(tmp_path, heads, mark):
+    point = "." if mark == "," else ","
+    path = saved(tmp_path, f"\ufeff{heads}\n1{point}5{mark}2\n")
+    found = read(path, SPEC, 1)
+    assert found.columns["load"] == pytest.approx([1500.0])
+    assert found.columns["angle"] == pytest.approx([2.0 * np.pi / 10800.0])
+
+
+def test_other_names_of_columns_are_told_by_their_units(tmp_path):
+    others = {"load": ("f", "kraft"), "angle": ("f", "winkel")}
+    found = read(saved(tmp_path, "F [deg],Kraft [N]\n90,2\n"), SPEC, 1, others)
+    assert found.columns["load"].tolist() == [2.0]
+    assert found.columns["angle"] == pytest.approx([0.5 * np.pi])
+    with pytest.raises(ValueError, match="expected columns"):
+        read(saved(tmp_path, "F [Hz],Kraft\n90,2\n"), SPEC, 1, others)

@@ -10,10 +10,11 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import branches, decay
-from jointfmu_tools.fitting.heads import Heads, read
+from jointfmu_tools.fitting.heads import LEAST, Heads, read
 from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring
 from jointfmu_tools.fitting.oscillator import Oscillator
 from jointfmu_tools.joints.bolted_joint.fit import loop
+from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS
 
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
@@ -324,7 +325,7 @@ def test_a_mass_says_nothing_about_loops(tmp_path, capsys):
             "has no column of angle (harmonic_drive) or displacement (bolted_joint); expected one",
         ),
         ("displacement [um], angle [rad]", (1, 2), "has more than one column of angle"),
-        ("displacement [um], load [N]", (1, 2), "has displacement alone; expected displacement with force"),
+        ("displacement [um], weight [N]", (1, 2), "has displacement alone; expected displacement with force"),
         (
             "displacement [um], frequency [Hz], damping [1]",
             (1, -2, 3),
@@ -405,3 +406,21 @@ def test_level_and_exponent_of_a_vibration_go_along_the_valley_of_its_stiffness(
         loop.rest_stiffness(measurements.file("bolted_joint", measurements.JOINT).values, PRELOAD), rel=1e-3
     )
     assert found.solution.deviations["surface.G"] > 100.0 * 1e-4
+
+
+@pytest.mark.parametrize(
+    "titles",
+    [
+        "phi [rad],tau [N.m]",
+        "Angle (rad);Torque (N.m)",
+        "Drehwinkel/rad;Drehmoment/N.m",
+        "Winkel [rad]\tMoment [N.m]",
+    ],
+)
+def test_titles_as_people_write_them(tmp_path, titles):
+    mark = next(m for m in ";\t," if m in titles)
+    rows = "".join(f"{i}{mark}{2 * i}\n" for i in range(LEAST))
+    (tmp_path / "a.csv").write_text(f"{titles}\n{rows}")
+    kind, table = read(tmp_path / "a.csv", DRIVE_HEADS)
+    assert kind == "loops"
+    assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]

@@ -157,14 +157,17 @@ def sanitizing(compiler: str, builder: Builder) -> str:
 
 
 def ramp_points(name: str, count: int = 40) -> str:
-    """Points along the joint's load ramp, the other inputs near zero."""
+    """Points along the joint's load ramp, the other inputs at their start or near zero."""
     if name not in MODELS:
         return "\n".join(f"{0.1 * i} {0.2 * i}" for i in range(1, count))
     model = MODELS[name]
     rows = []
     for i in range(1, count):
         other = 1e-7 * math.sin(i)
-        row = (model.ramp.end * i / count if v.name == model.ramp.input else other for v in model.inputs)
+        row = (
+            model.ramp.end * i / count if v.name == model.ramp.input else v.start + (v.start == 0.0) * other
+            for v in model.inputs
+        )
         rows.append(" ".join(repr(x) for x in row))
     return "\n".join(rows)
 

@@ -126,7 +126,7 @@ case = json.load(open(file))
 dae = ca.DaeBuilder("fmu", folder, {})
 f = dae.create("f", ["u"], ["y"])
 phi, tau = ca.MX.sym("phi"), ca.MX.sym("tau")
-rest = f(ca.vertcat(0.0, 0.0, phi, 0.0))[dae.y().index("tau")] - tau
+rest = f(ca.vertcat(0.0, 0.0, phi, 0.0, 293.15))[dae.y().index("tau")] - tau
 newton = ca.rootfinder("newton", "newton", {"x": phi, "p": tau, "g": rest}, {"abstol": 1e-12})
 found = [float(newton(x0=0.0, p=tau)["x"]) for tau in case["torques"]]
 json.dump(found, open(file, "w"))

@@ -28,6 +28,7 @@ from jointfmu_fmu_src.native.page import documentation
 from jointfmu_fmu_src.native.terminals import terminals_and_icons
 from lxml import etree
 from PIL import Image
+from scipy.constants import zero_Celsius
 from test_fmu_description import dimension, si_value
 
 from jointfmu import __version__
@@ -232,7 +233,7 @@ def test_inputs_and_outputs_are_those_of_the_list(name: str, version: int) -> No
             assert float(node["nominal"]) == v.nominal > 0.0
             assert float(node.get("min", "-inf")) == v.low
             assert "max" not in node
-            assert node.get("start") == {"input": "0.0", "output": None}[causality]
+            assert node.get("start") == {"input": repr(v.start), "output": None}[causality]
             assert node.get("initial") == {"input": None, "output": "calculated"}[causality]
 
 
@@ -305,6 +306,7 @@ def test_units_say_what_their_names_say(name: str, version: int) -> None:
         assert base == dimension(unit.get("name"))
         for shown in unit.findall("DisplayUnit"):
             # display value = factor * value; 1e-12 is a few times the round-off of the table
+            assert float(shown.get("offset", "0")) == -(zero_Celsius if shown.get("name") == "degC" else 0.0)
             assert float(shown.get("factor")) * si_value(shown.get("name")) == pytest.approx(1.0, rel=1e-12)
     used = {v["unit"] for v in listed(name, version).values() if "unit" in v}
     assert used == set(units)

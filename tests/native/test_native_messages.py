@@ -165,7 +165,7 @@ def test_inputs_too_large_for_an_output_are_named(host: Host, version: str) -> N
     instance = host("HarmonicDriveSpring", version).start(GOOD["HarmonicDriveSpring"])
     before = instance.get()
     instance.set({"phi2": 1e308, "w2": 3.0})
-    message = "phi2 = 1e+308 rad, w2 = 3 rad/s: too large, tau1 is not finite"
+    message = "phi2 = 1e+308 rad, w2 = 3 rad/s, temperature = 293.15 K: too large, tau1 is not finite"
     assert instance.refused(instance.step) == message
     instance.set({"w2": 0.0} | GOOD["HarmonicDriveSpring"])
     assert instance.get() == before

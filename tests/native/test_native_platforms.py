@@ -222,6 +222,8 @@ def points(model: Model) -> str:
         rng.uniform(0.0, model.ramp.end, POINTS)
         if v.name == model.ramp.input
         else v.nominal * 10.0 ** rng.uniform(-4.0, 0.0, POINTS) * rng.choice([-1.0, 1.0], POINTS)
+        if not v.start
+        else v.start * rng.uniform(0.9, 1.2, POINTS)
         for v in model.inputs
     ]
     return "\n".join(" ".join(map(repr, map(float, line))) for line in zip(*columns, strict=True)) + "\n"

@@ -60,31 +60,33 @@ TENS = {
     "Nm/deg": (1.0 / constants.degree, "N.m/rad"),
 }
 """As columns of catalogues are headed."""
-EXPONENTS = {  # of kg, m, s, rad
-    "1": (0, 0, 0, 0),
-    "s": (0, 0, 1, 0),
-    "Hz": (0, 0, -1, 0),
-    "rad": (0, 0, 0, 1),
-    "rad/s": (0, 0, -1, 1),
-    "rad/s2": (0, 0, -2, 1),
-    "m": (0, 1, 0, 0),
-    "m/s": (0, 1, -1, 0),
-    "m/s2": (0, 1, -2, 0),
-    "m2": (0, 2, 0, 0),
-    "N": (1, 1, -2, 0),
-    "N.m": (1, 2, -2, 0),
-    "N.m/rad": (1, 2, -2, -1),
-    "N.m.s/rad": (1, 2, -1, -1),
-    "N/m": (1, 0, -2, 0),
-    "N.s/m": (1, 0, -1, 0),
-    "N/m3": (1, -2, -2, 0),
-    "Pa": (1, -1, -2, 0),
-    "Pa/m": (1, -2, -2, 0),
-    "Pa/m2": (1, -3, -2, 0),
-    "J": (1, 2, -2, 0),
-    "kg": (1, 0, 0, 0),
-    "kg.m2": (1, 2, 0, 0),
-    "kg/m3": (1, -3, 0, 0),
+EXPONENTS = {  # of kg, m, s, rad, K
+    "1": (0, 0, 0, 0, 0),
+    "s": (0, 0, 1, 0, 0),
+    "Hz": (0, 0, -1, 0, 0),
+    "rad": (0, 0, 0, 1, 0),
+    "rad/s": (0, 0, -1, 1, 0),
+    "rad/s2": (0, 0, -2, 1, 0),
+    "m": (0, 1, 0, 0, 0),
+    "m/s": (0, 1, -1, 0, 0),
+    "m/s2": (0, 1, -2, 0, 0),
+    "m2": (0, 2, 0, 0, 0),
+    "N": (1, 1, -2, 0, 0),
+    "N.m": (1, 2, -2, 0, 0),
+    "N.m/rad": (1, 2, -2, -1, 0),
+    "N.m.s/rad": (1, 2, -1, -1, 0),
+    "N/m": (1, 0, -2, 0, 0),
+    "N.s/m": (1, 0, -1, 0, 0),
+    "N/m3": (1, -2, -2, 0, 0),
+    "Pa": (1, -1, -2, 0, 0),
+    "Pa/m": (1, -2, -2, 0, 0),
+    "Pa/m2": (1, -3, -2, 0, 0),
+    "J": (1, 2, -2, 0, 0),
+    "kg": (1, 0, 0, 0, 0),
+    "kg.m2": (1, 2, 0, 0, 0),
+    "kg/m3": (1, -3, 0, 0, 0),
+    "K": (0, 0, 0, 0, 1),
+    "1/K": (0, 0, 0, 0, -1),
 }
 
 
@@ -107,7 +109,7 @@ def test_size(unit):
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_exponents(unit):
-    expected = dict(zip(("kg", "m", "s", "rad"), EXPONENTS[unit], strict=True))
+    expected = dict(zip(("kg", "m", "s", "rad", "K"), EXPONENTS[unit], strict=True))
     assert UNITS[unit].base == base(unit) == {name: n for name, n in expected.items() if n}
     assert size(unit) == 1.0
 

@@ -22,12 +22,14 @@ from jointfmu_tools.joint_parts import TOOLS
 from jointfmu_tools.parser import parser
 from PIL import Image
 
+import jointfmu
+
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
 GUIDE = [ROOT / "README.md", *PAGES]
 TEXTS = [ROOT / "CONTRIBUTING.md", *GUIDE]
-OTHERS = ("cd", "git", "mkdocs", "pip", "pytest", "python")
+OTHERS = (".", "cd", "git", "mkdocs", "pip", "pytest", "python")
 """Programs other than jointfmu that a block of commands may start."""
 
 
@@ -125,7 +127,7 @@ def test_the_house_is_drawn_as_it_is_built() -> None:
 
 # Names of files in the text
 
-FOLDERS = ("benchmarks", "core", "docs", "fmu_src", "models", "tests", "tools")
+FOLDERS = ("benchmarks", "core", "docs", "examples", "fmu_src", "models", "tests", "tools")
 ELSEWHERE = ("dist/", "sources/", "documentation/", "law.", "variables.c", "fmpy/", "fmpy.", "simulate.py")
 """Beginnings of paths that are not the repository's: built or generated, fmpy's, the tutorial's."""
 
@@ -255,7 +257,9 @@ class Links(HTMLParser):
 
 def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
     pages = {page.resolve(): Links(page) for page in site.rglob("*.html") if page.name != "404.html"}
-    assert len(pages) == len(PAGES) + 3  # README, CONTRIBUTING and the laboratory are pages too
+    assert (
+        len(pages) == len(PAGES) + 4
+    )  # README, CONTRIBUTING, the laboratory and the reference are pages too
     for page, content in pages.items():
         for link in content.links:
             parts = urlsplit(link)
@@ -265,6 +269,16 @@ def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
             assert target.exists(), (page.name, link)
             if parts.fragment and target in pages:
                 assert unquote(parts.fragment) in pages[target].ids | {"__skip"}, (page.name, link)
+
+
+def test_the_reference_has_every_public_name(site: Path) -> None:
+    """With the arguments, and what the help says of them, as items of a list; and the search finds it."""
+    page = site / "reference.html"
+    ids, text = Links(page).ids, page.read_text(encoding="utf-8")
+    for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivewind_up"):
+        assert name.lower() in ids, name
+    assert re.search(r"<li><code>efficiency</code>: at rated torque and 2000 rev/min \[1\]</li>", text)
+    assert '"reference.html#drivewind_up"' in (site / "search" / "search_index.json").read_text("utf-8")
 
 
 def test_the_site_needs_no_network(site: Path) -> None:

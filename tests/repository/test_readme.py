@@ -1,8 +1,11 @@
-"""The README's code runs and its figures are those of the product."""
+"""The code of the README, and of the pages that go on from it, runs; figures are those of the product."""
 
+import os
 import re
 import shlex
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -18,11 +21,40 @@ from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parents[2]
 ASSEMBLY = "models/assemblies/box_specimen.toml"
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+README, COMMANDS, FMUS, PYTHON, VALIDITY = (
+    (ROOT / name).read_text(encoding="utf-8")
+    for name in ("README.md", "docs/commands.md", "docs/fmus.md", "docs/python.md", "docs/validity.md")
+)
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def blocks(language, text=README):
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
+
+
+def test_the_readme_is_short():
+    assert len(re.findall(r"\S*\w\S*", README)) <= 700
+
+
+@pytest.mark.slow
+def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path):
+    """In an empty folder; what installs and builds all is run by `.ci/run` in an environment of its own."""
+    if not (ROOT / ".git").exists() or shutil.which("git") is None:
+        pytest.skip("needs git and a checkout")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"URL": str(ROOT), "PATH": path, "MPLBACKEND": "agg"}
+    found = re.findall(r"```(sh|python)\n(.*?)```", README, flags=re.DOTALL)
+    assert [language for language, _ in found] == ["sh", "sh", "python", "sh"]
+    (_, clone), (_, install), *first = found
+    assert install in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    subprocess.run(["bash", "-ec", clone], cwd=tmp_path, env=environment, check=True, timeout=100)
+    work = tmp_path / "joints"
+    assert (work / ".venv" / "bin" / "python").exists()
+    shutil.rmtree(work / ".venv")  # what follows runs with the packages that are installed here
+    for language, block in first:
+        program = [sys.executable, "-c"] if language == "python" else ["bash", "-ec"]
+        subprocess.run([*program, block], cwd=work, env=environment, check=True, timeout=300)
+    for made in ("drive.png", "loops.png", "plate.html", "dist/fmi2/HarmonicDriveSpring.fmu"):
+        assert (work / made).is_file(), made
 
 
 @pytest.fixture(scope="module")
@@ -44,16 +76,22 @@ def folder(tmp_path_factory, native):
 
 def test_python_blocks_run(folder, monkeypatch):
     monkeypatch.chdir(folder)
-    assert len(blocks("python")) == 2
     names = {}
-    for block in blocks("python"):
-        exec(compile(block, "README.md", "exec"), names)
+    for page in (FMUS, PYTHON):
+        (block,) = blocks("python", page)
+        exec(compile(block, "docs", "exec"), names)
     # the ramp of the first block ends at 5 N m, the second evaluates 1000 pressures
     assert names["result"]["K_WTS"][-1] > names["result"]["K_WTS"][0] > 1e3
     assert names["state"]["K_N"].shape == (1000,)
 
 
-commands = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("jointfmu ")]
+commands = [
+    line
+    for page in (FMUS, COMMANDS)
+    for block in blocks("sh", page)
+    for line in block.splitlines()
+    if line.startswith("jointfmu ")
+]
 
 
 @pytest.mark.slow
@@ -72,6 +110,7 @@ def test_every_kind_of_command_is_shown():
         "parameters",
         "report",
         "build",
+        "cache",
         "ramp",
         "prove",
         "validate",
@@ -110,7 +149,7 @@ def test_counts_are_those_of_the_comparison(rows):
         f"nearer than the law in {lost} of the {n['interpolation']}",
         f"{predicted(n['prediction'])}: ",
     ):
-        assert said in README, said
+        assert said in VALIDITY, said
 
 
 def test_errors_are_those_of_the_comparison(rows):
@@ -120,24 +159,26 @@ def test_errors_are_those_of_the_comparison(rows):
         for unit in ("share", "points")
     }
     said = re.search(
-        r"K_TS is met within ([\d.]+) %, its change .*? within ([\d.]+) percentage points", README
+        r"K_TS is met within ([\d.]+) %, its change .*? within ([\d.]+) percentage points", VALIDITY
     )
     assert said is not None
     assert float(said[1]) == round(100.0 * worst["share"], 1)  # to the printed digit
     assert float(said[2]) == round(worst["points"], 1)
 
 
-def test_the_first_screen_says_how_far_it_holds(rows):
-    """In the README before its first picture and, in the same words, on the guide's start."""
+def test_the_start_says_how_far_it_holds(rows):
+    """In five lines of the README, and before the first picture of the guide."""
     start = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
-    here, there = (re.search(r"\n(\*\*How far it holds\..*)\n", text) for text in (README, start))
+    trust = README.partition("## How far to trust it")[2].partition("\n## ")[0]
+    assert trust.count("\n- ") == 5
+    assert "](docs/validity.md)" in trust
+    here = re.search(r"\n(\*\*How far it holds\..*)\n", start)
     assert here is not None
-    assert there is not None
-    assert here.start() < README.index("![")
-    assert re.sub(r"\(.*?\)", "", here[1]) == re.sub(r"\(.*?\)", "", there[1])
+    assert here.start() < start.index("![")
     found = validation.counts(rows)
     said = f"Of the {found.numbers} numbers compared with the papers {predicted(found.roles['prediction'])}: "
     assert said in here[1]
+    assert f"of the {found.numbers} numbers compared {predicted(found.roles['prediction'])};" in trust
     assert re.search(r"\| \[Validity\]\(validity\.md\)", start.partition("## Where to go")[2])
 
 

@@ -154,6 +154,8 @@ class Read:
             return _FUNCTIONS[name](*operands)
         if name == "-" and len(operands) == 1:
             return _each(operator.neg, operands[0])
+        if name == "not":
+            return not operands[0]
         if name in _OPERATORS:
             return _combined(name, *operands)
         return self._call(name.rpartition(".")[2], operands)

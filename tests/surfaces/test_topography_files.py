@@ -370,7 +370,7 @@ def columns(folder, x, z, decimals, unit="um"):
 @pytest.mark.parametrize("step", [0.1563, 0.041, 0.5])
 def test_rounded_positions_are_read(folder, step, decimals):
     """One decimal for steps of 0.16 and 0.04 um, as stylus instruments print: uneven gaps, repeats."""
-    x, z = step * np.arange(1000), np.random.default_rng(0).standard_normal(1000)
+    x, z = step * np.arange(1300), np.random.default_rng(0).standard_normal(1300)
     for order in (slice(None), slice(None, None, -1)):
         found = columns(folder, x[order], z[order], decimals)
         assert found.dx == pytest.approx(1e-6 * step, rel=2.0 * 10.0**-decimals / x[-1] + 1e-12)
@@ -421,7 +421,7 @@ def test_points_given_twice_are_refused(folder):
         (
             "m",
             0.16,
-            "the field is 163.8 m with lengths in m, scans have 1e-07 to 1 m; were lengths in um meant",
+            "the field is 163.8 m with lengths in m, scans have 5e-05 to 1 m; were lengths in um meant",
         ),
         ("um", 5e-5, "the field is 5.12e-08 m with lengths in um"),
     ],
@@ -437,9 +437,55 @@ def test_a_field_of_no_scan_asks_back(folder, capsys, unit, step, says):
 
 
 def test_a_field_of_an_atomic_force_microscope_is_none_to_ask_about(folder, capsys):
-    x, walk = 5e-4 * np.arange(1024), np.cumsum(np.random.default_rng(0).standard_normal(1024))
-    (folder / "f.txt").write_text("".join(f"{a:.6g} {b:.6g}\n" for a, b in zip(x, walk, strict=True)))
+    """A map; a profile as short asks back."""
+    walk = np.cumsum(np.random.default_rng(0).standard_normal((72, 72)), axis=1)
+    rows = "".join(f"{7e-3 * i:.6g} {7e-3 * j:.6g} {1e-3 * walk[i, j]:.6g}\n" for i, j in np.ndindex(72, 72))
+    (folder / "f.txt").write_text(rows)
     run(capsys, "surface", "f.txt", "--unit", "um")
+    (folder / "p.txt").write_text("".join(f"{7e-3 * i:.6g} {walk.flat[i]:.6g}\n" for i in range(1024)))
+    assert "the field is 7.168e-06 m" in refused_line(capsys, "surface", "p.txt", "--unit", "um")
+
+
+@pytest.mark.parametrize(
+    ("heads", "factors", "options"),
+    [
+        ("X [mm];Z [um]", (1e3, 1e6), ()),
+        ("x (mm);z (um)", (1e3, 1e6), ()),
+        ("x/mm;z/um", (1e3, 1e6), ()),
+        ("\ufeffPosition [mm];Höhe [µm]", (1e3, 1e6), ()),
+        ("X;Z", (1e3, 1e6), ("--unit-x", "mm", "--unit-z", "um")),
+        ("X [mm];Z", (1e3, 1e6), ("--unit-z", "um")),
+        (None, (1e3, 1e6), ("--unit-x", "mm", "--unit-z", "um")),
+    ],
+)
+def test_units_of_each_column(folder, line, capsys, heads, factors, options):
+    """Each column its own, with decimal commas; all give what our own format gives."""
+    x = np.arange(line.z.size) * line.dx
+    numbers = [f"{factors[0] * a:.9g};{factors[1] * z:.9g}" for a, z in zip(x, line.z, strict=True)]
+    text = "\n".join([*([heads] if heads else []), *numbers]).replace(".", ",")
+    (folder / "titled.csv").write_text(text, encoding="utf-8")
+    found = json.loads(run(capsys, "surface", "titled.csv", *options, "--json").out)
+    ours = json.loads(run(capsys, "surface", "line.csv", "--json").out)
+    for one, other in zip(found["roughness"]["scans"], ours["roughness"]["scans"], strict=True):
+        assert one["Rq"] == pytest.approx(other["Rq"], rel=1e-6)  # of nine digits
+        assert one["slope"] == pytest.approx(other["slope"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("heads", "options", "says"),
+    [
+        ("X [mm];Z", (), "column 'Z' states no length unit; state it, one of m, mm"),
+        ("X [mm];Z [um]", ("--unit", "mm"), "column 'X' states its unit mm; leave mm out"),
+        ("X [mm];Z [V]", (), "unit 'V' is not one of m, mm, um, nm"),
+        ("X [mm];Z [mm]", (), "the rms height is"),
+        ("X [mm];Z [um]", ("--unit-z", "in"), "unit_z = 'in' is not one of m, mm, um, nm (--unit-z)"),
+    ],
+)
+def test_columns_whose_units_cannot_be(folder, line, capsys, heads, options, says):
+    x = np.arange(line.z.size) * line.dx
+    rows = "".join(f"{1e3 * a:.9g};{1e6 * z:.9g}\n" for a, z in zip(x, line.z, strict=True))
+    (folder / "titled.csv").write_text(f"{heads}\n{rows}")
+    assert says in refused_line(capsys, "surface", "titled.csv", *options)
 
 
 def test_units_as_instruments_write_them(folder, monkeypatch):

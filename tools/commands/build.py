@@ -2,8 +2,12 @@
 
 import argparse
 import json
+import sys
+import zipfile
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
+from xml.etree import ElementTree
 
 from jointfmu.commands.common import Commands, command, tell, without_package
 from jointfmu.files.writing import check_folder
@@ -12,6 +16,9 @@ from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
 from ..pressure import judge_file
+
+SHOWN = 3
+"""Values of a replaced FMU that are printed; `--json` has all."""
 
 
 def add(commands: Commands) -> None:
@@ -55,7 +62,10 @@ def _build(args: argparse.Namespace) -> int:
     try:
         from jointfmu_fmu_src import building
 
-        built = []
+        built, before = (
+            [],
+            {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")},
+        )
         with processes() if args.systems or len(args.names) != 1 else nullcontext() as pool:
             if args.names or not args.systems:
                 built += building.build(
@@ -67,13 +77,51 @@ def _build(args: argparse.Namespace) -> int:
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool)
     except ImportError as error:
         raise without_package(error, "build") from None
+    changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
     if args.json:
         judged = {joint: judgement.document() for joint, judgement in found.items()}
-        print(json.dumps({"built": [str(path) for path in built], "joints": judged}))
+        print(json.dumps({"built": [str(path) for path in built], "replaced": changed, "joints": judged}))
         return 0
     print("\n".join(f"built {path}" for path in built))
+    for path, values in changed.items():
+        said = [f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()]
+        more = f" and {len(said) - SHOWN} more" if len(said) > SHOWN else ""
+        print(f"replaced {path}: {', '.join(said[:SHOWN])}{more}", file=sys.stderr)
     for joint, judgement in found.items():
         tell(judgement, of=f"{joint}: ")
     return 0
+
+
+def _starts(path: Path) -> dict[str, str]:
+    """{parameter: start value as written} of an FMU; empty for a file that is none."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            description = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    except (OSError, KeyError, zipfile.BadZipFile, ElementTree.ParseError):
+        return {}
+    found = {}
+    for variable in description.iterfind("ModelVariables/*"):
+        values = {**variable.attrib, **{k: v for child in variable for k, v in child.attrib.items()}}
+        if variable.get("causality") == "parameter" and "start" in values:
+            found[variable.attrib["name"]] = values["start"]
+    return found
+
+
+def _replaced(
+    built: Sequence[Path], before: Mapping[Path, Mapping[str, str]]
+) -> dict[str, dict[str, list[str | None]]]:
+    """{file: {parameter: [value before, now]}} of FMUs that were there with others; None: without."""
+    found = {}
+    for path in built:
+        if old := before.get(path):
+            new = _starts(path)
+            values = {
+                name: [old.get(name), new.get(name)]
+                for name in {**old, **new}
+                if old.get(name) != new.get(name)
+            }
+            if values:
+                found[str(path)] = values
+    return found

@@ -92,8 +92,10 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """The joint whose procedure reads the file; ValueError if none does or an option is another joint's."""
     if len(choices) == 1:
         return next(iter(choices))
-    have = columns.names(args.file)
-    found = [joint for joint, procedure in choices.items() if procedure.column in have]
+    from ..fitting.heads import OTHERS
+
+    have = {*columns.names(args.file)}
+    found = [j for j, procedure in choices.items() if have & {procedure.column, *OTHERS[procedure.column]}]
     if len(found) != 1:
         wanted = " or ".join(f"{procedure.column} ({joint})" for joint, procedure in choices.items())
         raise ValueError(

@@ -15,6 +15,16 @@ LEAST = 8
 """Fewest rows of a file."""
 RUN = "run"
 """Column that tells measurements apart: one number for all rows of one."""
+OTHERS = {
+    "displacement": ("x", "s", "u", "weg", "verschiebung"),
+    "force": ("kraft", "load", "f"),
+    "angle": ("phi", "theta", "winkel", "drehwinkel", "rotation"),
+    "torque": ("tau", "moment", "drehmoment", "torsionsmoment"),
+    "time": ("t", "zeit"),
+    "frequency": ("freq", "frequenz", "f"),
+    "damping": ("zeta", "dämpfung", "dämpfungsgrad"),
+}
+"""{column: other names of it, in lower case}."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +64,7 @@ def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
 
     Raises ValueError, one line, for anything else.
     """
-    table = columns.read(path, heads.columns, LEAST)
+    table = columns.read(path, heads.columns, LEAST, OTHERS)
     table.require(heads.motion, heads.columns)
     have = set(table.columns)
     if {"frequency", heads.force} <= have:

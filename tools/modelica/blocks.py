@@ -60,7 +60,9 @@ def wrapper(model: Model) -> dict[str, object]:
         {
             "name": v.name,
             "type": f"Modelica.Units.SI.{UNITS[v.unit].quantity}",
-            "modifier": f"(min={number(v.low)}, start=0)" if v.low > -np.inf else "=0",
+            "modifier": f"(min={number(v.low)}, start=0)"
+            if v.low > -np.inf and not v.start
+            else f"={v.start:g}",
             "doc": text(v.doc),
         }
         for v in model.inputs

@@ -135,7 +135,7 @@ def _components(joints: Sequence[_Joint]) -> dict[str, str]:
         classes[name] = joint.templates.get_template(f"Components/{name}.mo").render(
             joint.component.texts(joint.record),
             meta=_meanings(joint.kind),
-            docs={v.name: v.doc for v in model.outputs},
+            docs={v.name: v.doc for v in (*model.inputs, *model.outputs)},
             html=_documentation(model, joint.file),
             record=joint.record.name,
         )

@@ -51,7 +51,7 @@ def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
         kind: [v.name for v in description.modelVariables if v.causality == kind]
         for kind in ("input", "output")
     }
-    if names["input"] != INPUTS or names["output"][:2] != TORQUES:
+    if names["input"][: len(INPUTS)] != INPUTS or names["output"][:2] != TORQUES:
         raise ValueError(
             f"{fmu}: has the inputs {', '.join(names['input']) or 'none'}; expected a joint with "
             f"{', '.join(INPUTS)} and the outputs {', '.join(TORQUES)}"

@@ -1,4 +1,5 @@
-/* A joint between two flanges (phi1 w1 phi2 w2 in, tau1 tau2 out first) as MuJoCo's passive force and sensor.
+/* A joint between two flanges (phi1 w1 phi2 w2 in, tau1 tau2 out first) as MuJoCo's passive force and sensor;
+ * further inputs stay at their start.
  *
  * Compiled with the C sources of an FMU. Each plugin instance has an instance of the FMU; its path lies in
  * MuJoCo's plugin state (before, after, inputs, accepted), so that mjData can be copied, saved and set. */
@@ -13,7 +14,7 @@
 
 enum { PHI1, W1, PHI2, W2 };
 enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_INPUTS + 1 : 0 };
-_Static_assert(N_INPUTS == 4 && N_OUTPUTS >= 2 && !MOVES, "a joint between two flanges");
+_Static_assert(N_INPUTS > W2 && N_OUTPUTS >= 2 && !MOVES, "a joint between two flanges");
 
 typedef struct {
     Instance *instance;

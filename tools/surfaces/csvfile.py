@@ -7,12 +7,13 @@
 
 import contextlib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.columns import cells, check_length, content, number, rows, separator
+from jointfmu.files.columns import Head, cells, check_length, content, head, number, rows, separator
+from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import measured, sizes
 
 from . import grid
@@ -60,6 +61,42 @@ def read(path: Path, line: str) -> tuple[Heights, str]:
     return columns(path, table(path), [factors[name] for name in needed]), units["x"]
 
 
+def titles(path: Path) -> list[Head] | None:
+    """Name and unit of two or three columns in the first line (x, z or x, y, z), if numbers are below it."""
+    try:
+        lines = content(path)[:2]
+    except ValueError:
+        return None  # no text: an instrument's
+    mark = separator(lines[0][1]) if len(lines) == 2 else None
+    if mark is None:
+        return None
+    words, values = (cells(line, mark) for _, line in lines)
+    named = len(words) in (2, 3) and all(number(word) is None and word.strip() for word in words)
+    below = len(values) == len(words) and all(number(cell) is not None for cell in values)
+    return [head(word) for word in words] if named and below else None
+
+
+def titled(path: Path, heads: Sequence[Head], given: Mapping[str, str | None]) -> tuple[Heights, str]:
+    """Columns under a line of titles, and the unit of x.
+
+    given : {"x", "z": unit of columns that state none}; y is as x
+
+    Raises ValueError for a column that states no unit and is given none, or both.
+    """
+    stated = []
+    for axis, (name, own) in zip(LAYOUTS["profile" if len(heads) == 2 else "points"], heads, strict=True):
+        other = given["z" if axis == "z" else "x"]
+        if own and other:
+            raise Refusal(f"{path}: column {name!r} states its unit {own}; leave {other} out", "unit")
+        if not own and not other:
+            raise Refusal(
+                f"{path}: column {name!r} states no length unit; state it, one of {ALLOWED}", "unit"
+            )
+        stated.append(str(own or other))
+    factors = [unit(text, f"{path}: {name}") for text, (name, _) in zip(stated, heads, strict=True)]
+    return columns(path, table(path, 1), factors), stated[0]
+
+
 def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
     """A spacing [m] and the unit in which it is stated."""
     match = re.search(rf"\b{name}\s*=\s*([-+\d.]+(?:[eE][-+]?\d+)?)\s*([a-zµμ]*)", text)
@@ -73,9 +110,10 @@ def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
         raise ValueError(f"{path}: {name} = {match[1]!r} is no number; write it as {name} = 0.5 um") from None
 
 
-def table(path: Path) -> Array:
-    """The numbers of a file (comma, semicolon, tab or blanks; # begins a comment); empty cells are NaN."""
-    lines = [(i, line.partition("#")[0]) for i, line in content(path)]
+def table(path: Path, above: int = 0) -> Array:
+    """The numbers of a file below some lines (semicolon, tab, comma or blanks; # begins a comment); empty
+    cells are NaN."""
+    lines = [(i, line.partition("#")[0]) for i, line in content(path)[above:]]
     if not lines:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
     mark = separator(lines[0][1])

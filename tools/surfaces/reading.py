@@ -3,16 +3,23 @@
 import contextlib
 import io
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from jointfmu.files.columns import cells, number, separator
 from jointfmu.quantity.refusal import Refusal
 
 from . import csvfile, sift
 from .heights import Areal, Heights, Profile
 
+SHORTEST = 50e-6
+"""Shortest profile [m] that is taken without asking back: a stylus' cut-off is longer."""
+ROUGHEST = 50e-6
+"""Largest root mean square height [m] of a surface that is taken without asking back: rough castings have
+less."""
 USUAL = (1e-7, 1.0)
 """Shortest and longest field [m] that is taken without asking back."""
 LIKELY = ("mm", "um", "nm")
@@ -23,10 +30,18 @@ TEXT = (".csv", ".txt", ".dat", ".xy", ".prf")
 """Suffixes of files that may hold bare columns of numbers."""
 
 
-def read(path: str | Path, unit: str | None = None, any_size: bool = False) -> Heights:
+def read(
+    path: str | Path,
+    unit: str | None = None,
+    any_size: bool = False,
+    unit_x: str | None = None,
+    unit_z: str | None = None,
+) -> Heights:
     """Heights in metres of a profile or an areal map.
 
     unit     : length unit of a file that states none (x, y and z alike); refused beside one's own
+    unit_x   : the same of x and y in columns, in place of `unit`
+    unit_z   : the same of z
     any_size : take a field beyond USUAL as it is
 
     Raises ValueError with one line: no file, no surface, unit missing or stated twice, too few points,
@@ -35,16 +50,25 @@ def read(path: str | Path, unit: str | None = None, any_size: bool = False) -> H
     path = Path(path)
     if not path.is_file():
         raise ValueError(f"{path}: is no file; expected height data")
-    if unit is not None and unit not in csvfile.LENGTHS:
-        raise Refusal(f"unit = {unit!r} is not one of {csvfile.ALLOWED}", "unit")
+    given = {"x": unit_x or unit, "z": unit_z or unit}
+    for name, one in {"unit": unit, "unit_x": unit_x, "unit_z": unit_z}.items():
+        if one is not None and one not in csvfile.LENGTHS:
+            raise Refusal(f"{name} = {one!r} is not one of {csvfile.ALLOWED}", name)
     if path.stat().st_size == 0:
         raise ValueError(f"{path}: is no surface: the file is empty")
+    text = path.suffix.lower() in TEXT
     if line := csvfile.header(path):
-        if unit is not None:
-            raise Refusal(f"{path}: states its units itself; leave the unit {unit} out", "unit")
+        if any(given.values()):
+            one = next(filter(None, given.values()))
+            raise Refusal(f"{path}: states its units itself; leave the unit {one} out", "unit")
         heights, stated = csvfile.read(path, line)
-    elif path.suffix.lower() in TEXT and _bare(path):
-        heights, stated = _bare_columns(path, unit), str(unit)
+    elif text and (titles := csvfile.titles(path)):
+        heights, stated = csvfile.titled(path, titles, given)
+    elif text and _bare(path):
+        heights, stated = _bare_columns(path, given), str(given["x"])
+    elif unit_x or unit_z:
+        one = "unit_x" if unit_x else "unit_z"
+        raise Refusal(f"{path}: is no table of columns; expected one unit for all axes", one)
     else:
         heights, stated = _instrument(path, unit)
     if not any_size:
@@ -54,7 +78,7 @@ def read(path: str | Path, unit: str | None = None, any_size: bool = False) -> H
 
 def _usual(heights: Heights, unit: str) -> None:
     """Refuse a field that nobody scans, naming the unit that was probably meant."""
-    low, high = USUAL
+    low, high = USUAL if isinstance(heights, Areal) else (SHORTEST, USUAL[1])
     if max(heights.lengths) <= high and max(heights.lengths) >= low:
         return
     factor = _metres(unit)
@@ -76,19 +100,19 @@ def _without_unit(path: Path) -> Refusal:
 def _bare(path: Path) -> bool:
     """Whether a text file begins with a line of two or three numbers, or holds nothing readable."""
     with path.open("rb") as file:
-        first = file.readline(10000).decode("utf-8", errors="replace")
-    cells = first.replace(",", " ").replace(";", " ").split()
-    try:
-        return len([float(cell) for cell in cells]) in (2, 3)
-    except ValueError:
-        return False
+        first = file.readline(10000).decode("utf-8-sig", errors="replace").rstrip("\r\n")
+    mark = separator(first)
+    row = cells(first, mark) if mark else first.split()
+    return len(row) in (2, 3) and all(number(cell) is not None for cell in row)
 
 
-def _bare_columns(path: Path, unit: str | None) -> Heights:
-    if unit is None:
-        raise _without_unit(path)
+def _bare_columns(path: Path, given: Mapping[str, str | None]) -> Heights:
     values = csvfile.table(path)
-    return csvfile.columns(path, values, [csvfile.LENGTHS[unit]] * values.shape[1])
+    x, z = given["x"], given["z"]
+    if x is None or z is None:
+        raise _without_unit(path)
+    across = [csvfile.LENGTHS[x]] * (values.shape[1] - 1)
+    return csvfile.columns(path, values, [*across, csvfile.LENGTHS[z]])
 
 
 def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:

@@ -84,7 +84,7 @@ def _ratio(path: Path, name: str, drive: Mapping[str, object]) -> float:
     """Of the drive of an axis: its own, or that of its parameters."""
     model = drive.get("model")
     if model not in MODELS or "ratio" not in MODELS[model].parameter_fields():
-        able = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) == 4]
+        able = [n for n, m in MODELS.items() if "ratio" in m.parameter_fields() and len(m.inputs) >= 4]
         raise ValueError(f"arm.{name}.model = {model!r}, allowed are {', '.join(able)}")
     entry = drive.get("ratio")
     if isinstance(entry, Mapping) and isinstance(entry.get("value"), int | float):

@@ -1,14 +1,16 @@
 """Columns of numbers in CSV: every column states its unit, nothing is guessed.
 
 The first line that is no comment (#) names the columns, `torque [N.m], angle [arcmin]`. Columns are
-separated by comma, semicolon or tab; numbers have a decimal point. Columns that are not asked for
-are passed over. What is written has commas.
+separated by semicolon, tab or comma; numbers have a decimal point or, where the comma divides no
+columns, a comma. A unit may also be written `Angle (deg)` or `F / N`. Columns that are not asked for are
+passed over. What is written has commas and points.
 """
 
 import csv
 import io
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -25,6 +27,8 @@ Head: TypeAlias = tuple[str, str | None]
 """Name and unit of a column; None: it states none."""
 
 _HEADING = re.compile(r"\s*(?P<name>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\[\]]*?)\s*\])?\s*$")
+_OTHERWISE = re.compile(r"\s*(?P<name>[^()/]*?)\s*(?:\(\s*(?P<one>[^()]+?)\s*\)|/\s*(?P<two>\S+))\s*$")
+"""`name (unit)` and `name / unit`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +55,12 @@ def heading(spec: Mapping[str, Sizes]) -> str:
     return ", ".join(f"{name} [{' | '.join(units)}]" for name, units in spec.items())
 
 
-def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
+def read(
+    path: str | Path, spec: Mapping[str, Sizes], least: int, others: Mapping[str, Sequence[str]] | None = None
+) -> Columns:
     """Read the columns named in `spec` that a file has.
+
+    others : {name in `spec`: other names in lower case}; the unit tells which of several is meant
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
     without or with a foreign unit or given twice, a row of another length, a value that is no finite
@@ -64,7 +72,7 @@ def read(path: str | Path, spec: Mapping[str, Sizes], least: int) -> Columns:
         raise ValueError(f"{path}: is empty; expected columns {heading(spec)}")
     mark = separator(lines[0][1])
     head = cells(lines[0][1], mark)
-    places = _places(path, head, spec)
+    places = _places(path, head, spec, others or {})
     if len(lines) - 1 < least:
         raise ValueError(f"{path}: has {len(lines) - 1} points, at least {least} are needed")
     numbers = [number for number, _ in lines[1:]]
@@ -83,8 +91,16 @@ def names(path: str | Path) -> list[str]:
     lines = content(Path(path))
     if not lines:
         return []
-    heads = (_HEADING.match(cell) for cell in cells(lines[0][1], separator(lines[0][1])))
-    return [match["name"].lower() for match in heads if match]
+    return [head(cell)[0].lower() for cell in cells(lines[0][1], separator(lines[0][1]))]
+
+
+def head(cell: str) -> Head:
+    """Name and unit of a heading: `angle [deg]`, `Angle (deg)` or `angle / deg`."""
+    if match := _HEADING.match(cell):
+        if match["unit"] is None and (other := _OTHERWISE.match(cell)):
+            return other["name"], other["one"] or other["two"]
+        return match["name"], match["unit"]
+    return cell.strip(), None
 
 
 def content(path: Path) -> list[tuple[int, str]]:
@@ -103,9 +119,8 @@ def content(path: Path) -> list[tuple[int, str]]:
 
 
 def separator(line: str) -> str | None:
-    """What separates the columns of a line: the most frequent of semicolon, comma and tab; None: nothing."""
-    mark = max(";,\t", key=line.count)
-    return mark if mark in line else None
+    """What separates the columns of a line: semicolon or tab if it has any, else comma; None: nothing."""
+    return next((mark for mark in ";\t," if mark in line), None)
 
 
 def cells(line: str, mark: str | None) -> list[str]:
@@ -120,39 +135,53 @@ def check_length(path: Path, line: int, row: Sequence[str], count: int) -> None:
 
 
 def number(cell: str) -> float | None:
-    """A cell as a number with a decimal point; None if it is none."""
+    """A cell as a number with a decimal point or comma; None if it is none."""
     try:
-        return float(cell)
+        return float(cell if "." in cell else cell.replace(",", ".", 1))
     except ValueError:
         return None
 
 
-def _places(path: Path, head: Sequence[str], spec: Mapping[str, Sizes]) -> dict[str, tuple[int, float, str]]:
+def _places(
+    path: Path, cells: Sequence[str], spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
+) -> dict[str, tuple[int, float, str]]:
     """{name: (place, size of its unit, the unit)} of the columns asked for."""
     places: dict[str, tuple[int, float, str]] = {}
-    for place, cell in enumerate(head):
-        match = _HEADING.match(cell)
-        name = match["name"].lower() if match else ""
-        if not match or name not in spec:
+    for place, cell in enumerate(cells):
+        name, unit = head(cell)
+        name = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)
+        if name not in spec:
             continue
         allowed = ", ".join(spec[name])
         if name in places:
             raise ValueError(f"{path}: column {name!r} is given twice, allowed is once")
-        if match["unit"] is None:
+        if unit is None:
             raise ValueError(
                 f"{path}: column {name!r} has no unit, expected e.g. {name} [{next(iter(spec[name]))}]"
             )
         try:
-            places[name] = place, measured(match["unit"], spec[name]), match["unit"]
+            places[name] = place, measured(unit, spec[name]), unit
         except ValueError:
             raise ValueError(
-                f"{path}: column {name!r} has unit {match['unit']!r}, allowed are {allowed} and others that "
+                f"{path}: column {name!r} has unit {unit!r}, allowed are {allowed} and others that "
                 "measure the same"
             ) from None
     if not places:
-        shown = ", ".join(cell.strip() for cell in head)[:80]
+        shown = ", ".join(cell.strip() for cell in cells)[:80]
         raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
     return places
+
+
+def _meant(
+    word: str, unit: str | None, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]
+) -> str:
+    """The column that has another name, by its unit; else the name itself."""
+    for name, words in others.items():
+        if word in words and name in spec and unit is not None:
+            with suppress(ValueError):
+                measured(unit, spec[name])
+                return name
+    return word
 
 
 def _column(path: Path, name: str, numbers: Sequence[int], column: Sequence[str]) -> Array:

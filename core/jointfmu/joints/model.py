@@ -44,13 +44,17 @@ class Spring(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An input or output."""
+    """An input or output.
+
+    start : of an input that no parameter file gives
+    """
 
     name: str
     unit: str
     doc: str
     nominal: float = 1.0
     low: float = -math.inf
+    start: float = 0.0
 
     @property
     def interval(self) -> Interval:

@@ -23,6 +23,7 @@ _SYMBOLS: dict[str, tuple[Fraction | int, dict[str, int]]] = {
     "kg": (1, {"kg": 1}),
     "m": (1, {"m": 1}),
     "s": (1, {"s": 1}),
+    "K": (1, {"K": 1}),
     "rad": (1, {"rad": 1}),
     "Hz": (1, {"s": -1}),
     "N": (1, _FORCE),
@@ -171,12 +172,18 @@ UNITS: Mapping[str, Unit] = {
         "Pa/m": ("PressureGradient", "MPa/um"),
         "Pa/m2": ("PressureCurvature", "MPa/um2"),
         "J": ("Energy",),
+        "K": ("ThermodynamicTemperature",),
+        "1/K": ("LinearTemperatureCoefficient",),
         "kg": ("Mass",),
         "kg.m2": ("MomentOfInertia",),
         "kg/m3": ("Density",),
     }.items()
 }
 """The SI units of all variables, parameters and files: {unit: (quantity, display units)}."""
+
+CELSIUS = "degC"
+KELVIN_AT_ZERO = 273.15
+"""The display unit of temperatures in FMUs, and its zero in K; files and pages have the SI unit."""
 
 
 def display_unit(unit: str, typical: float) -> str:

@@ -41,10 +41,11 @@ def _functions(g: Graph, model: Model) -> None:
         out = {"phi_rel": x, **spring.parts(drive, load, stiffness)}
     else:
         state = spring.State(x, load, stiffness, slid, error, slope)
-        argument, brake = spring.wind_up(drive, inputs, error), friction.stiffness(drive)
-        most = friction.limits(drive, inputs[1], spring.transmitted(drive, inputs, state))
-        turn = [*inputs[:2], *most]
-        out = spring.exported(drive, inputs, state, dry)
+        *motion, temperature = inputs
+        argument, brake = spring.wind_up(drive, motion, error), friction.stiffness(drive)
+        tau = spring.transmitted(drive, motion, state)
+        turn = [*motion[:2], *friction.limits(drive, motion[1], tau, temperature)]
+        out = spring.exported(drive, motion, temperature, state, dry)
     doc = "inputs, kinematic error -> argument of the curve"
     g.add_with_seed("argument", doc, [*inputs, error], [argument])
     g.add("brake", "-> stiffness of the friction while all stick", [], [brake])

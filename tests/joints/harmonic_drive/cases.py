@@ -23,7 +23,12 @@ FRICTION = {
     "load_loss": 0.1,
     "presliding": 0.02,
     "temperature_factor": 1.2,
+    "viscous_temperature_coefficient": 0.03,
+    "dry_temperature_coefficient": 0.01,
 }
+MOTION = ("phi1", "w1", "phi2", "w2", "temperature")
+WARM = {"temperature": (253.15, 353.15)}
+"""[K]: from -20 to 80 degrees C."""
 UNITS = {
     "friction_coulomb": "N.m",
     "friction_stribeck": "N.m",
@@ -50,7 +55,7 @@ relative to mu."""
 SPRING = Case(
     name="HarmonicDriveSpring",
     description=Description(
-        inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
+        inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s", "temperature": "K"},
         results={
             "tau1": "N.m",
             "tau2": "N.m",
@@ -62,17 +67,17 @@ SPRING = Case(
         },
         parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
         calibration=CALIBRATED,
-        shown={"phi2": "deg"},
+        shown={"phi2": "deg", "temperature": "degC"},
         flanges={"flange1": "phi1 w1 tau1", "flange2": "phi2 w2 tau2"},
         domain="Rotational",
         linear=True,
         others={"ratio": 50.0, "d": 0.25},
     ),
     numbers=Numbers(
-        outputs=lambda spring, v: spring.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
-        ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5)},
-        span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5)},
-        state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02},
+        outputs=lambda spring, v: spring.motion(*(v[name] for name in MOTION)),
+        ranges={"phi1": (-0.1, 0.1), "w1": (-50, 50), "phi2": (-3e-3, 3e-3), "w2": (-0.5, 0.5), **WARM},
+        span={"phi1": (-0.05, 0.05), "w1": (-50, 50), "phi2": (-3.8e-3, 3.8e-3), "w2": (-0.5, 0.5), **WARM},
+        state={"phi1": 0.01, "w1": 0.3, "phi2": 6e-4, "w2": -0.02, "temperature": 310.0},
         good={"phi2": 6e-4},
     ),
     tuning=Tuning(

@@ -23,7 +23,7 @@ def test_a_row_keeps_its_angles(capsys, tmp_path):
     assert cli.main(["new", "harmonic-drive", *ROW, *words, "--out", str(path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     file = load(path)
-    assert (file.name, file.values.ratio, file.values.rated_torque) == ("page 7", 100.0, 7.8)
+    assert (file.name, file.values.ratio, file.values.rated_torque) == ("page 7", -100.0, 7.8)
     assert file.origins["rated_torque"] == "catalogue"
     angle = 2.0 / 4700.0 + 4.9 / 6100.0
     assert float(windup(file.values, 6.9)) == pytest.approx(angle, rel=0.01)
@@ -50,12 +50,13 @@ def test_a_drive_by_its_name(capsys, tmp_path):
     path = tmp_path / "my.toml"
     assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-17-100", "--out", str(path)]) == 0
     out, err = capsys.readouterr()
+    assert "ratio              -100  circular spline fixed, output the flexspline: it turns against" in out
     assert "limit for the actuators CHA-17A" in out
     assert "lost_motion" in out
     assert "estimates, not of the catalogue's row: d" in err
     file = load(path)
     d = file.values
-    assert (file.law, file.name, d.ratio) == ("catalogue", "CSG-17-100", 100.0)
+    assert (file.law, file.name, d.ratio) == ("catalogue", "CSG-17-100", -100.0)
     assert (d.K1, d.K2, d.K3, d.T1, d.T2) == (1e4, 1.4e4, 1.6e4, 3.9, 12.0)
     assert (d.rated_torque, d.max_torque, d.hysteresis_loss) == (31.0, 70.0, 0.0)
     assert file.origins["rated_torque"] == "catalogue"
@@ -95,3 +96,31 @@ def test_a_drive_that_is_not_known_is_refused(capsys, words, text):
 )
 def test_a_row_that_cannot_be_is_refused(capsys, words, text):
     assert text in refused_line(capsys, "new", "harmonic-drive", *ROW, *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "ratio"),
+    [
+        ([], -80.0),
+        (["--fixed", "circular-spline"], -80.0),
+        (["--fixed", "flexspline"], 81.0),
+        (["--fixed", "wave-generator"], 81.0 / 80.0),
+        (["--ratio", "-50"], -50.0),
+    ],
+)
+def test_what_is_fixed_decides_the_ratio(capsys, words, ratio):
+    """Of teeth: 2 R on the flexspline, 2 more on the circular spline; friction is what is printed for R."""
+    asked = ["new", "harmonic-drive", "--catalogue", "CSG-17-80", "--starting-torque", "0.029"]
+    if "wave-generator" in words:
+        assert "stands with --fixed wave-generator" in refused_line(capsys, *asked, *words)
+        asked = asked[:4]
+    assert cli.main([*asked, *words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["parameters"]["ratio"] == pytest.approx(ratio, rel=1e-15)
+    assert found["facts"]["ratio"]["value"] == pytest.approx(ratio, rel=1e-15)
+    assert (found["parameters"]["friction_coulomb"] == 0.0) == ("wave-generator" in words)
+
+
+def test_a_ratio_with_its_sign_leaves_nothing_to_be_fixed(capsys):
+    asked = ("new", "harmonic-drive", "--catalogue", "CSG-17-80", "--ratio=-80", "--fixed", "flexspline")
+    assert "--fixed flexspline beside --ratio = -80, whose sign is stated" in refused_line(capsys, *asked)

@@ -78,10 +78,10 @@ def begin(instance: Fmu, values: Mapping[str, float]) -> Fmu:
 
 
 def package(name: str, changes: Mapping[str, float] = LOOP) -> Iterator[Any]:
-    """Send inputs; get outputs and memory after the way to them, step by step, from inputs that are zero."""
+    """Send inputs; get outputs and memory after the way to them, step by step, from their start."""
     model, file = MODELS[name], default("harmonic_drive").with_values(changes, "user", "test")
     spring = model.spring(file.values)
-    inputs = dict.fromkeys((v.name for v in model.inputs), 0.0)
+    inputs = {v.name: v.start for v in model.inputs}
     memory = model.evolve(spring, inputs, model.rest(spring))[1]
     found = None
     while True:

@@ -37,6 +37,10 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
       type Torque = Real(quantity="Torque", unit="N.m");
       type Energy = Real(quantity="Energy", unit="J");
       type Power = Real(quantity="Power", unit="W");
+      type HeatFlowRate = Real(quantity="Power", unit="W");
+      type ThermodynamicTemperature = Real(quantity="ThermodynamicTemperature", unit="K", min=0, start=288.15, nominal=300);
+      type Temperature = ThermodynamicTemperature;
+      type LinearTemperatureCoefficient = Real(quantity="LinearTemperatureCoefficient", unit="1/K");
       type RotationalSpringConstant = Real(quantity="RotationalSpringConstant", unit="N.m/rad");
       type RotationalDampingConstant = Real(quantity="RotationalDampingConstant", unit="N.m.s/rad");
       type TranslationalSpringConstant = Real(quantity="TranslationalSpringConstant", unit="N/m");
@@ -100,6 +104,17 @@ package Modelica "Stand-in for the Modelica Standard Library 4.0.0: only what Jo
       end Gain;
     end Math;
   end Blocks;
+
+  package Thermal
+    package HeatTransfer
+      package Interfaces
+        connector HeatPort_a
+          Units.SI.Temperature T;
+          flow Units.SI.HeatFlowRate Q_flow;
+        end HeatPort_a;
+      end Interfaces;
+    end HeatTransfer;
+  end Thermal;
 
   package Mechanics
     package Rotational

@@ -2,6 +2,7 @@
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointfmu import plots
 from jointfmu.commands.common import IMPLIED, Commands, Parser, command, written
@@ -11,9 +12,12 @@ from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS
-from ...surfaces.reading import read
+from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.series import METHODS, SIDES
 from . import synthesize
+
+if TYPE_CHECKING:
+    from ...surfaces.results import Identification
 
 SUBCOMMANDS = IMPLIED["surface"]
 """The first is what the command does where none is named."""
@@ -29,6 +33,8 @@ def add(commands: Commands) -> None:
     find = command(steps, SUBCOMMANDS[0], _identify, text)
     find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
     find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
+    find.add_argument("--unit-x", metavar="UNIT", help="the same of x and y alone, in columns")
+    find.add_argument("--unit-z", metavar="UNIT", help="the same of z alone")
     find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
     find.add_argument("--keep-spikes", action="store_true", help="take spikes for heights, not as missing")
     find.add_argument(
@@ -69,13 +75,14 @@ def add(commands: Commands) -> None:
 def _identify(args: argparse.Namespace) -> int:
     base = _base(args)
     _check(args)
-    heights = [read(path, args.unit, args.force) for path in args.files]
+    heights = [read(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
     from ...surfaces.identify import identify  # scipy: after what is refused at once
     from ...surfaces.joint_parameters import with_surface
     from . import results as surface_results
 
     span = tuple(args.span) if args.span else None
     identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
+    _usual(identified, args.force)
     file = with_surface(base, identified, args.method, args.force) if base else None
     if args.out and file:
         write_text(args.out, dump(file))
@@ -85,6 +92,17 @@ def _identify(args: argparse.Namespace) -> int:
         draw(identified, args.plot)
     surface_results.show(identified, heights, file, args)
     return 0
+
+
+def _usual(identified: "Identification", force: bool) -> None:
+    """Refuse heights that no surface in contact has, most often those of a wrong unit."""
+    for name, scan in zip(identified.names, identified.scans, strict=True):
+        if scan.rms > ROUGHEST and not force:
+            raise Refusal(
+                f"{name}: the rms height is {1e6 * scan.rms:.4g} um, surfaces in contact have up to "
+                f"{1e6 * ROUGHEST:g} um; state the right unit of z, or that the height is right",
+                "force",
+            )
 
 
 def _check(args: argparse.Namespace) -> None:

@@ -53,12 +53,13 @@ class Sprung:
         assert model.rest
         self._model, self._spring = model, model.spring(file.values)
         self._memory = model.rest(self._spring)
+        self._rest = {v.name: file.start(v.name) for v in model.inputs}
         self.set(0.0, 0.0, 0.0, 0.0)
         self.step(0.0, 0.0)
 
     def set(self, *values: float) -> None:
         """Give the inputs their values."""
-        self._inputs = dict(zip(_MOTION, values, strict=True))
+        self._inputs = {**self._rest, **dict(zip(_MOTION, values, strict=True))}
 
     def get(self) -> list[float]:
         """The torques at the present inputs, and the stiffness."""

@@ -1,6 +1,7 @@
 """A harmonic drive from its catalogue: by its name, or by the row that is printed there."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ...catalogue import Printed
@@ -16,6 +17,12 @@ _FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]:
 _UNITS: Mapping[str, str] = {"ratio": "1", **_ROW, "rated_torque": "N.m", **_FRICTION}
 DAMPING = 1e-4
 """d over K1 [s]: 2 % of critical where the drive swings with 60 Hz."""
+FIXED: Mapping[str, str] = {
+    "circular-spline": "circular spline fixed, output the flexspline: it turns against the motor",
+    "flexspline": "flexspline fixed, output the circular spline: with the motor, one more than printed",
+    "wave-generator": "wave generator fixed, from flexspline to circular spline: 1 + 1/(ratio printed)",
+}
+"""{part of the drive that is held: what that makes of the ratio}."""
 PEAK = 4.0
 """max_torque over rated torque [1] where no repeated peak torque is known: about that of catalogue drives."""
 
@@ -38,14 +45,34 @@ def _drive(given: Given) -> NewJoint:
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
         printed["rated_torque"] = Printed(printed["T2"].value, "estimate", text)
-    brakes = _brakes(given, printed)
+    brakes, (printed["ratio"], held) = _brakes(given, printed), _held(given, printed["ratio"])
     printed = {name: number for name, number in printed.items() if name not in QUOTED}
     if given["corner"] is not None:
         if given["law"] == "hu2023":
             raise ValueError("--corner is of the catalogue's lines; --law hu2023 has no corners")
         corner = number("corner", given["corner"], "1", "1", None)
         printed["corner"] = Printed(corner, "user", "stated" if corner else "stated: the lines, with kinks")
-    return (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
+    made = (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
+    return replace(made, facts={"ratio": (printed["ratio"].value, "1", held), **made.facts})
+
+
+def _held(given: Given, ratio: Printed) -> tuple[Printed, str]:
+    """Speed of the driving part over that of the output, from the ratio that is printed; and why."""
+    if ratio.value < 0.0:
+        if given["fixed"]:
+            raise ValueError(
+                f"--fixed {given['fixed']} beside --ratio = {ratio.value:g}, whose sign is stated; expected "
+                "the ratio as catalogues print it, above 0"
+            )
+        return ratio, "as stated, with its sign"
+    fixed = given["fixed"] or next(iter(FIXED))
+    value = {
+        "circular-spline": -ratio.value,
+        "flexspline": ratio.value + 1.0,
+        "wave-generator": 1.0 + 1.0 / ratio.value,
+    }[fixed]
+    source = f"{ratio.source}; {fixed.replace('-', ' ')} fixed"
+    return ratio._replace(value=value, source=source), FIXED[fixed]
 
 
 def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
@@ -53,6 +80,12 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
     stated = [name for name in QUOTED if given[name] is not None]
     if "efficiency" in stated and not printed["efficiency"].value < 1.0:
         raise ValueError(f"--efficiency = {given['efficiency']!r} is outside (0, 1)")
+    if given["fixed"] == "wave-generator":
+        if stated:
+            raise ValueError(
+                f"{flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
+            )
+        return {}
     start = printed.get("starting_torque")
     if start is None or start.kind == "estimate":
         if stated:
@@ -126,8 +159,6 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
 
 def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name: str) -> NewJoint:
     """The drive with the law of Hu 2023 fitted to the row."""
-    from dataclasses import replace
-
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
@@ -158,7 +189,14 @@ NEW = Drawing(
     example="--catalogue CSG-17-100",
     options=(
         Option(name="catalogue", text="its name, see jointfmu catalogue", metavar="NAME"),
-        Option(name="ratio", text="speed ratio [1], negative where output and motor turn apart", metavar="R"),
+        Option(
+            name="ratio", text="as catalogues print it [1], above 0; negative: with its sign", metavar="R"
+        ),
+        Option(
+            name="fixed",
+            text="what is held, which decides the sign of the ratio (circular-spline: it is negative)",
+            choices=tuple(FIXED),
+        ),
         Option(name="K1", text="stiffness below T1 [N.m/rad]", metavar="K"),
         Option(name="K2", text="stiffness between T1 and T2 [N.m/rad]", metavar="K"),
         Option(name="K3", text="stiffness above T2 [N.m/rad]", metavar="K"),

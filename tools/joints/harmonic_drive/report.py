@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.friction import Friction
+from jointfmu.joints.harmonic_drive.friction import REFERENCE, Friction, limits, viscous
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
@@ -14,6 +14,8 @@ from .efficiency import spring_bench
 
 SPEEDS = (500, 2000, 3500)
 """Of the motor [rev/min]."""
+KELVIN = (263.15, REFERENCE, 333.15)
+"""Temperatures of the lubricant [K]: where catalogues begin, where they hold, and warm."""
 _LOADS = 41
 _MOST = 10.0
 """Torque up to which back-driving is sought, over the rated torque [1]."""
@@ -38,7 +40,32 @@ def friction(model: Model, file: ParameterFile) -> list[Figure]:
         f"that drives the motor back: {moved}. Efficiency against a load, without hysteresis and kinematic "
         "error, up to the rated torque; speeds are those of the motor."
     )
-    return [Figure(title, text, [Panel("Efficiency", "load [N m]", "efficiency", series)])]
+    over_load = Panel("Efficiency", "load [N m]", "efficiency", series)
+    return [Figure(title, text, [over_load]), _over_speed(file)]
+
+
+def _over_speed(file: ParameterFile) -> Figure:
+    """Friction of the drive without load over the motor's speed, at three temperatures."""
+    drive, rpm = file.values, np.linspace(0.0, max(SPEEDS), _LOADS)
+    w1 = rpm * math.pi / 30.0
+    series = [
+        Series(
+            f"{kelvin - 273.15:g} degrees C",
+            rpm,
+            np.asarray(limits(drive, w1, 0.0, kelvin)[0] + viscous(drive, w1, kelvin)),
+        )
+        for kelvin in KELVIN
+    ]
+    told = [
+        f"{name} = {file.flat[name]:g} 1/K ({file.sources.get(name, 'default choice')})"
+        for name in ("viscous_temperature_coefficient", "dry_temperature_coefficient")
+    ]
+    text = (
+        "Torque that turns the wave generator without load, over the motor's speed. The parameters hold at "
+        f"{REFERENCE - 273.15:g} degrees C; other temperatures follow from {' and '.join(told)}."
+    )
+    panel = Panel("Friction over speed", "speed of the motor [rev/min]", "torque [N m]", series)
+    return Figure("Friction over speed and temperature", text, [panel])
 
 
 FIGURES = {"HarmonicDriveSpring": friction}

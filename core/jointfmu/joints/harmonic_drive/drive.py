@@ -8,6 +8,9 @@ import numpy as np
 
 from ...quantity import Interval, Limit, Number, check, check_limits, quantity, where
 
+MOST_COEFFICIENT = 0.2
+"""Most change of friction per kelvin over its value [1/K]: twice that of the thickest cylinder oil."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Drive(ABC):
@@ -52,8 +55,20 @@ class Drive(ABC):
         gt=0.0,
         default=0.01,
     )
-    temperature_factor: float = quantity(
-        "1", "friction over that of the reference temperature", ge=0.0, default=1.0
+    temperature_factor: float = quantity("1", "factor of all friction", ge=0.0, default=1.0)
+    viscous_temperature_coefficient: float = quantity(
+        "1/K",
+        "fall of friction_viscous per kelvin above 293.15 K, over its value; 0: none",
+        ge=-MOST_COEFFICIENT,
+        le=MOST_COEFFICIENT,
+        default=0.0,
+    )
+    dry_temperature_coefficient: float = quantity(
+        "1/K",
+        "fall of dry friction per kelvin above 293.15 K, over its value; 0: none",
+        ge=-MOST_COEFFICIENT,
+        le=MOST_COEFFICIENT,
+        default=0.0,
     )
     error_1: float = quantity(
         "rad",

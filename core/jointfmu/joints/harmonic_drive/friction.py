@@ -2,18 +2,21 @@ r"""Friction at the wave generator of a harmonic drive: sliders between it and t
 
 Dry friction holds up to a limit that speed lowers and load raises,
 
-    M = temperature_factor [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2)
-                            + loss |tau/ratio|],
+    M = f_dry [friction_coulomb + friction_stribeck exp(-(w1/stribeck_speed)^2) + loss |tau/ratio|],
 
-where loss is load_loss if the friction, and so a slip, is against the load (the motor drives), and
-load_loss_back if it holds the load (the load drives the motor). So the limit has two sides, that of positive
-and that of negative friction, and a slider may not leave what lies between.
+where f_dry is `dry_factor`, of the temperature, and loss is load_loss if the friction, and so a slip, is
+against the load (the motor drives), and load_loss_back if it holds the load (the load drives the motor). So
+the limit has two sides, that of positive and that of negative friction, and a slider may not leave what lies
+between.
 
 Friction builds up over the angle phi1: sliders in parallel, spring and friction each, of which every one
 takes its share of M. From rest it is M (1 - exp(-phi1/presliding)) (Dahl 1968) at a steady limit, as far as
 so few sliders follow it; after a reversal by Masing's rule. The springs stay while the limit changes. So a
 drive at rest holds any torque below M where it is, without a threshold of speed, and the work of every path
-is what the springs store and what is lost. Grease adds temperature_factor friction_viscous w1.
+is what the springs store and what is lost. Grease adds f_viscous friction_viscous w1.
+
+The temperature acts by Reynolds' law of viscosity (1886), exp(-coefficient (temperature - REFERENCE)), with a
+coefficient for the viscous and one for the dry part.
 """
 
 from collections.abc import Sequence
@@ -39,13 +42,29 @@ _LEFT = (*(np.linspace(1.0, 0.0, BRAKES, endpoint=False) ** 2).tolist(), 0.0)
 _SHARES = shares(1.0, _LEFT)
 SPRINGS, LIMITS = np.array(_SHARES[0]), np.array(_SHARES[1])
 """Springs over M/presliding and friction over M of the sliders [1]."""
+REFERENCE = 293.15
+"""Temperature [K] at which the friction parameters hold: that of the catalogues, 20 degrees C."""
 TURNED = 0.1
 """Time [s] for which a drive that turns at initialization has turned before."""
 
 
-def limits(drive: Drive, w1: Number, tau: Number) -> tuple[Number, Number]:
-    """M (...) [N.m] of positive and of negative friction, at speeds (...) [rad/s] of the wave generator and
-    torques (...) [N.m] at the output.
+def viscous_factor(drive: Drive, temperature: Number) -> Number:
+    """Viscous friction (...) [1] over friction_viscous times speed at temperatures (...) [K]."""
+    return drive.temperature_factor * _thinning(drive.viscous_temperature_coefficient, temperature)
+
+
+def dry_factor(drive: Drive, temperature: Number) -> Number:
+    """Limit of dry friction (...) [1] at temperatures (...) [K], over that of the parameters."""
+    return drive.temperature_factor * _thinning(drive.dry_temperature_coefficient, temperature)
+
+
+def _thinning(coefficient: Number, temperature: Number) -> Number:
+    return np.exp(-coefficient * (temperature - REFERENCE))
+
+
+def limits(drive: Drive, w1: Number, tau: Number, temperature: Number = REFERENCE) -> tuple[Number, Number]:
+    """M (...) [N.m] of positive and of negative friction, at speeds (...) [rad/s] of the wave generator,
+    torques (...) [N.m] at the output and temperatures (...) [K].
 
     |tau| is tau tanh(tau/t) with t WIDTH times the rated torque, and the load counts as driving the motor by
     (1 + tanh)/2: smooth through zero. tau/ratio is what the load turns the wave generator with.
@@ -57,17 +76,18 @@ def limits(drive: Drive, w1: Number, tau: Number) -> tuple[Number, Number]:
     back = 0.5 * (1.0 + turned * drive.ratio / np.abs(drive.ratio))
     sides = (drive.load_loss + more * part for part in (back, 1.0 - back))
     held = drive.friction_coulomb + stribeck
-    positive, negative = (drive.temperature_factor * (held + loss * size) for loss in sides)
+    factor = dry_factor(drive, temperature)
+    positive, negative = (factor * (held + loss * size) for loss in sides)
     return positive, negative
 
 
-def viscous(drive: Drive, w1: Number) -> Number:
-    """Torque (...) [N.m] of the grease at speeds (...) [rad/s] of the wave generator."""
-    return drive.temperature_factor * drive.friction_viscous * w1
+def viscous(drive: Drive, w1: Number, temperature: Number = REFERENCE) -> Number:
+    """Torque (...) [N.m] of the grease at speeds (...) [rad/s] of the wave generator and temperatures [K]."""
+    return viscous_factor(drive, temperature) * drive.friction_viscous * w1
 
 
 def stiffness(drive: Drive) -> Number:
-    """[N.m/rad] of the sliders while all of them stick: M at rest and rated torque over presliding."""
+    """[N.m/rad] of the sliders while all stick: M at rest, rated torque and REFERENCE over presliding."""
     return np.maximum(*limits(drive, 0.0, drive.rated_torque)) / drive.presliding
 
 

@@ -10,7 +10,7 @@ from ...mechanics.curve import Curve, assemble, refined
 from ...quantity import Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive
-from .friction import Friction, limits, viscous
+from .friction import REFERENCE, Friction, limits, viscous
 from .given import Given
 from .hysteresis import Hysteresis
 from .kinematic_error import kinematic_error
@@ -81,9 +81,18 @@ class HarmonicDriveSpring:
         curve = torque_curve(drive)
         return cls(drive, curve, Hysteresis.of(drive, curve), Friction.of(drive))
 
-    def motion(self, phi1: ArrayLike, w1: ArrayLike, phi2: ArrayLike, w2: ArrayLike) -> dict[str, Array]:
-        """Torques and stiffnesses at flange angles [rad] and speeds [rad/s] (...), on the way from rest."""
-        return self.driven((phi1, w1, phi2, w2), self.rest())[0]
+    def motion(
+        self,
+        phi1: ArrayLike,
+        w1: ArrayLike,
+        phi2: ArrayLike,
+        w2: ArrayLike,
+        temperature: ArrayLike = REFERENCE,
+    ) -> dict[str, Array]:
+        """Torques and stiffnesses at flange angles [rad], speeds [rad/s] and temperatures [K] (...), on the
+        way from rest.
+        """
+        return self.driven((phi1, w1, phi2, w2), self.rest(), temperature)[0]
 
     def windup(self, tau: ArrayLike) -> dict[str, Array]:
         """Wind-up and stiffnesses at torques (...) [N.m], wave generator locked, on the way from rest."""
@@ -93,9 +102,14 @@ class HarmonicDriveSpring:
         """MEMORY (n) of a spring that has not moved."""
         return MEMORY.rest()
 
-    def driven(self, motion: Sequence[ArrayLike], memory: Array) -> tuple[dict[str, Array], Array]:
-        """What the spring exports at phi1, w1, phi2, w2 (...), from a memory (n) on, and the new one."""
+    def driven(
+        self, motion: Sequence[ArrayLike], memory: Array, temperature: ArrayLike = REFERENCE
+    ) -> tuple[dict[str, Array], Array]:
+        """What the spring exports at phi1, w1, phi2, w2 and temperatures [K] (...), from a memory (n) on, and
+        the new one.
+        """
         motion = tuple(np.asarray(x, dtype=np.float64) for x in motion)
+        warmth = np.asarray(temperature, dtype=np.float64)
         wound, brakes = _parts(memory)
         error, slope, _ = kinematic_error(self.joint, motion[0])
         phi = wind_up(self.joint, motion, error)
@@ -103,10 +117,10 @@ class HarmonicDriveSpring:
         slid = self.hysteresis.moved(wound, phi)
         load = np.copysign(load, phi)
         state = State(phi, load, stiffness, slid.traction, error, slope)
-        most = limits(self.joint, motion[1], transmitted(self.joint, motion, state))
+        most = limits(self.joint, motion[1], transmitted(self.joint, motion, state), warmth)
         braked = self.friction.moved(brakes, motion[0], motion[1], most)
         loss = hysteresis.MEMORY.split(wound)["loss"] + slid.loss + braked.loss
-        out = exported(self.joint, motion, state, braked.traction) | {"E_loss": loss}
+        out = exported(self.joint, motion, warmth, state, braked.traction) | {"E_loss": loss}
         after = self.friction.after(braked, motion[0], most)
         return out, np.concatenate([self.hysteresis.after(slid, phi, loss), after], axis=-1)
 
@@ -157,9 +171,13 @@ def wind_up(drive: Drive, motion: Sequence[Number], error: Number) -> Number:
     return phi2 - phi1 / drive.ratio - error
 
 
-def exported(drive: Drive, motion: Sequence[Number], state: State, dry: Number) -> dict[str, Number]:
-    """What the spring exports at a motion phi1, w1, phi2, w2 with a dry friction [N.m], but for the loss."""
-    tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1])
+def exported(
+    drive: Drive, motion: Sequence[Number], temperature: Number, state: State, dry: Number
+) -> dict[str, Number]:
+    """What the spring exports at a motion phi1, w1, phi2, w2 and a temperature [K] with a dry friction [N.m],
+    but for the loss.
+    """
+    tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1], temperature)
     return {
         "tau1": tau / drive.ratio + state.slope * tau - friction,
         "tau2": -tau,

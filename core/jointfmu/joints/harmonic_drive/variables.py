@@ -1,6 +1,7 @@
 """Inputs and outputs of the harmonic drive's models."""
 
-from ..model import BEYOND, Loop, Model, Outside, Ramp, Variable
+from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
+from .friction import REFERENCE
 from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
@@ -17,6 +18,7 @@ _CONTACT = (
 )
 
 _MOTION = ("phi1", "phi2")
+_DRIVEN = ("phi1", "w1", "phi2", "w2")
 _HIDDEN = ("max_torque", "shear_traction", "table")
 _LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """One arcmin of hysteresis: the default drive has none."""
@@ -31,7 +33,14 @@ _FRICTION = (
     "load_loss",
     "load_loss_back",
 )
-_SPRING_ONLY = (*_FRICTION, "presliding", "temperature_factor", *_ERROR)
+_WARM = ("temperature_factor", "viscous_temperature_coefficient", "dry_temperature_coefficient")
+_SPRING_ONLY = (*_FRICTION, "presliding", *_WARM, *_ERROR)
+
+
+def _driven(v: Values) -> tuple[float, ...]:
+    """The motion of both flanges."""
+    return tuple(v[name] for name in _DRIVEN)
+
 
 MODELS = (
     Model(
@@ -45,6 +54,7 @@ MODELS = (
             Variable("w1", "rad/s", "speed of the wave-generator (motor) flange"),
             Variable("phi2", "rad", "angle of the output flange"),
             Variable("w2", "rad/s", "speed of the output flange"),
+            Variable("temperature", "K", "of the lubricant", REFERENCE, low=0.0, start=REFERENCE),
         ),
         outputs=(
             Variable(
@@ -61,14 +71,16 @@ MODELS = (
             ),
             Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
         ),
-        evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        evaluate=lambda s, v: s.motion(*_driven(v), v["temperature"]),
         rest=lambda s: s.rest(),
-        evolve=lambda s, v, memory: s.driven((v["phi1"], v["w1"], v["phi2"], v["w2"]), memory),
+        evolve=lambda s, v, memory: s.driven(_driven(v), memory, v["temperature"]),
         outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
         loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={
+            "tau2": _DRIVEN,
             "phi_rel": _MOTION,
+            "tau": _DRIVEN,
             "K_WTS": _MOTION,
             "K_TS": _MOTION,
             "K_FTS": (),

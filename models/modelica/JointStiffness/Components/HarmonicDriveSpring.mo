@@ -22,8 +22,16 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Modelica.Units.SI.Angle presliding(min=Modelica.Constants.small) = data.presliding "angle of the wave generator over which dry friction builds up to 1 - 1/e"
     annotation (Dialog(tab="Friction"));
-  parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "friction over that of the reference temperature"
+  parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "factor of all friction"
     annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient = data.viscous_temperature_coefficient "fall of friction_viscous per kelvin above 293.15 K, over its value"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient = data.dry_temperature_coefficient "fall of dry friction per kelvin above 293.15 K, over its value"
+    annotation (Dialog(tab="Friction"));
+  parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it gives the temperature and takes lossPower"
+    annotation (Evaluate=true, HideResult=true, choices(checkBox=true), Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Temperature T = 293.15 "Temperature of the lubricant, if useHeatPort = false"
+    annotation (Dialog(tab="Friction", enable=not useHeatPort));
   parameter Modelica.Units.SI.Angle error_1 = data.error_1 "kinematic error at the output, amplitude, one period per turn of the wave generator"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "phase of error_1 at phi1 = 0"
@@ -44,6 +52,9 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Output"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Modelica.Thermal.HeatTransfer.Interfaces.HeatPort_a heatPort(T=temperature, Q_flow=-lossPower) if useHeatPort "Lubricant"
+    annotation (Placement(transformation(extent={{-10,-110},{10,-90}})));
+  Modelica.Units.SI.Temperature temperature "of the lubricant";
   Modelica.Units.SI.Angle phi_rel(start=0, nominal=1e-3, stateSelect=stateSelect)
     "wind-up at the output, phi2 - phi1/ratio - phi_error (= flange_b.phi - flange_a.phi/ratio - phi_error)";
   Modelica.Units.SI.Angle phi_error(nominal=1e-4) "kinematic error at the output, a function of phi1";
@@ -60,6 +71,7 @@ protected
   constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
   constant Modelica.Units.SI.Time turned=0.1 "Time for which a drive that turns at initialization has turned before";
   constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
+  constant Modelica.Units.SI.Temperature reference=293.15 "Temperature at which the friction parameters hold";
   constant Real width=0.01 "Torque at the output over rated torque within which |tau| is smooth";
   constant Real brakes[:, 2]=[
       0.234375, 0.02990505504;
@@ -81,6 +93,8 @@ protected
   parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Share of the load where it drives the motor";
   parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + max(load_loss, loss_back)*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
   parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
+  Real f_dry(unit="1") "Dry friction at the temperature over that of the parameters";
+  Real f_viscous(unit="1") "Viscous friction at the temperature over that of the parameters";
   Real back(unit="1") "How far positive friction holds the load, 0 to 1";
   Modelica.Units.SI.Torque M_p "Limit of positive dry friction at the wave generator";
   Modelica.Units.SI.Torque M_n "Limit of negative dry friction at the wave generator";
@@ -119,23 +133,28 @@ equation
     heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
   tau_h = sum(held_h);
+  if not useHeatPort then
+    temperature = T;
+  end if;
+  f_dry = temperature_factor*exp(-dry_temperature_coefficient*(temperature - reference));
+  f_viscous = temperature_factor*exp(-viscous_temperature_coefficient*(temperature - reference));
   back = 0.5*(1 + tanh(tau/(width*data.rated_torque))*ratio/abs(ratio));
-  M_p = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
-  M_n = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  M_p = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  M_n = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
   for i in 1:m loop
     held_w[i] = noEvent(min(max(q_w[i], -M_n*brakes[i, 2]), M_p*brakes[i, 2]));
     rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
     der(q_w[i]) = rate_w[i];
     heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);
   end for;
-  tau_friction = sum(held_w) + temperature_factor*friction_viscous*w1;
+  tau_friction = sum(held_w) + f_viscous*friction_viscous*w1;
   windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
   tau_c = noEvent(if phi_rel < 0 then -1 else 1)*JointStiffness.Functions.load(windUp, data.table);
   K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
   flange_a.tau = -(tau/ratio + errorSlope*tau) + tau_friction;
-  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
+  lossPower = d*w_rel^2 + f_viscous*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
   annotation (
     defaultComponentName="harmonicDrive",
     Icon(graphics={
@@ -157,9 +176,9 @@ equation
 <p>φ<sub>rel</sub> = φ<sub>2</sub> − φ<sub>1</sub>/ratio − φ<sub>e</sub>(φ<sub>1</sub>), &emsp; τ<sub>1</sub> = τ (1/ratio + dφ<sub>e</sub>/dφ<sub>1</sub>) − τ<sub>friction</sub>, &emsp; τ<sub>2</sub> = −τ</p>
 <p>φ<sub>e</sub> = Σ error_n sin(n φ<sub>1</sub> + error_n_phase), &emsp; n = 1, 2, 4</p>
 <p>φ<sub>e</sub>, the output <code>phi_error</code>, is the kinematic error at the output. φ<sub>1</sub> counts from the housing: both lobes of the wave generator pass every tooth once per turn, so two periods per turn come first, <code>error_2</code>. The torque on the wave generator follows by virtual work. At a steady speed the output ripples, most at that speed of the wave generator which is half the natural frequency.</p>
-<p>M = temperature_factor [friction_coulomb + friction_stribeck exp(−(w<sub>1</sub>/stribeck_speed)<sup>2</sup>) + loss |τ/ratio|]</p>
+<p>M = f<sub>dry</sub> [friction_coulomb + friction_stribeck exp(−(w<sub>1</sub>/stribeck_speed)<sup>2</sup>) + loss |τ/ratio|]</p>
 <p>The share of the load is <code>load_loss</code> where the motor drives, and <code>load_loss_back</code> where the load drives the motor: the limit of friction that holds the load.</p>
-<p>Friction at the wave generator, the output <code>tau_friction</code>, is dry friction with the limit M, and <code>temperature_factor · friction_viscous · w1</code>. Dry friction builds up over the angle φ<sub>1</sub>, from rest as M [1 − exp(−φ<sub>1</sub>/presliding)], by 8 sliders with memory: a drive at rest holds a torque below M where it is. At initialization a drive has turned before as its speed says, wherever it is. Smooth through τ = 0: |τ| is τ tanh(τ/(0.01 T<sub>r</sub>)).</p>
+<p>Friction at the wave generator, the output <code>tau_friction</code>, is dry friction with the limit M, and f<sub>viscous</sub> <code>friction_viscous · w1</code>, with f = <code>temperature_factor</code> exp(−coefficient (<code>temperature</code> − 293.15 K)) and the coefficient of each, <code>dry_temperature_coefficient</code> and <code>viscous_temperature_coefficient</code>. Dry friction builds up over the angle φ<sub>1</sub>, from rest as M [1 − exp(−φ<sub>1</sub>/presliding)], by 8 sliders with memory: a drive at rest holds a torque below M where it is. At initialization a drive has turned before as its speed says, wherever it is. Smooth through τ = 0: |τ| is τ tanh(τ/(0.01 T<sub>r</sub>)).</p>
 <p>φ(T) = ∫<sub>0</sub><sup>T</sup> dT′ / K<sub>WTS</sub>(T′), &emsp; odd in T</p>
 <p>1/K<sub>WTS</sub> = 1/K<sub>FTS</sub> + 1/K<sub>TS</sub> (Hu 2023, Eq. 46)</p>
 <p>K<sub>TS</sub> = drive_scale · (A<sub>0</sub>/node_area) · K<sub>T</sub>(p) · 2 radius, &emsp; p = mean_over_peak · P(T) (Eq. 45 as printed)</p>
@@ -182,7 +201,7 @@ equation
 <li><b>Beyond rated torque</b> the stiffness settles at that of twice the rated torque, as that of catalogue drives does: an extrapolation.</li>
 <li><b>Range.</b> The table ends at <code>max_torque</code>. Parameters for which the pair loses contact without torque are refused.</li>
 <li><b>Friction and kinematic error</b> are forms, not derived: their parameters come from a catalogue (starting torque, no-load running torque over speed, efficiency, back-driving torque) or a measurement. A catalogue's transmission accuracy is the peak to peak of all harmonics.</li>
-<li><b>Not inside:</b> temperature but as the factor on the friction; wear.</li>
+<li><b>Not inside:</b> what temperature does to stiffness and fits; it acts on the friction alone, by coefficients that are not measured on a drive. Wear.</li>
 </ul>
 <p>Q. Hu, H. Li, G. Wang, L. Li: <em>Research on torsional stiffness of flexspline-flexible bearing contact pair in harmonic drive based on macro-micro scale modeling.</em> Frontiers in Materials 10, 2023. <a href=\"https://doi.org/10.3389/fmats.2023.1211019\">doi:10.3389/fmats.2023.1211019</a></p>
 </html>"));

@@ -12,6 +12,8 @@ record CD_14_100_of_Hu_2023 "CD-14-100 of Hu 2023"
     final load_loss_back=-1,
     final presliding=0.01,
     final temperature_factor=1,
+    final viscous_temperature_coefficient=0.023,
+    final dry_temperature_coefficient=0.01,
     final error_1=0,
     final error_1_phase=0,
     final error_2=0,

@@ -4,7 +4,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Base_driveData "CSG-32-100, of base_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=28,
       final rated_torque=178,
       final friction_coulomb=0,
@@ -15,6 +15,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -80,7 +82,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Shoulder_driveData "CSG-40-100, of shoulder_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=41,
       final rated_torque=345,
       final friction_coulomb=0,
@@ -91,6 +93,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -156,7 +160,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Elbow_driveData "CSG-25-100, of elbow_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=11,
       final rated_torque=87,
       final friction_coulomb=0,
@@ -167,6 +171,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -232,7 +238,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Forearm_driveData "CSG-20-100, of forearm_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=1.3,
       final rated_torque=52,
       final friction_coulomb=0,
@@ -243,6 +249,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -308,7 +316,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Wrist_driveData "CSG-17-100, of wrist_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=1.5,
       final rated_torque=31,
       final friction_coulomb=0,
@@ -319,6 +327,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -384,7 +394,7 @@ model SixAxisRobot "Robot with six axes"
 
   record Hand_driveData "CSG-14-100, of hand_drive"
     extends JointStiffness.Data.HarmonicDrive(
-      final ratio=100,
+      final ratio=-100,
       final d=0.16,
       final rated_torque=10,
       final friction_coulomb=0,
@@ -395,6 +405,8 @@ model SixAxisRobot "Robot with six axes"
       final load_loss_back=-1,
       final presliding=0.01,
       final temperature_factor=1,
+      final viscous_temperature_coefficient=0.023,
+      final dry_temperature_coefficient=0.01,
       final error_1=0,
       final error_1_phase=0,
       final error_2=0,
@@ -458,7 +470,7 @@ model SixAxisRobot "Robot with six axes"
       0.005327402153, 36, 7100, 0, 0]);
   end Hand_driveData;
 
-  JointStiffness.Components.AngleProfile base_motor(start=0.1, duration=1, height=122.2)
+  JointStiffness.Components.AngleProfile base_motor(start=0.1, duration=1, height=-122.2)
     annotation (Placement(transformation(extent={{-90,70},{-70,90}})));
   JointStiffness.Components.HarmonicDriveSpring base_drive(data=Base_driveData(), hysteresis_friction=9.815204504, hysteresis_stiffness=67000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,70},{-10,90}})));
@@ -468,7 +480,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{90,70},{110,90}})));
   Modelica.Mechanics.Rotational.Sources.Torque base_load_tau
     annotation (Placement(transformation(extent={{120,70},{140,90}})));
-  JointStiffness.Components.AngleProfile shoulder_motor(start=0.1, duration=1, height=87.27)
+  JointStiffness.Components.AngleProfile shoulder_motor(start=0.1, duration=1, height=-87.27)
     annotation (Placement(transformation(extent={{-90,40},{-70,60}})));
   JointStiffness.Components.HarmonicDriveSpring shoulder_drive(data=Shoulder_driveData(), hysteresis_friction=18.99504381, hysteresis_stiffness=130000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,40},{-10,60}})));
@@ -478,7 +490,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{90,40},{110,60}})));
   Modelica.Mechanics.Rotational.Sources.Torque shoulder_load_tau
     annotation (Placement(transformation(extent={{120,40},{140,60}})));
-  JointStiffness.Components.AngleProfile elbow_motor(start=0.1, duration=1, height=104.7)
+  JointStiffness.Components.AngleProfile elbow_motor(start=0.1, duration=1, height=-104.7)
     annotation (Placement(transformation(extent={{-90,10},{-70,30}})));
   JointStiffness.Components.HarmonicDriveSpring elbow_drive(data=Elbow_driveData(), hysteresis_friction=4.525004676, hysteresis_stiffness=31000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,10},{-10,30}})));
@@ -488,7 +500,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{90,10},{110,30}})));
   Modelica.Mechanics.Rotational.Sources.Torque elbow_load_tau
     annotation (Placement(transformation(extent={{120,10},{140,30}})));
-  JointStiffness.Components.AngleProfile forearm_motor(start=0.1, duration=1, height=-78.54)
+  JointStiffness.Components.AngleProfile forearm_motor(start=0.1, duration=1, height=78.54)
     annotation (Placement(transformation(extent={{-90,-20},{-70,0}})));
   JointStiffness.Components.HarmonicDriveSpring forearm_drive(data=Forearm_driveData(), hysteresis_friction=2.32769437, hysteresis_stiffness=16000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,-20},{-10,0}})));
@@ -498,7 +510,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{90,-20},{110,0}})));
   Modelica.Mechanics.Rotational.Sources.Torque forearm_load_tau
     annotation (Placement(transformation(extent={{120,-20},{140,0}})));
-  JointStiffness.Components.AngleProfile wrist_motor(start=0.1, duration=1, height=69.81)
+  JointStiffness.Components.AngleProfile wrist_motor(start=0.1, duration=1, height=-69.81)
     annotation (Placement(transformation(extent={{-90,-50},{-70,-30}})));
   JointStiffness.Components.HarmonicDriveSpring wrist_drive(data=Wrist_driveData(), hysteresis_friction=1.453788876, hysteresis_stiffness=10000, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,-50},{-10,-30}})));
@@ -508,7 +520,7 @@ model SixAxisRobot "Robot with six axes"
     annotation (Placement(transformation(extent={{90,-50},{110,-30}})));
   Modelica.Mechanics.Rotational.Sources.Torque wrist_load_tau
     annotation (Placement(transformation(extent={{120,-50},{140,-30}})));
-  JointStiffness.Components.AngleProfile hand_motor(start=0.1, duration=1, height=157.1)
+  JointStiffness.Components.AngleProfile hand_motor(start=0.1, duration=1, height=-157.1)
     annotation (Placement(transformation(extent={{-90,-80},{-70,-60}})));
   JointStiffness.Components.HarmonicDriveSpring hand_drive(data=Hand_driveData(), hysteresis_friction=0.6925001349, hysteresis_stiffness=4700, stateSelect=StateSelect.default)
     annotation (Placement(transformation(extent={{-30,-80},{-10,-60}})));
@@ -575,7 +587,7 @@ equation
 <tr><th>number</th><th>value</th><th>source</th></tr>
 <tr><td><code>base_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>base_motor.height</code></td><td>122.2 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>base_motor.height</code></td><td>-122.2 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>base_drive.d</code></td><td>28 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>base_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>base_link.J</code></td><td>7.40718819165282 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -602,7 +614,7 @@ equation
 <tr><td><code>base_load.p17</code></td><td>0 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>shoulder_motor.height</code></td><td>87.27 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>shoulder_motor.height</code></td><td>-87.27 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>shoulder_drive.d</code></td><td>41 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>shoulder_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>shoulder_link.J</code></td><td>8.14835487753431 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -629,7 +641,7 @@ equation
 <tr><td><code>shoulder_load.p17</code></td><td>117.32029263 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>elbow_motor.height</code></td><td>104.7 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>elbow_motor.height</code></td><td>-104.7 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>elbow_drive.d</code></td><td>11 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>elbow_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>elbow_link.J</code></td><td>2.23554092189438 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -656,7 +668,7 @@ equation
 <tr><td><code>elbow_load.p17</code></td><td>45.19978655 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>forearm_motor.height</code></td><td>-78.54 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>forearm_motor.height</code></td><td>78.54 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>forearm_drive.d</code></td><td>1.3 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>forearm_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>forearm_link.J</code></td><td>0.0697886093001334 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -683,7 +695,7 @@ equation
 <tr><td><code>forearm_load.p17</code></td><td>3.51842498 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>wrist_motor.height</code></td><td>69.81 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>wrist_motor.height</code></td><td>-69.81 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>wrist_drive.d</code></td><td>1.5 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>wrist_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>wrist_link.J</code></td><td>0.15 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>
@@ -710,7 +722,7 @@ equation
 <tr><td><code>wrist_load.p17</code></td><td>2.38322264 N m</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.start</code></td><td>0.1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_motor.duration</code></td><td>1 s</td><td>kinematics and inverse dynamics of [arm]</td></tr>
-<tr><td><code>hand_motor.height</code></td><td>157.1 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
+<tr><td><code>hand_motor.height</code></td><td>-157.1 rad</td><td>kinematics and inverse dynamics of [arm]</td></tr>
 <tr><td><code>hand_drive.d</code></td><td>0.16 N m s/rad</td><td>2 % of critical with what the axis turns</td></tr>
 <tr><td><code>hand_drive.hysteresis_loss</code></td><td>0.00029 rad</td><td>1 arcmin, the limit stated for Harmonic Drive's actuators from ratio 50 on: models/reference/harmonic_drive_catalogue_accuracy.csv</td></tr>
 <tr><td><code>hand_link.J</code></td><td>0.0032 kg m2</td><td>kinematics and inverse dynamics of [arm]</td></tr>

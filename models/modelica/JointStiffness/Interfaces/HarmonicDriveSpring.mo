@@ -2,13 +2,15 @@ within JointStiffness.Interfaces;
 partial block HarmonicDriveSpring "Torsional spring and damper of a harmonic drive: motion in, torque out"
   extends Modelica.Blocks.Icons.Block;
   Modelica.Blocks.Interfaces.RealInput phi1(unit="rad") "angle of the wave-generator (motor) flange"
-    annotation (Placement(transformation(extent={{-140,48},{-100,88}})));
+    annotation (Placement(transformation(extent={{-140,52},{-100,92}})));
   Modelica.Blocks.Interfaces.RealInput w1(unit="rad/s") "speed of the wave-generator (motor) flange"
-    annotation (Placement(transformation(extent={{-140,2},{-100,42}})));
+    annotation (Placement(transformation(extent={{-140,16},{-100,56}})));
   Modelica.Blocks.Interfaces.RealInput phi2(unit="rad") "angle of the output flange"
-    annotation (Placement(transformation(extent={{-140,-42},{-100,-2}})));
+    annotation (Placement(transformation(extent={{-140,-20},{-100,20}})));
   Modelica.Blocks.Interfaces.RealInput w2(unit="rad/s") "speed of the output flange"
-    annotation (Placement(transformation(extent={{-140,-88},{-100,-48}})));
+    annotation (Placement(transformation(extent={{-140,-56},{-100,-16}})));
+  Modelica.Blocks.Interfaces.RealInput temperature(unit="K", min=0) "of the lubricant"
+    annotation (Placement(transformation(extent={{-140,-92},{-100,-52}})));
   Modelica.Blocks.Interfaces.RealOutput tau1(unit="N.m") "torque on flange 1, tau (1/ratio + dphi_error/dphi1) - tau_friction"
     annotation (Placement(transformation(extent={{100,72},{120,92}})));
   Modelica.Blocks.Interfaces.RealOutput tau2(unit="N.m") "torque of the element on flange 2, -tau"

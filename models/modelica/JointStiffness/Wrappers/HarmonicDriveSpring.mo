@@ -1,5 +1,6 @@
 within JointStiffness.Wrappers;
 model HarmonicDriveSpring "HarmonicDriveSpring as an imported FMU, between flanges"
+  parameter Modelica.Units.SI.ThermodynamicTemperature temperature=293.15 "of the lubricant";
   replaceable JointStiffness.Interfaces.HarmonicDriveSpring fmu "Redeclare as the imported FMU"
     annotation (Placement(transformation(extent={{-20,-20},{20,20}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_a flange1 "wave generator (motor)"
@@ -18,9 +19,9 @@ equation
   connect(flange1, adaptor_flange1.flange)
     annotation (Line(points={{-100,0},{-82,0}}, color={0,0,0}));
   connect(adaptor_flange1.p, fmu.phi1)
-    annotation (Line(points={{-77,8},{-50.5,8},{-50.5,13.6},{-24,13.6}}, color={0,0,127}));
+    annotation (Line(points={{-77,8},{-50.5,8},{-50.5,14.4},{-24,14.4}}, color={0,0,127}));
   connect(adaptor_flange1.pder, fmu.w1)
-    annotation (Line(points={{-77,5},{-50.5,5},{-50.5,4.4},{-24,4.4}}, color={0,0,127}));
+    annotation (Line(points={{-77,5},{-50.5,5},{-50.5,7.2},{-24,7.2}}, color={0,0,127}));
   connect(fmu.tau1, reaction_flange1.u)
     annotation (Line(points={{22,16.4},{-8.5,16.4},{-8.5,-25},{-39,-25}}, color={0,0,127}));
   connect(reaction_flange1.y, adaptor_flange1.f)
@@ -28,13 +29,14 @@ equation
   connect(flange2, adaptor_flange2.flange)
     annotation (Line(points={{100,0},{82,0}}, color={0,0,0}));
   connect(adaptor_flange2.p, fmu.phi2)
-    annotation (Line(points={{77,8},{26.5,8},{26.5,-4.4},{-24,-4.4}}, color={0,0,127}));
+    annotation (Line(points={{77,8},{26.5,8},{26.5,0},{-24,0}}, color={0,0,127}));
   connect(adaptor_flange2.pder, fmu.w2)
-    annotation (Line(points={{77,5},{26.5,5},{26.5,-13.6},{-24,-13.6}}, color={0,0,127}));
+    annotation (Line(points={{77,5},{26.5,5},{26.5,-7.2},{-24,-7.2}}, color={0,0,127}));
   connect(fmu.tau2, reaction_flange2.u)
     annotation (Line(points={{22,13.6},{30.5,13.6},{30.5,-25},{39,-25}}, color={0,0,127}));
   connect(reaction_flange2.y, adaptor_flange2.f)
     annotation (Line(points={{50.5,-25},{63.75,-25},{63.75,-8},{77,-8}}, color={0,0,127}));
+  fmu.temperature = temperature;
   annotation (
     Icon(graphics={
       Rectangle(extent={{-90,80},{90,-80}}, lineColor={43,58,74}, fillColor={255,255,255}, fillPattern=FillPattern.Solid, radius=10),

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.friction import LIMITS, SPRINGS, TURNED
+from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
 from jointfmu.joints.harmonic_drive.lost_motion import WIDTH
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -62,6 +62,7 @@ COMPONENT = ModelicaComponent(
         "end": f"{drive.end:g} N m",
         "brakes": matrix(np.column_stack([SPRINGS, LIMITS])),
         "turned": number(TURNED),
+        "reference": number(REFERENCE),
         "width": number(WIDTH),
     },
     note="For the drive with a locked wave generator (the FMU <code>HarmonicDriveCompliance</code>) fix "

@@ -24,6 +24,14 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Dialog(tab="Friction"));
   parameter Real temperature_factor(min=0, unit="1") = data.temperature_factor "<< meta.temperature_factor >>"
     annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient viscous_temperature_coefficient = data.viscous_temperature_coefficient "<< meta.viscous_temperature_coefficient.split(";")[0] >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.LinearTemperatureCoefficient dry_temperature_coefficient = data.dry_temperature_coefficient "<< meta.dry_temperature_coefficient.split(";")[0] >>"
+    annotation (Dialog(tab="Friction"));
+  parameter Boolean useHeatPort = false "= true, if heatPort is enabled: it gives the temperature and takes lossPower"
+    annotation (Evaluate=true, HideResult=true, choices(checkBox=true), Dialog(tab="Friction"));
+  parameter Modelica.Units.SI.Temperature T = << reference >> "Temperature of the lubricant, if useHeatPort = false"
+    annotation (Dialog(tab="Friction", enable=not useHeatPort));
   parameter Modelica.Units.SI.Angle error_1 = data.error_1 "<< meta.error_1 >>"
     annotation (Dialog(tab="Kinematic error"));
   parameter Modelica.Units.SI.Angle error_1_phase = data.error_1_phase "<< meta.error_1_phase >>"
@@ -44,6 +52,9 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
     annotation (Placement(transformation(extent={{-110,-10},{-90,10}})));
   Modelica.Mechanics.Rotational.Interfaces.Flange_b flange_b "Output"
     annotation (Placement(transformation(extent={{90,-10},{110,10}})));
+  Modelica.Thermal.HeatTransfer.Interfaces.HeatPort_a heatPort(T=temperature, Q_flow=-lossPower) if useHeatPort "Lubricant"
+    annotation (Placement(transformation(extent={{-10,-110},{10,-90}})));
+  Modelica.Units.SI.Temperature temperature "<< docs.temperature >>";
   Modelica.Units.SI.Angle phi_rel(start=0, nominal=1e-3, stateSelect=stateSelect)
     "<< docs.phi_rel >> (= flange_b.phi - flange_a.phi/ratio - phi_error)";
   Modelica.Units.SI.Angle phi_error(nominal=1e-4) "<< docs.phi_error >>";
@@ -60,6 +71,7 @@ protected
   constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
   constant Modelica.Units.SI.Time turned=<< turned >> "Time for which a drive that turns at initialization has turned before";
   constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
+  constant Modelica.Units.SI.Temperature reference=<< reference >> "Temperature at which the friction parameters hold";
   constant Real width=<< width >> "Torque at the output over rated torque within which |tau| is smooth";
   constant Real brakes[:, 2]=<< brakes >> "Springs and friction of the wave generator's sliders, each over the sum of all";
   parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
@@ -73,6 +85,8 @@ protected
   parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Share of the load where it drives the motor";
   parameter Modelica.Units.SI.Torque M_rated=temperature_factor*(friction_coulomb + friction_stribeck + max(load_loss, loss_back)*data.rated_torque/abs(ratio)) "Limit of dry friction at rest and rated torque";
   parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
+  Real f_dry(unit="1") "Dry friction at the temperature over that of the parameters";
+  Real f_viscous(unit="1") "Viscous friction at the temperature over that of the parameters";
   Real back(unit="1") "How far positive friction holds the load, 0 to 1";
   Modelica.Units.SI.Torque M_p "Limit of positive dry friction at the wave generator";
   Modelica.Units.SI.Torque M_n "Limit of negative dry friction at the wave generator";
@@ -111,23 +125,28 @@ equation
     heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
   end for;
   tau_h = sum(held_h);
+  if not useHeatPort then
+    temperature = T;
+  end if;
+  f_dry = temperature_factor*exp(-dry_temperature_coefficient*(temperature - reference));
+  f_viscous = temperature_factor*exp(-viscous_temperature_coefficient*(temperature - reference));
   back = 0.5*(1 + tanh(tau/(width*data.rated_torque))*ratio/abs(ratio));
-  M_p = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
-  M_n = temperature_factor*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  M_p = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  M_n = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
   for i in 1:m loop
     held_w[i] = noEvent(min(max(q_w[i], -M_n*brakes[i, 2]), M_p*brakes[i, 2]));
     rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
     der(q_w[i]) = rate_w[i];
     heat_w[i] = held_w[i]*w1 - q_w[i]*rate_w[i]/max(K_w[i], Modelica.Constants.small);
   end for;
-  tau_friction = sum(held_w) + temperature_factor*friction_viscous*w1;
+  tau_friction = sum(held_w) + f_viscous*friction_viscous*w1;
   windUp = noEvent(if phi_rel < 0 then -phi_rel else phi_rel);
   tau_c = noEvent(if phi_rel < 0 then -1 else 1)*JointStiffness.Functions.load(windUp, data.table);
   K_WTS = JointStiffness.Functions.stiffness(windUp, data.table);
   K_TS = 1/(1/K_WTS - 1/data.K_FTS0);
   flange_b.tau = tau;
   flange_a.tau = -(tau/ratio + errorSlope*tau) + tau_friction;
-  lossPower = d*w_rel^2 + temperature_factor*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
+  lossPower = d*w_rel^2 + f_viscous*friction_viscous*w1^2 + sum(heat_h) + sum(heat_w);
   annotation (
     defaultComponentName="harmonicDrive",
     Icon(graphics={

@@ -1,0 +1,75 @@
+"""The reference of `import jointfmu` as a page: signatures and help as Python itself has them."""
+
+import inspect
+import re
+from functools import cached_property
+from typing import Any
+
+from jointfmu_tools.joint_parts import part
+
+import jointfmu
+from jointfmu.joints import KINDS
+
+WIDTH = 90
+"""Letters of a signature in one line."""
+BREAK = ",\n    "
+_LISTED = re.compile(r"^(\w[\w, ]*?) +: (.*)")
+"""A line of a docstring's list: names and what they are."""
+
+
+def page() -> str:
+    """The page (Markdown): every public name, the classes of joints, and of a class its public members."""
+    items = {f"jointfmu.{name}": getattr(jointfmu, name) for name in jointfmu.__all__}
+    own = [part(kind, "interface") for kind in KINDS.values()]
+    items |= {one.CLASS.__name__: one.CLASS for one in own if one}
+    parts = ["# Reference", "Everything that `import jointfmu` has. Numbers are in SI units, unless stated."]
+    for name, item in items.items():
+        parts += entry(name, item, "##")
+        if inspect.isclass(item):
+            for member in members(item):
+                parts += entry(f"{item.__name__}.{member}", getattr(item, member), "###")
+    return "\n\n".join(parts) + "\n"
+
+
+def members(item: type) -> list[str]:
+    """Public methods and properties that a class declares itself."""
+    mine = vars(item).items()
+    kinds = (property, cached_property)
+    return [name for name, x in mine if name[0] != "_" and (inspect.isfunction(x) or isinstance(x, kinds))]
+
+
+def entry(name: str, item: Any, level: str) -> list[str]:
+    """Heading, signature and help of one name; a property has no arguments."""
+    call = [f"```python\n{name.rpartition('.')[2]}{_signature(item)}\n```"] if callable(item) else []
+    return [f"{level} {name}", *call, markdown(inspect.getdoc(item) or "")]
+
+
+def _signature(item: Any) -> str:
+    """The arguments in one line, or one a line; the help says their types."""
+    found = [p for p in inspect.signature(item).parameters.values() if p.name != "self"]
+    line = str(inspect.Signature([p.replace(annotation=p.empty) for p in found]))
+    return line if len(line) < WIDTH else f"(\n    {line[1:-1].replace(', ', BREAK)}\n)"
+
+
+def markdown(text: str) -> str:
+    """A docstring as Markdown: its lists as bullets, its examples as code."""
+    blocks = []
+    for block in text.split("\n\n"):
+        if block.startswith(">>>"):
+            blocks.append(f"```pycon\n{block}\n```")
+        elif _LISTED.match(block):
+            blocks.append(_bullets(block))
+        else:
+            blocks.append(block)
+    return "\n\n".join(blocks)
+
+
+def _bullets(block: str) -> str:
+    """Lines `names : meaning`, going on below, as a list."""
+    lines = []
+    for line in block.splitlines():
+        if match := _LISTED.match(line):
+            lines.append(f"- `{match[1].strip()}`: {match[2]}")
+        else:
+            lines.append(f"  {line.strip()}")
+    return "\n".join(lines)

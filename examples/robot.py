@@ -1,0 +1,44 @@
+"""A robot with six drives of the catalogue: the error of its tip, beside constant springs."""
+
+import subprocess
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+import jointfmu
+
+ARM = {  # joint: (axis, length of its link [m], drive); as models/systems/six_axis_robot.toml has it
+    "base": ("z", 0.3, "CSG-32-100"),
+    "shoulder": ("y", 0.45, "CSG-40-100"),
+    "elbow": ("y", 0.2, "CSG-25-100"),
+    "forearm": ("z", 0.22, "CSG-20-100"),
+    "wrist": ("y", 0.1, "CSG-17-100"),
+    "hand": ("z", 0.12, "CSG-14-100"),
+}
+
+
+def tip(angles):
+    """Place of the tip (n, 3) [m] at the angles (n) [rad] of the axes."""
+    turn, place = Rotation.identity(), 0.0
+    for (axis, length, _), angle in zip(ARM.values(), angles, strict=True):
+        turn = turn * Rotation.from_euler(axis, angle[:, None])
+        place = place + turn.apply([0.0, 0.0, length])
+    return place
+
+
+subprocess.run([sys.executable, "-m", "jointfmu", "system", "six_axis_robot", "--csv=robot.csv"], check=True)
+run = np.genfromtxt("robot.csv", delimiter=",", names=True, deletechars="")[::20]
+motors = [run[f"{name}_motor.phi_[rad]"] / 100.0 for name in ARM]
+links = {"drives as FMUs": [run[f"{name}_link.phi_[rad]"] for name in ARM]}
+for K in ("K1", "K3"):
+    springs = {name: jointfmu.drive(drive).values[K] for name, (*_, drive) in ARM.items()}  # N.m/rad
+    wound = [-run[f"{name}_drive.tau2_[N.m]"] / k for name, k in springs.items()]
+    links[f"constant springs {K}"] = [q + w for q, w in zip(motors, wound, strict=True)]
+figure, axes = plt.subplots(layout="constrained")
+for label, angles in links.items():
+    axes.plot(run["time_[s]"], 1e3 * np.linalg.norm(tip(angles) - tip(motors), axis=1), label=label)
+axes.set(xlabel="time [s]", ylabel="error of the tip [mm]")
+axes.legend(frameon=False)
+figure.savefig("robot.png")

@@ -1,0 +1,80 @@
+"""The command line as a whole: its help in groups, completion in a shell, what a build replaces."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from jointfmu_tools import cli
+from jointfmu_tools.parser import COMMANDS, GROUPS, SHELLS, parser
+
+
+def test_the_help_lists_every_command_once_under_its_heading():
+    found = parser().format_help()
+    for title, names in GROUPS.items():
+        section = found.partition(f"\n{title}:\n")[2].partition("\n\n")[0]
+        listed = [line.split()[0] for line in section.splitlines() if line[:3].strip() and line[2] != " "]
+        assert listed == [*names], title
+    assert len({*COMMANDS}) == len(COMMANDS)
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_shell_has_its_script(shell: str, capsys: pytest.CaptureFixture[str]):
+    pytest.importorskip("shtab")
+    with pytest.raises(SystemExit) as left:
+        cli.main(["--completion", shell])
+    assert left.value.code == 0
+    assert "--flavour" in capsys.readouterr().out
+
+
+def completed(script: str, *words: str) -> list[str]:
+    """What bash offers for the last of the words."""
+    function = script.partition("complete -o bashdefault -F ")[2].split()[0]
+    line = " ".join(f"'{word}'" for word in words)
+    ask = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; {function}"
+    shown = "printf '%s\\n' \"${COMPREPLY[@]}\""
+    program = f"{script}\n{ask}\n{shown}"
+    done = subprocess.run(["bash", "-c", program], capture_output=True, text=True, timeout=20)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_bash_completes_commands_options_and_choices(capsys: pytest.CaptureFixture[str]):
+    pytest.importorskip("shtab")
+    with pytest.raises(SystemExit):
+        cli.main(["--completion", "bash"])
+    script = capsys.readouterr().out
+    assert completed(script, "jointfmu", "un") == ["uncertainty"]
+    assert completed(script, "jointfmu", "build", "--fl") == ["--flavour"]
+    assert set(completed(script, "jointfmu", "build", "--parameters", "")) >= {"tunable", "fixed"}
+
+
+def test_a_shell_that_is_unknown(capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit):
+        cli.main(["--completion", "fish"])
+    assert "'bash', 'zsh'" in capsys.readouterr().err
+
+
+def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    def build(*words: str) -> tuple[str, str]:
+        out = ["--flavour", "python", "--out", str(tmp_path / "dist"), *words]
+        assert cli.main(["build", "HarmonicDriveCompliance", *out]) == 0
+        return capsys.readouterr()
+
+    drive = tmp_path / "drive.toml"
+    assert cli.main(["new", "harmonic-drive", "--catalogue", "CSG-14-100", "--out", str(drive)]) == 0
+    capsys.readouterr()
+    assert "replaced" not in build("--params", str(drive))[1]
+    assert "replaced" not in build("--params", str(drive))[1]  # the same numbers
+    text = drive.read_text()
+    drive.write_text(text.replace("K1 = { value = 4700", "K1 = { value = 4800"))
+    assert drive.read_text() != text
+    path = tmp_path / "dist" / "python" / "HarmonicDriveCompliance.fmu"
+    assert f"replaced {path}: K1 was 4700.0, is 4800.0\n" in build("--params", str(drive))[1]
+    drive.write_text(text)
+    found = json.loads(build("--params", str(drive), "--json")[0])
+    assert found["replaced"] == {str(path): {"K1": ["4800.0", "4700.0"]}}
+    path.write_text("no FMU")
+    assert "replaced" not in build("--params", str(drive))[1]

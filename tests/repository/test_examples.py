@@ -1,0 +1,59 @@
+"""The scripts in `examples` run in an empty folder and write their pictures; the guide shows each of them."""
+
+import os
+import re
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
+NEEDED = {
+    "scan_to_joint": ("SurfaceTopography",),
+    "sweep": ("distributed",),
+    "mujoco_arm": ("mujoco",),
+    "modelica_model": ("rumoca",),
+}
+"""{script: packages beside those of the extra `build`}."""
+FAST = {"drive_resonance"}
+PAGE = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
+
+
+def stem(path: Path) -> str:
+    return path.stem
+
+
+@pytest.mark.parametrize(
+    "script", [pytest.param(s, marks=() if s.stem in FAST else pytest.mark.slow) for s in SCRIPTS], ids=stem
+)
+def test_an_example_runs_and_writes_its_picture(script: Path, tmp_path: Path) -> None:
+    for package in ("matplotlib", *NEEDED.get(script.stem, ())):
+        if find_spec(package) is None:
+            pytest.skip(f"needs {package}")
+    done = subprocess.run(
+        [sys.executable, script],
+        cwd=tmp_path,
+        env=os.environ | {"MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        timeout=200,
+    )
+    assert done.returncode == 0, done.stderr
+    low, high = Image.open(tmp_path / f"{script.stem}.png").convert("L").getextrema()
+    assert (low, high) == (0, 255)  # something is drawn on white
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=stem)
+def test_an_example_is_short_and_shown(script: Path) -> None:
+    assert len(script.read_text(encoding="utf-8").splitlines()) < 45
+    assert f"](../examples/{script.name})" in PAGE
+    assert f"](images/example_{script.stem}.png)" in PAGE
+
+
+def test_the_guide_shows_no_example_that_is_gone() -> None:
+    assert len(SCRIPTS) == 8
+    assert {*re.findall(r"\(\.\./examples/(\w+)\.py\)", PAGE)} == {script.stem for script in SCRIPTS}
