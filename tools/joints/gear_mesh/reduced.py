@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.pairs import pairs
-from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, phase
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, pairs, phase
 
 from ...batch.approach import Rows, tabulate
 from ...batch.samples import columns
