@@ -157,7 +157,7 @@ def solvers(assembly: Assembly) -> None:
     print(f"largest difference {abs(ours - theirs).max() / abs(theirs).max():.1e}")
     springs = trace(body, joint.interface).T @ sp.diags_array(joint.interface.area * 3e11)
     matrix = (ours + springs @ trace(body, joint.interface) + 1e5 * sp.eye_array(body.size)).tocsc()
-    load = body.pressing(body.mesh.boundaries["head1"])
+    load = body.uniform_load(body.mesh.boundaries["head1"])
     factor = timed("CHOLMOD", lambda: Cholesky(matrix))
     timed("  solution", lambda: factor.solve(load))
     options = {"SymmetricMode": True}

@@ -58,7 +58,7 @@ class Structure:
     def tightened(self, law, preload):
         """Equilibrium without friction under a preload [N] of each bolt."""
         heads = [f"head{i}" for i in range(len(self.beam.bolts))]
-        pull = [sum(b.pressing(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
+        pull = [sum(b.uniform_load(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
         loads = [0.5 * preload * sign * load for sign, load in zip((1.0, -1.0), pull, strict=True)]
         first, second = self.symmetric
         slides = 3 * _ends(self.bodies[1])[0]

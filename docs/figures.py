@@ -84,7 +84,7 @@ def resonance(path: Path) -> None:
     drive = lines.fit(row, ratio=100.0).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
-        one = ringing.rung(system("robot_joint"))
+        one = ringing.vibrating_joint(system("robot_joint"))
         points = ringing.ring(one, Path(folder) / "fmi2")
         with plots.drawing(path, SIZE) as canvas:
             draw(canvas, points, one, Path(folder) / "fmi2")

@@ -26,7 +26,7 @@ TOOLS = (
     "laboratory",
     "modelica",
     "new",
-    "pressing",
+    "pressure",
     "reduced",
     "report",
     "ringing",
@@ -37,16 +37,20 @@ TOOLS = (
 class ToolParts:
     """The parts of one joint.
 
+    names   : of modules that are called as their tool
+    modules : {tool: module}, for one module that serves several tools
+
     Raises ImportError if a name is of no tool or has no module, or if a tool's module is not named.
     """
 
-    def __init__(self, package: str, names: Sequence[str]) -> None:
-        self.package, self.names = package, names
+    def __init__(self, package: str, names: Sequence[str], **modules: str) -> None:
+        self.package, self.modules = package, {name: name for name in names} | modules
         there = {module.name for module in iter_modules([str(self.folder)])}
-        for name in {*names} ^ (there & {*TOOLS}):
-            wrong = "is a part that its __init__.py must name" if name in TOOLS else "is of no tool"
-            wrong = wrong if name in there else "is not there"
-            raise ImportError(f"{package}.{name} {wrong}; parts are {', '.join(TOOLS)}")
+        wrong = {name: "is of no tool" for name in self.modules if name not in TOOLS}
+        wrong |= dict.fromkeys(there & {*TOOLS} - {*names}, "is a part that its __init__.py must name")
+        wrong |= {name: "is not there" for name in self.modules.values() if name not in there}
+        for name, text in wrong.items():
+            raise ImportError(f"{package}.{name} {text}; parts are {', '.join(TOOLS)}")
 
     @property
     def folder(self) -> Path:
@@ -55,7 +59,7 @@ class ToolParts:
 
     def load(self, tool: str) -> ModuleType | None:
         """The part for a tool; None if the joint has none."""
-        return import_module(f"{self.package}.{tool}") if tool in self.names else None
+        return import_module(f"{self.package}.{self.modules[tool]}") if tool in self.modules else None
 
 
 PARTS: dict[str, ToolParts] = {}

@@ -1,7 +1,7 @@
 """How far to believe a stiffness: its level beside the roughness, and where the interface law ends.
 
 Every command that reports a stiffness says it, by `judge` at pressures; a joint at loads is judged by its
-pressing, in `jointfmu_tools`.
+pressure, in `jointfmu_tools`.
 """
 
 from collections.abc import Iterator, Sequence

@@ -32,7 +32,7 @@ def axis(axis: str, y: float) -> Terminal:
     return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
 
 
-def turn(axis: str, y: float) -> Terminal:
+def rotation(axis: str, y: float) -> Terminal:
     """Flange of a joint that takes the small turn of its two sides against each other about an axis."""
     members = {
         "phi": (f"theta_{axis}", "signal"),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
-from jointfmu.files.stamp import fixed_time
+from jointfmu.files.timestamp import fixed_time
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS

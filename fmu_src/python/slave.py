@@ -16,7 +16,7 @@ from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
 from jointfmu import __version__
-from jointfmu.files.stamp import build_time
+from jointfmu.files.timestamp import build_time
 from jointfmu.joints import KINDS, MODELS, register
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Memory, Model, Spring
@@ -34,7 +34,7 @@ class AcceptedPath(NamedTuple):
     inputs: dict[str, float]
 
 
-def surviving(method: Callable[..., T]) -> Callable[..., T]:
+def keep_references(method: Callable[..., T]) -> Callable[..., T]:
     """Let an exception of a method pass without harm to its instance.
 
     On every exception pythonfmu 0.7 gives back one reference each to instance, class and log queue too
@@ -187,28 +187,28 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self.log(message, Fmi2Status.error, "logStatusError")
         raise ValueError(message)
 
-    @surviving
+    @keep_references
     def exit_initialization_mode(self) -> None:
         """Check the parameters, tabulate the law, evaluate once."""
         self.accept()
         self.initialized = True
 
-    @surviving
+    @keep_references
     def do_step(self, current_time: float, step_size: float) -> bool:
         """The outputs follow the inputs, which become the past of a joint with memory. Refuses bad inputs."""
         self.accept()
         return True
 
-    get_real, set_real = surviving(Fmi2Slave.get_real), surviving(Fmi2Slave.set_real)
-    get_integer, set_integer = surviving(Fmi2Slave.get_integer), surviving(Fmi2Slave.set_integer)
-    get_boolean, set_boolean = surviving(Fmi2Slave.get_boolean), surviving(Fmi2Slave.set_boolean)
-    get_string, set_string = surviving(Fmi2Slave.get_string), surviving(Fmi2Slave.set_string)
+    get_real, set_real = keep_references(Fmi2Slave.get_real), keep_references(Fmi2Slave.set_real)
+    get_integer, set_integer = keep_references(Fmi2Slave.get_integer), keep_references(Fmi2Slave.set_integer)
+    get_boolean, set_boolean = keep_references(Fmi2Slave.get_boolean), keep_references(Fmi2Slave.set_boolean)
+    get_string, set_string = keep_references(Fmi2Slave.get_string), keep_references(Fmi2Slave.set_string)
 
     def _get_fmu_state(self) -> dict[str, object]:
         state = {"values": dict(self.values), "initialized": self.initialized, "warned": sorted(self.warned)}
         return state | ({"way": self.way} if self.model.rest else {})
 
-    @surviving
+    @keep_references
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         if state.keys() != self._get_fmu_state().keys() or state["values"].keys() != self.values.keys():
             self.refuse(f"the FMU state is none of {self.modelName}; expected one that this FMU gave")

@@ -10,7 +10,7 @@ from jointfmu_tools.drawing.tables import threads
 from jointfmu_tools.drawing.vdi2230 import stress_area
 from jointfmu_tools.fem.symmetry import unlike_holes
 from jointfmu_tools.fields.contact import ContactField
-from jointfmu_tools.pressing import judge_file, pressing
+from jointfmu_tools.pressure import judge_file, nominal_pressure
 
 from jointfmu.contact.interface import at_pressure, beyond
 from jointfmu.contact.roughness import GAMMA, level
@@ -67,10 +67,10 @@ def test_what_is_not_known_is_not_judged():
     assert judge(BOLTED.values, [0.0], 1e-6).level is None
 
 
-@pytest.mark.parametrize("joint", [name for name in KINDS if pressing(KINDS[name])])
+@pytest.mark.parametrize("joint", [name for name in KINDS if nominal_pressure(KINDS[name])])
 def test_every_joint_is_judged_under_its_load(joint):
     file = rough(joint, 2e-6)
-    how, found = pressing(KINDS[joint]), judge_file(file)
+    how, found = nominal_pressure(KINDS[joint]), judge_file(file)
     assert how.load in KINDS[joint].variables
     pressure = how.mean(file.values, how.usual(file.values))
     assert found.level.pressure == pytest.approx([pressure])

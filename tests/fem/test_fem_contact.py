@@ -71,7 +71,7 @@ def test_two_blocks_pressed_uniformly(law):
     interface = Interface.of(MeshQuad.init_tensor(lines, lines))
     area = 0.05**2
     loads = [
-        -sign * p * area * body.pressing(body.mesh.boundaries["far"])
+        -sign * p * area * body.uniform_load(body.mesh.boundaries["far"])
         for sign, body in zip((-1, 1), bodies, strict=True)
     ]
     solution = ContactModel(tuple(bodies), interface, law).solve(loads, 0.3 * p)
@@ -109,7 +109,7 @@ def wavy(n: int, mean: float, k: float, amplitude: float) -> ContactSolution:
     model = ContactModel(
         (body,), interface, Linear(k), lambda x, y: amplitude * (1.0 - np.cos(2.0 * np.pi * x)), (held,)
     )
-    return model.solve([-mean * interface.area.sum() * body.pressing(mesh.boundaries["far"])], mean)
+    return model.solve([-mean * interface.area.sum() * body.uniform_load(mesh.boundaries["far"])], mean)
 
 
 MODULUS = 0.5 / (1.0 - 0.3**2)  # 1/E* is the sum of (1 - nu^2)/E of both bodies
@@ -192,7 +192,8 @@ def test_a_mirror_image_equals_two_bodies(plates, law):
     assembly = plates.assembly
     sides = [elastic_body(plates.plan, assembly, side, 0.5) for side in (1, 2)]
     heads = [
-        np.stack([body.pressing(body.mesh.boundaries[f"head{i}"]) for i in (1, 2)], axis=1) for body in sides
+        np.stack([body.uniform_load(body.mesh.boundaries[f"head{i}"]) for i in (1, 2)], axis=1)
+        for body in sides
     ]
     whole = replace(plates, bodies=tuple(sides), heads=tuple(heads))
     one, two = (joint.solve(law, 4e3, 30.0).contact for joint in (plates, whole))

@@ -72,7 +72,7 @@ def test_heads_are_annuli(box_on_plate):
     assembly, plan = box_on_plate
     body = ElasticBody(body_mesh(plan, assembly, 2, 0.6), 1.5e11, 0.28, 7800.0)
     for i, at in enumerate(assembly.bolts.positions):
-        push = body.pressing(body.mesh.boundaries[f"head{i + 1}"])[2::3]
+        push = body.uniform_load(body.mesh.boundaries[f"head{i + 1}"])[2::3]
         nodes = body.nodes[:, push != 0.0]
         assert push.sum() == pytest.approx(1.0, rel=1e-12)
         assert body.nodes @ push == pytest.approx([*at, 0.02], abs=2e-5)  # the polygon is not quite symmetric

@@ -19,7 +19,7 @@ def test_all_floors_know_the_same_joints() -> None:
 @pytest.mark.parametrize("joint", KINDS)
 def test_every_part_can_be_loaded(joint: str) -> None:
     loaded = [tool for tool in TOOLS if part(KINDS[joint], tool)]
-    assert loaded == sorted(tools.PARTS[joint].names)
+    assert loaded == sorted(tools.PARTS[joint].modules)
     load = builders.PARTS[joint].native
     assert load is not None
     assert load().shared
@@ -42,6 +42,23 @@ def test_a_part_is_a_module(package: str) -> None:
     parts = ToolParts(package, ("export",))
     assert parts.load("export") is sys.modules[f"{package}.export"]
     assert parts.load("fit") is None
+
+
+def test_a_module_may_serve_several_tools(package: str) -> None:
+    parts = ToolParts(package, ("export",), pressure="helper", checks="helper")
+    assert parts.load("pressure") is parts.load("checks") is sys.modules[f"{package}.helper"]
+
+
+@pytest.mark.parametrize(
+    ("modules", "what"),
+    [
+        ({"pressure": "load"}, "joint_of_a_test.load is not there"),
+        ({"pressures": "helper"}, "joint_of_a_test.pressures is of no tool"),
+    ],
+)
+def test_a_wrong_module_fails_at_import(package: str, modules: dict[str, str], what: str) -> None:
+    with pytest.raises(ImportError, match=what):
+        ToolParts(package, ("export",), **modules)
 
 
 @pytest.mark.parametrize(

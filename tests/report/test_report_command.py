@@ -10,7 +10,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_fmu_src.native.page import panels
 from jointfmu_tools import cli
-from jointfmu_tools.pressing import judge_file
+from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.report.course import Course
 from jointfmu_tools.report.joint import TOPICS, write_joint_report
 

@@ -15,7 +15,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 SHOWN = 3
 """Values of a replaced FMU that are printed; `--json` has all."""

@@ -15,7 +15,7 @@ from ..export import exports
 from ..export.forms import ERROR, FORMS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
-from ..pressing import judge_file, pressing
+from ..pressure import judge_file, nominal_pressure
 
 if TYPE_CHECKING:
     from ..export.writing import Written
@@ -108,7 +108,7 @@ def _export(args: argparse.Namespace) -> int:
 
 def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
     """The judgement at the working point, at the pressures of the user's nodes, or at the usual load."""
-    how = pressing(KINDS[file.joint])
+    how = nominal_pressure(KINDS[file.joint])
     load = getattr(args, how.load, None) if how else None
     if load is None and args.nodes:
         from ..export.mesh import read_pairs

@@ -16,7 +16,7 @@ from jointfmu.parameters import dump, load
 
 from ..drawing.reading import number
 from ..fitting.procedure import FitOption, Procedure, procedures
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 if TYPE_CHECKING:
     from ..fitting.outcome import FitResult

@@ -11,7 +11,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 
 def add(commands: Commands) -> None:

@@ -14,7 +14,7 @@ from jointfmu.parameters import dump
 
 from ..drawing.part import Drawing, Option
 from ..joint_parts import part
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 if TYPE_CHECKING:
     from ..drawing.part import NewJoint

@@ -58,7 +58,7 @@ def _ring(args: argparse.Namespace) -> int:
         from ..systems import ringing
     except ImportError as error:
         raise without_package(error, "run a system") from None
-    example = ringing.rung(system(args.system), args.joint)
+    example = ringing.vibrating_joint(system(args.system), args.joint)
     _check(args, example.inertia_unit)
     for name in (example.body.fmu, example.body.partner):
         if not (args.fmus / f"{name}.fmu").is_file():

@@ -11,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
-from ..pressing import judge_file
+from ..pressure import judge_file
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "

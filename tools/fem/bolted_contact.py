@@ -41,7 +41,7 @@ class BoltedContact:
             marked = body.mesh.boundaries
             count = len(assembly.bolts.positions)
             bodies.append(body)
-            heads.append(np.stack([body.pressing(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
+            heads.append(np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 

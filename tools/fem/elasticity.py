@@ -89,7 +89,7 @@ class ElasticBody:
         scalar = self.density * (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
         return _assembled(self.basis, [scalar[..., None, None] * np.eye(3)])
 
-    def pressing(self, facets: Index) -> Array:
+    def uniform_load(self, facets: Index) -> Array:
         """Load (n) [N per N] along z of a unit force spread uniformly over facets, in all unknowns."""
         basis = FacetBasis(self.mesh, self.element, facets=facets, intorder=ORDER)
         share = LinearForm(lambda v, w: v).assemble(basis)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.stamp import build_time
+from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval, flat_fields
 

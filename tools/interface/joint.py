@@ -17,7 +17,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import ParameterFile, dump
 
-from ..pressing import judge_file
+from ..pressure import judge_file
 from ..shown import quantity, stated
 from .frame import Frame
 from .law import Law

@@ -18,7 +18,7 @@ from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity.units import factor
 
 from ..joint_parts import part
-from ..pressing import judge_file
+from ..pressure import judge_file
 from ..shown import Stated, quantity, shown_unit, spelled, stated
 from .beside import Beside
 from .course import Course

@@ -8,7 +8,7 @@ from jointfmu_fmu_src.joint_parts.chart import as_json
 from jointfmu_fmu_src.templates import template
 
 from jointfmu import __version__
-from jointfmu.files.stamp import build_time
+from jointfmu.files.timestamp import build_time
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind

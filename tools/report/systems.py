@@ -8,7 +8,7 @@ from matplotlib.figure import Figure as Canvas
 
 from ..shown import spelled
 from ..systems.decays import Decay
-from ..systems.ringing import Body, Ringing, Rung, rings, stiffness_line
+from ..systems.ringing import Body, Ringing, VibratingJoint, stiffness_line, vibrating_joints
 from .figure import Figure, Panel, Series, drawn
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
@@ -17,13 +17,13 @@ _WAYS = ((1.0, "above"), (-1.0, "below"))
 
 def resonances(found: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
     """A figure per system of a joint that rings; `folder` has the FMUs (FMI 2.0)."""
-    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
     return [
         _resonance(name, bodies[name], points, folder) for name, points in found.items() if name in bodies
     ]
 
 
-def _resonance(name: str, one: Rung, points: Sequence[Ringing], folder: Path) -> Figure:
+def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder: Path) -> Figure:
     body, moving = one.body, one.moving.name
     return Figure(
         f"In a system: resonance of the {name.replace('_', ' ')} over its {body.load.name}",
@@ -36,11 +36,11 @@ def _resonance(name: str, one: Rung, points: Sequence[Ringing], folder: Path) ->
 
 def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
     """A figure per system of a joint that slips."""
-    bodies = {name: one for name, one in rings().items() if one.joint.kind == joint}
+    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
     return [_ring_down(name, bodies[name], points) for name, points in decays.items() if name in bodies]
 
 
-def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
+def _ring_down(name: str, one: VibratingJoint, points: Sequence[Decay]) -> Figure:
     body, moving, (point, *_) = one.body, one.moving.name, points
     said = point.law is not None
     pulled = f"{body.deflection.factor * body.pull.deflection:g} {spelled(body.deflection.unit)}"
@@ -57,7 +57,7 @@ def _ring_down(name: str, one: Rung, points: Sequence[Decay]) -> Figure:
     )
 
 
-def resonance_panels(points: Sequence[Ringing], one: Rung, folder: Path) -> list[Panel]:
+def resonance_panels(points: Sequence[Ringing], one: VibratingJoint, folder: Path) -> list[Panel]:
     """Resonance over the load, and one free decay with the envelope of the stated damping."""
     points, body = sorted(points, key=lambda point: point.load), one.body
     x = [body.load.factor * point.load for point in points]
@@ -105,7 +105,7 @@ def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
     ]
 
 
-def draw(canvas: Canvas, points: Sequence[Ringing], one: Rung, folder: Path) -> None:
+def draw(canvas: Canvas, points: Sequence[Ringing], one: VibratingJoint, folder: Path) -> None:
     """Resonance and decay as a picture; `folder` has the FMUs (FMI 2.0)."""
     drawn(canvas, resonance_panels(points, one, folder))
 

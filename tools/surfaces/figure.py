@@ -1,7 +1,7 @@
 """Picture of an identification: data, law and range of both methods; filled points are in the range."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from jointfmu.contact.fractal import second_difference
 from .heights import Array
 from .results import Identification, Result
 from .structure import power_law
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 COLOURS = {"profile": plots.BLUE, "areal": plots.BLUE, "x": plots.RED, "y": plots.GREEN}
 
@@ -37,7 +40,7 @@ def draw(identified: Identification, path: str | Path) -> None:
             panel.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
-def _one(axes: Any, result: Result) -> None:
+def _one(axes: "Axes", result: Result) -> None:
     x, y, law = _shown(result)
     inside = (result.series.scale >= result.fit.low * 0.999) & (
         result.series.scale <= result.fit.high * 1.001

@@ -15,7 +15,7 @@ from jointfmu.progress import track
 from ..fitting import decay
 from ..fitting.hysteresis import HysteresisLaw
 from .master import Array, Slave, motion
-from .ringing import PER_PERIOD, Body, Rest, Rung, rings
+from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
 
 PERIODS, SETTLED = 60, 10
 """Periods of a decay, and the last ones, whose mean is where the joint settles: friction holds it off its
@@ -59,12 +59,12 @@ def examples(folder: Path) -> dict[str, list[Decay]]:
 
     folder : of the FMUs (FMI 2.0)
     """
-    pulls = [(name, one, one.body.pull) for name, one in rings().items()]
+    pulls = [(name, one, one.body.pull) for name, one in vibrating_joints().items()]
     return {name: decays(one, folder, pull.deflection, [pull.load]) for name, one, pull in pulls}
 
 
 def decays(
-    one: Rung,
+    one: VibratingJoint,
     folder: Path,
     first: float,
     loads: Sequence[float] | None = None,

@@ -147,14 +147,14 @@ def body_on(joint: str) -> Body:
     """How a joint rings with a body on it; ValueError if it says nothing of that."""
     ringing = part(KINDS[joint], "ringing")
     if ringing is None:
-        rings = [name for name, kind in KINDS.items() if part(kind, "ringing")]
-        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(rings)}")
+        able = [name for name, kind in KINDS.items() if part(kind, "ringing")]
+        raise ValueError(f"joint {joint!r} does not say how it rings, allowed are {', '.join(able)}")
     body: Body = ringing.RINGING
     return body
 
 
 @dataclass(frozen=True, slots=True)
-class Rung:
+class VibratingJoint:
     """A joint of a system, and the body on it that rings while all others are held.
 
     key : the parameter of the body that is its inertia
@@ -188,7 +188,7 @@ class Rung:
         return KINDS[self.joint.kind].variables[self.body.over].unit
 
 
-def rung(system: System, joint: str | None = None) -> Rung:
+def vibrating_joint(system: System, joint: str | None = None) -> VibratingJoint:
     """What rings in a system.
 
     joint : name of one of its joints; None: the only one
@@ -206,23 +206,25 @@ def rung(system: System, joint: str | None = None) -> Rung:
     moving = system.components[ends[0]] if ends else None
     if joints[name].model != body.fmu or moving is None or moving.model != body.partner:
         raise ValueError(f"{name}: expected a {body.fmu} that takes {body.motion[0]} from a {body.partner}")
-    return Rung(body, joints[name], moving, next(iter(dict(flat_fields(PARTNERS[body.partner].parameters)))))
+    return VibratingJoint(
+        body, joints[name], moving, next(iter(dict(flat_fields(PARTNERS[body.partner].parameters))))
+    )
 
 
 def examples(folder: Path) -> dict[str, list[Ringing]]:
     """The systems of one joint that says how it rings, over their loads; `folder` has the FMUs (FMI 2.0)."""
-    return {name: ring(one, folder) for name, one in rings().items()}
+    return {name: ring(one, folder) for name, one in vibrating_joints().items()}
 
 
-def rings() -> dict[str, Rung]:
+def vibrating_joints() -> dict[str, VibratingJoint]:
     """What rings in the shipped systems of one joint that says how, by the system's name."""
     alone = {n: s for n, s in systems().items() if len(s.joints) == 1}
     kinds = {n: next(iter(s.joints.values())).kind for n, s in alone.items()}
-    return {n: rung(s) for n, s in alone.items() if part(KINDS[kinds[n]], "ringing")}
+    return {n: vibrating_joint(s) for n, s in alone.items() if part(KINDS[kinds[n]], "ringing")}
 
 
 def ring(
-    one: Rung, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
+    one: VibratingJoint, folder: Path, loads: Sequence[float] | None = None, inertia: float | None = None
 ) -> list[Ringing]:
     """The body of a system on its joint without friction, about working points under a load.
 
@@ -242,7 +244,7 @@ def ring(
     ]
 
 
-def stiffness_line(one: Rung, folder: Path, points: Sequence[Ringing]) -> tuple[Array, Array]:
+def stiffness_line(one: VibratingJoint, folder: Path, points: Sequence[Ringing]) -> tuple[Array, Array]:
     """Loads (n), evenly from the least to the largest of some points, and sqrt(K/J) there [rad/s]."""
     joint = {**one.joint.parameters, **one.body.elastic}
     ends, inertia = [point.load for point in points], points[0].inertia

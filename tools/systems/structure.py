@@ -9,7 +9,7 @@ from jointfmu_fmu_src.ssv import NUMBER, SSP, add_units
 from jointfmu_fmu_src.xml_parts import serialized
 
 from jointfmu import __version__
-from jointfmu.files.stamp import fixed_time
+from jointfmu.files.timestamp import fixed_time
 
 from .system import System
 from .wiring import model_of, wires

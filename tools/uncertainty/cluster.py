@@ -49,7 +49,7 @@ def client(scheduler: str | None, workers: int | None) -> Iterator[object]:
         return cluster, Client(cluster)
 
     with _mute():
-        started, dask_client = _deaf(local)
+        started, dask_client = _without_interrupt(local)
         with started, dask_client:
             dask_client.run(_quiet)
             yield dask_client
@@ -90,7 +90,7 @@ def _unmute(before: object, kept: int) -> None:
     sys.stderr = before
 
 
-def _deaf(make: Callable[[], T]) -> T:
+def _without_interrupt(make: Callable[[], T]) -> T:
     """What `make` returns. Processes that it starts do not hear Ctrl-C, which a terminal sends to all of its
     processes; this one hears it all the time.
 

@@ -1,7 +1,7 @@
 """Pictures of a study: bands over the load with the indices below, or distributions at one load."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,6 +9,9 @@ from jointfmu import plots
 
 from .propagate import QUANTILES, Bands
 from .sensitivity import Sensitivity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _COLOURS = (plots.BLUE, plots.RED, plots.GREEN, "#b8860b", "#7b4fa3", "#3a9ca6", plots.GREY, "#a65628")
 
@@ -29,7 +32,7 @@ def draw(path: Path, bands: Bands, sensitivity: Sensitivity | None, load: str) -
                 _indices(grid[1, column], sensitivity, name, load, legend=column == 0)
 
 
-def _bands(axes: Any, bands: Bands, name: str, label: str, load: str) -> None:
+def _bands(axes: "Axes", bands: Bands, name: str, label: str, load: str) -> None:
     q = dict(zip(QUANTILES, bands.quantiles[name], strict=True))
     for low, high, shade in ((0.01, 0.99, 0.12), (0.05, 0.95, 0.2), (0.25, 0.75, 0.3)):
         text = f"{100 * low:g} to {100 * high:g} %"
@@ -42,14 +45,14 @@ def _bands(axes: Any, bands: Bands, name: str, label: str, load: str) -> None:
     axes.legend(fontsize=8)
 
 
-def _spread(axes: Any, bands: Bands, name: str, label: str) -> None:
+def _spread(axes: "Axes", bands: Bands, name: str, label: str) -> None:
     axes.plot(bands.quantiles[name][:, 0], 100.0 * np.array(QUANTILES), "o-", color=plots.BLUE)
     axes.axvline(bands.nominal[name][0], color=plots.RED, linestyle="--", label="parameter file")
     axes.set(xlabel=label, ylabel="samples below [%]", ylim=(0.0, 100.0))
     axes.legend(fontsize=8)
 
 
-def _indices(axes: Any, sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
+def _indices(axes: "Axes", sensitivity: Sensitivity, name: str, load: str, legend: bool) -> None:
     indices = sensitivity.outputs[name]
     for i, parameter in enumerate(sensitivity.names):
         colour = _COLOURS[i % len(_COLOURS)]

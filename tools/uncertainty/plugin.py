@@ -10,7 +10,7 @@ from distributed import WorkerPlugin
 from .worker import FILES, slim
 
 
-class Bring(WorkerPlugin):  # type: ignore[misc]
+class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
     """Gives an FMU to every worker, also to one that is started later, and takes it away in the end.
 
     Only what the machine runs is kept of it, so that it unpacks faster for every run.

@@ -115,14 +115,14 @@ def _finished(
     dask_client: Any, fmu: Path, drive: LoadRamp, runs: Sequence[Mapping[str, Any]], todo: Sequence[int]
 ) -> Iterator[dict[str, object]]:
     """Finished runs as they come; never more than AHEAD per worker are under way."""
-    from .plugin import Bring
+    from .plugin import FmuDistribution
 
     try:
         dask_client.wait_for_workers(1, timeout=60)
     except TimeoutError:
         raise RuntimeError(f"{dask_client.scheduler.address}: has had no worker for 60 s") from None
     key = f"jointfmu-{uuid4()}"
-    dask_client.register_plugin(Bring(key, fmu.name, fmu.read_bytes()), name=key)
+    dask_client.register_plugin(FmuDistribution(key, fmu.name, fmu.read_bytes()), name=key)
     try:
         yield from _as_completed(dask_client, key, drive, runs, todo)
     finally:

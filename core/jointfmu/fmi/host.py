@@ -8,8 +8,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from ctypes import c_double, c_uint
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 
 class Message(NamedTuple):
@@ -30,7 +33,12 @@ class Instance:
     """
 
     def __init__(
-        self, folder: str, description: Any, name: str, exchange: bool, lines: list[str] | None = None
+        self,
+        folder: str,
+        description: "ModelDescription",
+        name: str,
+        exchange: bool,
+        lines: list[str] | None = None,
     ) -> None:
         from fmpy import fmi2, fmi3
 
@@ -146,7 +154,7 @@ class Reals:
 
 @contextmanager
 def opened(
-    folder: str, described: Any, source: str, lines: list[str], exchange: bool = False
+    folder: str, described: "ModelDescription", source: str, lines: list[str], exchange: bool = False
 ) -> Iterator[Instance]:
     """An instance of an unpacked FMU, freed afterwards; its warnings and errors are appended to `lines`.
 
@@ -170,7 +178,7 @@ def opened(
         instance.free()
 
 
-def description(fmu: str | Path) -> Any:
+def description(fmu: str | Path) -> "ModelDescription":
     """fmpy's model description of an FMU, not validated."""
     from fmpy import read_model_description
 
@@ -178,7 +186,7 @@ def description(fmu: str | Path) -> Any:
 
 
 @contextmanager
-def unpacked(fmu: str | Path, exchange: bool = False) -> Iterator[tuple[str, Any]]:
+def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, ModelDescription]]":
     """Folder with what runs of an FMU, and fmpy's model description, removed afterwards.
 
     exchange : whether it may be for model exchange only
@@ -229,7 +237,7 @@ def _fmi_version(path: Path) -> str:
     return root.get("fmiVersion", "none")
 
 
-def _check_interface(described: Any, source: Path, exchange: bool) -> None:
+def _check_interface(described: "ModelDescription", source: Path, exchange: bool) -> None:
     """Refuse what cannot be driven: no such interface, no binary for this platform."""
     from fmpy import platform, supported_platforms
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from ..files.columns import Array
 from ..quantity import units
 from . import ramp
 from .host import unpacked
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 SHAPES = ("triangle", "sine")
 POINTS, CYCLES = 200, 2
@@ -206,7 +209,7 @@ def of(results: Sequence[ramp.RampResult], input_name: str, output: str, swing: 
     return HysteresisLoops(motion, force, (first.units[motion], first.units[force]), sign, loops)
 
 
-def variables(description: Any) -> tuple[dict[str, str], dict[str, str]]:
+def variables(description: "ModelDescription") -> tuple[dict[str, str], dict[str, str]]:
     """{name: unit} of the inputs and of the outputs of an fmpy model description."""
     inputs, outputs = (
         {v.name: v.unit or "1" for v in description.modelVariables if v.causality == causality}

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from ..files import columns
 from ..progress import track
 from .host import opened, unpacked
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 Array = NDArray[np.float64]
 
@@ -115,7 +118,12 @@ def units(fmu: str | Path) -> dict[str, str]:
 
 
 def _drive(
-    folder: str, md: Any, inputs: Mapping[str, Array], time: Array, settings: dict[str, Any], source: str
+    folder: str,
+    md: "ModelDescription",
+    inputs: Mapping[str, Array],
+    time: Array,
+    settings: dict[str, Any],
+    source: str,
 ) -> RampResult:
     variables = {v.name: v for v in md.modelVariables}
     allowed = [v.name for v in md.modelVariables if v.causality == "input"]

@@ -7,7 +7,7 @@ and README.md, of one experiment: the first validation that needs no parameter s
 import re
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ..files.writing import made_folder, write_bytes
 from ..fmi import host
@@ -15,6 +15,9 @@ from .manifest import CO_SIMULATION, FOLDER, Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
 from .series import TimeSeries, text
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 KNOWN = ("c-code", "darwin64", "linux32", "linux64", "win32", "win64")
 """Platforms of the rules, for FMI 2.0; those of FMI 3.0 are named as the FMU has them."""
@@ -66,7 +69,7 @@ def _ends(one: Experiment) -> tuple[float, float]:
     return one.start or 0.0, stop
 
 
-def _files(proof: Proof, chosen: Outcome, description: Any) -> dict[str, bytes]:
+def _files(proof: Proof, chosen: Outcome, description: "ModelDescription") -> dict[str, bytes]:
     """{name: content}."""
     one, name = chosen.experiment, _safe(description.modelName)
     assert one.references is not None
@@ -82,7 +85,7 @@ def _files(proof: Proof, chosen: Outcome, description: Any) -> dict[str, bytes]:
     }
 
 
-def _readme(proof: Proof, chosen: Outcome, description: Any) -> str:
+def _readme(proof: Proof, chosen: Outcome, description: "ModelDescription") -> str:
     one, worst, name = chosen.experiment, chosen.worst, _safe(description.modelName)
     assert worst is not None
     tool = description.generationTool or "an unknown tool"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from .manifest import MODEL_EXCHANGE, Experiment
 from .outcome import Outcome, WorstPoint
 from .task import FLOOR
 from .values import course, kind, setting
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 Array = NDArray[np.float64]
 
@@ -43,7 +46,7 @@ class ExperimentPlan:
 
     @classmethod
     def of(
-        cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: Any
+        cls, fmu: Path, folder: str, experiment: Experiment, interface: str, description: "ModelDescription"
     ) -> "ExperimentPlan":
         """The plan of an experiment with an unpacked FMU."""
         if not interface:
@@ -116,7 +119,7 @@ def _with_corners(times: Array, corners: Array) -> Array:
     return np.sort(np.append(times[far], inner))
 
 
-def _times(experiment: Experiment, description: Any) -> Array:
+def _times(experiment: Experiment, description: "ModelDescription") -> Array:
     """Communication points [s]; what an experiment does not state is the FMU's default, or its results'."""
     default = description.defaultExperiment
     results = experiment.references or experiment.stimuli

@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..fmi.host import unpacked
 from ..progress import track
@@ -17,6 +17,9 @@ from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof
 from .plan import ExperimentPlan, task
 from .values import has_start, start
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +96,7 @@ def _differing(found: Mapping[str, object], expected: Expected) -> list[str]:
     ]
 
 
-def _offered(description: Any) -> list[str]:
+def _offered(description: "ModelDescription") -> list[str]:
     """Interfaces of an FMU."""
     kinds = {CO_SIMULATION: description.coSimulation, MODEL_EXCHANGE: description.modelExchange}
     return [name for name, kind in kinds.items() if kind is not None]

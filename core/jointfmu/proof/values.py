@@ -1,12 +1,15 @@
 """Variables of an FMU: their kind, and values of files as theirs."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .manifest import Setting
 from .series import TimeSeries
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ScalarVariable
 
 Array = NDArray[np.float64]
 
@@ -20,7 +23,7 @@ KINDS = {
 """{type: kind} of variables that are driven and compared; in a series a truth value is 0 or 1."""
 
 
-def kind(variable: Any) -> str:
+def kind(variable: "ScalarVariable") -> str:
     """Kind of a variable. Raises ValueError if it is none of KINDS."""
     if variable.type not in KINDS or variable.dimensions:
         what = "an array" if variable.dimensions else f"of type {variable.type}"
@@ -28,7 +31,7 @@ def kind(variable: Any) -> str:
     return KINDS[variable.type]
 
 
-def setting(variable: Any, given: Setting) -> Any:
+def setting(variable: "ScalarVariable", given: Setting) -> Any:
     """A start value as the variable takes it. Raises ValueError for a foreign unit, or if it does not fit."""
     own = variable.unit or "1"
     if given.unit and given.unit != own:
@@ -44,7 +47,7 @@ def setting(variable: Any, given: Setting) -> Any:
         raise ValueError(f"{variable.name} = {given.value!r} is no {variable.type}") from None
 
 
-def typed(variable: Any, value: float) -> float | int | bool:
+def typed(variable: "ScalarVariable", value: float) -> float | int | bool:
     """A number as a value of the kind of a variable. Raises ValueError if it is none."""
     if (own := kind(variable)) == "real":
         return value
@@ -54,7 +57,7 @@ def typed(variable: Any, value: float) -> float | int | bool:
     return bool(number) if own == "boolean" else number
 
 
-def course(variable: Any, stimuli: TimeSeries, times: Array, before: bool) -> list[Any]:
+def course(variable: "ScalarVariable", stimuli: TimeSeries, times: Array, before: bool) -> list[Any]:
     """An input at times: straight between rows if it is real, else held; see `Series.at`."""
     if kind(variable) != "real":
         return [typed(variable, value) for value in stimuli.held(variable.name, times).tolist()]
@@ -62,13 +65,13 @@ def course(variable: Any, stimuli: TimeSeries, times: Array, before: bool) -> li
     return list(found.tolist())
 
 
-def has_start(variable: Any) -> bool:
+def has_start(variable: "ScalarVariable") -> bool:
     """Whether the start value is one that can be compared."""
     set_from_outside = variable.causality in ("parameter", "input") and variable.start is not None
     return set_from_outside and variable.type in KINDS and not variable.dimensions
 
 
-def start(variable: Any) -> float | int | bool:
+def start(variable: "ScalarVariable") -> float | int | bool:
     """The start value of modelDescription.xml."""
     text = str(variable.start)
     if variable.type == "Boolean":

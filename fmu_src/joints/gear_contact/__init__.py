@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...joint_parts import Parts
-from .page import PANELS
-from .terminals import TERMINALS
+from ...joint_parts.page import RampPanel
+from ...joint_parts.terminals import TRANSLATIONAL, Terminal
 
 if TYPE_CHECKING:
     from ...joint_parts.native import NativePart
@@ -16,6 +16,21 @@ def _native() -> "NativePart":
 
     return PART
 
+
+PANELS = {"GearContact": (RampPanel("f", ("s_rel",)), RampPanel("f", ("K_N",)))}
+"""What the page's plot of the load ramp shows."""
+
+TERMINALS = {
+    "GearContact": (
+        Terminal(
+            "flange",
+            TRANSLATIONAL,
+            "a",
+            "one flank pressed on the other, along the normal",
+            {"s": ("s_rel", "signal"), "f": ("f", "inflow")},
+        ),
+    )
+}
 
 PARTS = Parts(
     folder=Path(__file__).parent,

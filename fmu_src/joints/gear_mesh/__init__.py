@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...joint_parts import Parts
-from .page import PANELS
-from .terminals import TERMINALS
+from ...joint_parts.page import RampPanel
+from ...joint_parts.terminals import shaft
 
 if TYPE_CHECKING:
     from ...joint_parts.native import NativePart
@@ -16,6 +16,11 @@ def _native() -> "NativePart":
 
     return PART
 
+
+PANELS = {"GearMesh": (RampPanel("phi1", ("f",)), RampPanel("s_rel", ("K",)))}
+"""What the page's plot of the load ramp shows."""
+
+TERMINALS = {"GearMesh": (shaft(1, "a", "wheel 1"), shaft(2, "b", "wheel 2"))}
 
 PARTS = Parts(
     folder=Path(__file__).parent,

@@ -9,8 +9,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.gear_mesh.new.wheels import InvoluteGearPair
 
-from jointfmu.joints.gear_mesh.pairs import pairs
-from jointfmu.joints.gear_mesh.spring import GearMeshSpring
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring, pairs
 from jointfmu.parameters import default, load
 
 DRAWING = ["--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "150"]

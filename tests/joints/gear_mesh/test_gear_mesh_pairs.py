@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from jointfmu.joints.gear_mesh.pairs import pairs
+from jointfmu.joints.gear_mesh.spring import pairs
 
 EPS = np.finfo(float).eps
 

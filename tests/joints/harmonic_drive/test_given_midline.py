@@ -9,7 +9,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.pressing import judge_file
+from jointfmu_tools.pressure import judge_file
 from jointfmu_tools.uncertainty import propagate
 from jointfmu_tools.uncertainty.problem import pose
 from scipy.interpolate import PchipInterpolator

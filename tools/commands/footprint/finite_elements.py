@@ -11,7 +11,7 @@ from jointfmu.parameters import ParameterFile, default, load
 
 from ...drawing.proof import proof_load
 from ...fields.clamped import clamped
-from ...pressing import overload
+from ...pressure import overload
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly

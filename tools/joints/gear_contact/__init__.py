@@ -3,5 +3,10 @@
 from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
-    __name__, ("checks", "export", "figures", "laboratory", "modelica", "new", "pressing", "reduced")
+    __name__,
+    ("laboratory", "modelica", "new", "reduced"),
+    checks="job",
+    figures="job",
+    export="load",
+    pressure="load",
 )

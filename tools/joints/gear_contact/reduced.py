@@ -1,7 +1,6 @@
 """The gear contact for many samples at once: K_N and approach along a ramp of force."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 def evaluate(
-    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+    parameters: type[Contact], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
     """K_N [N/m] and s_rel [m] (n, m) at the forces factor (n, 1) times loads (m) [N], ascending.
 

@@ -2,4 +2,6 @@
 
 from ...joint_parts import ToolParts
 
-PARTS = ToolParts(__name__, ("checks", "export", "figures", "modelica", "new", "pressing", "reduced"))
+PARTS = ToolParts(
+    __name__, ("modelica", "new", "reduced"), checks="job", figures="job", export="load", pressure="load"
+)

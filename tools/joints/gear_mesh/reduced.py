@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.pairs import pairs
-from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, phase
+from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, pairs, phase
 
 from ...batch.approach import Rows, tabulate
 from ...batch.samples import columns
@@ -25,7 +24,7 @@ RAMP_END = 0.05
 
 
 def evaluate(
-    parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
+    parameters: type[Mesh], values: Mapping[str, object], loads: Array, factor: Array
 ) -> dict[str, Array]:
     """K [N/m] and f [N] (n, m) at the angles factor (n, 1) times loads (m) [rad], ascending.
 

@@ -14,7 +14,7 @@ PARTS = ToolParts(
         "laboratory",
         "modelica",
         "new",
-        "pressing",
+        "pressure",
         "reduced",
         "report",
         "ringing",

@@ -1,8 +1,35 @@
 """Gear contact: two tooth flanks under a load (Yu 2022)."""
 
+import math
+
 from ..kind import Kind, RoughSurface
-from .spring import GearContact, RoughGearContact
-from .variables import MODELS
+from ..model import BEYOND, Model, Outside, Ramp, Variable
+from .spring import GearContact, GearContactSpring, RoughGearContact
+
+MODELS = (
+    Model(
+        name="GearContact",
+        joint="gear_contact",
+        doc="Tooth contact of a gear: force in, motion out",
+        parameters=GearContact,
+        spring=GearContactSpring.of,
+        inputs=(Variable("f", "N", "normal load of the tooth contact", 1e3),),
+        outputs=(
+            Variable("s_rel", "m", "approach of the two flanks from first touch", 1e-6),
+            Variable("K_N", "N/m", "tangent stiffness df/ds", 1e9),
+            Variable("A_r", "m2", "real contact area", 1e-6),
+            Variable("elastic_fraction", "1", "elastic part of the real contact area"),
+        ),
+        evaluate=lambda s, v: s.approach(v["f"]),
+        outside=(
+            Outside("f", lambda j, end, v: (0.0, math.inf), "it pulls, the flanks are apart"),
+            Outside("f", lambda j, end, v: (-math.inf, j.A_0 * end[1]), BEYOND),
+        ),
+        ramp=Ramp("f", 3e3, 10.0),
+        dependencies={},
+        hidden=("mu", "traction_ratio"),
+    ),
+)
 
 KIND = Kind(
     name="gear_contact",

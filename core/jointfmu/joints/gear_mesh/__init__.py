@@ -1,8 +1,40 @@
 """Gear mesh: tooth pairs with rough flanks (Yu 2022) and bending teeth between two wheels."""
 
 from ..kind import Kind, RoughSurface
-from .spring import GearMesh, RoughGearMesh
-from .variables import MODELS
+from ..model import BEYOND, Model, Outside, Ramp, Variable
+from .spring import GearMesh, GearMeshSpring, RoughGearMesh
+
+_ANGLES = ("phi1", "phi2")
+
+MODELS = (
+    Model(
+        name="GearMesh",
+        joint="gear_mesh",
+        doc="Mesh of two gear wheels with rough flanks and backlash: motion in, torque out",
+        parameters=GearMesh,
+        spring=GearMeshSpring.of,
+        inputs=(
+            Variable("phi1", "rad", "angle of wheel 1; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"),
+            Variable("w1", "rad/s", "speed of wheel 1"),
+            Variable("phi2", "rad", "angle of wheel 2; wheels roll with r_b1 phi1 + r_b2 phi2 = 0"),
+            Variable("w2", "rad/s", "speed of wheel 2"),
+        ),
+        outputs=(
+            Variable("tau1", "N.m", "torque of the mesh on wheel 1", 100.0),
+            Variable("tau2", "N.m", "torque of the mesh on wheel 2", 100.0),
+            Variable("s_rel", "m", "r_b1 phi1 + r_b2 phi2 beyond half the backlash, 0 inside", 1e-5),
+            Variable("f", "N", "normal force of the mesh, positive on the driving flanks", 1e3),
+            Variable("K", "N/m", "stiffness df/ds_rel at the present phase of the mesh cycle", 1e8),
+            Variable("pairs", "1", "tooth pairs in contact at the present phase, once flanks touch"),
+            Variable("E", "J", "elastic energy of the mesh", 1e-2),
+        ),
+        evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
+        outside=(Outside("s_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
+        ramp=Ramp("phi1", 1.5e-3, 5e-6),
+        dependencies=dict.fromkeys(("s_rel", "K", "pairs", "E"), _ANGLES),
+        hidden=("mu", "traction_ratio"),
+    ),
+)
 
 KIND = Kind(
     name="gear_mesh",

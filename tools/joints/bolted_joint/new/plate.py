@@ -15,7 +15,7 @@ from ....drawing.part import Given, NewJoint
 from ....drawing.reading import number, numbers
 from ....drawing.sheet import Sheet
 from ....drawing.tables import Thread, classes, thread_source
-from ....pressing import overload
+from ....pressure import overload
 from . import layout
 
 Array = NDArray[np.float64]

@@ -1,7 +1,8 @@
-"""What must hold of the contact's ramp."""
+"""The ramp of the gear contact in the main job: what must hold of it, and the figure of the report."""
 
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import quad
@@ -12,6 +13,7 @@ from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import default
 
 from ...job.checks import deviation
+from ...report.figure import Figure, Panel, Series
 
 
 def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
@@ -32,3 +34,15 @@ def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
 
 RAMPS = {"GearContact": _approach}
 """{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+
+
+def figures(outcome: Any) -> list[Figure]:
+    """The figure of an outcome of the main job."""
+    c = outcome.ramps["GearContact"].columns
+    load = c["f"] / 1e3
+    panels = [
+        Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),
+        Panel("Approach over load", "load [kN]", "s_rel [um]", [Series("s_rel", load, c["s_rel"] * 1e6)]),
+    ]
+    text = "Up to about a tenth of the nominal area in real contact."
+    return [Figure("Stiffness and approach over load", text, panels, data="GearContact.csv")]

@@ -1,4 +1,4 @@
-"""What a joint's file `pressing.py` gives: how its load presses on its interface; its judgement at a load."""
+"""What a joint's file `pressure.py` gives: how its load presses on its interface; its judgement at a load."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ from .joint_parts import part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Pressing:
-    """PRESSING of the file pressing.py in a joint's folder.
+class NominalPressure:
+    """PRESSURE of `pressure.py` in a joint's folder.
 
     load  : the input or output of the joint whose value a working point is
     usual : parameter set -> load where none is asked for
@@ -31,10 +31,10 @@ class Pressing:
     borne: Callable[..., tuple[float, str] | None] = lambda parameters: None
 
 
-def pressing(kind: Kind) -> Pressing | None:
+def nominal_pressure(kind: Kind) -> NominalPressure | None:
     """What the joint's folder says; None if it says nothing."""
-    found = part(kind, "pressing")
-    return found.PRESSING if found else None
+    found = part(kind, "pressure")
+    return found.PRESSURE if found else None
 
 
 def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Judgement:
@@ -44,7 +44,7 @@ def judge_file(file: ParameterFile, loads: Sequence[float] | None = None) -> Jud
             is judged
     """
     kind = KINDS[file.joint]
-    how = pressing(kind)
+    how = nominal_pressure(kind)
     if how is None or kind.law_of(file.values) is None:
         return Judgement(None, ())
     if loads is None and file.start(how.load) > 0.0:

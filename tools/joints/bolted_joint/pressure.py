@@ -7,7 +7,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.shape import NodalField
 
 from ...drawing.proof import proof_load
-from ...pressing import Pressing
+from ...pressure import NominalPressure
 
 
 def _mean(joint: Bolted, preload: float) -> float:
@@ -29,4 +29,4 @@ def _borne(joint: Bolted) -> tuple[float, str] | None:
     return None if isinstance(pattern, NodalField) else proof_load(pattern.hole_diameter)
 
 
-PRESSING = Pressing(load="preload", usual=_usual, mean=_mean, peak=_peak, borne=_borne)
+PRESSURE = NominalPressure(load="preload", usual=_usual, mean=_mean, peak=_peak, borne=_borne)

@@ -8,7 +8,7 @@ from jointfmu.joints.harmonic_drive.law import (
     peak_pressure,
 )
 
-from ...pressing import Pressing
+from ...pressure import NominalPressure
 
 _Any = HarmonicDrive | RoughHarmonicDrive
 
@@ -27,4 +27,6 @@ def _scale(drive: _Any, torque: float) -> float:
     return float(pair_stiffness(drive, torque)[0] / (tangential * drive.radius**2))
 
 
-PRESSING = Pressing(load="tau", usual=lambda drive: drive.rated_torque, mean=_mean, peak=_peak, scale=_scale)
+PRESSURE = NominalPressure(
+    load="tau", usual=lambda drive: drive.rated_torque, mean=_mean, peak=_peak, scale=_scale
+)

@@ -1,12 +1,13 @@
-"""What other solvers are given of a gear contact."""
+"""What a load does to a gear contact: curves for other solvers, and pressure on the flanks."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.gear_contact import KIND
-from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import Contact, GearContact, GearContactSpring
 
 from ...export.exports import Exports, LoadCurve
+from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
@@ -32,4 +33,16 @@ EXPORTS = Exports(
         name="force",
         table=_load,
     ),
+)
+
+
+def _pressure(contact: GearContact, load: float) -> float:
+    return load / contact.A_0
+
+
+PRESSURE = NominalPressure(
+    load="f",
+    usual=lambda contact: min(3e3, 0.1 * contact.hardness * contact.A_0),
+    mean=_pressure,
+    peak=_pressure,
 )

@@ -1,4 +1,4 @@
-"""What other solvers are given of a gear mesh."""
+"""What a load does to a gear mesh: curves for other solvers, and pressure on the flanks of one tooth pair."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.spring import Mesh, pair_curve
+from jointfmu.joints.gear_mesh.spring import GearMesh, Mesh, pair_curve
 from jointfmu.mechanics.curve import Curve, approach_curve
 
 from ...export.exports import Exports, LoadCurve
+from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
     from ...export.tables import LoadTable
@@ -39,4 +40,13 @@ EXPORTS = Exports(
         name="force",
         table=_load,
     ),
+)
+
+
+def _pressure(mesh: GearMesh, load: float) -> float:
+    return load / mesh.A_0
+
+
+PRESSURE = NominalPressure(
+    load="f", usual=lambda mesh: min(3e3, 0.1 * mesh.hardness * mesh.A_0), mean=_pressure, peak=_pressure
 )
