@@ -11,7 +11,7 @@ from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
-from ...pressing import judge_file
+from ...pressure import judge_file
 from ...surfaces.heights import Areal, Heights
 from ...surfaces.joint_parameters import changes, doubt
 from ...surfaces.results import Estimate, Identification, Result

@@ -10,7 +10,7 @@ from jointfmu.commands.common import tell
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
-from ...pressing import judge_file
+from ...pressure import judge_file
 from ...surfaces.heights import Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
 from ...surfaces.results import Estimate, Identification, Result
