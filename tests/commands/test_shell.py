@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.parser import COMMANDS, GROUPS, SHELLS, parser
 
@@ -78,3 +79,10 @@ def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.Cap
     assert found["replaced"] == {str(path): {"K1": ["4800.0", "4700.0"]}}
     path.write_text("no FMU")
     assert "replaced" not in build("--params", str(drive))[1]
+
+
+@pytest.mark.parametrize("to", ["1e300", "-1e13"])
+def test_a_ramp_to_what_cannot_be(to: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Refused before the FMU is opened."""
+    line = refused_line(capsys, "ramp", tmp_path / "none.fmu", "--input", "tau", "--to", to, "--step", to)
+    assert f"to = {float(to):g} is outside [-1e+12, 1e+12] (SI)" in line

@@ -32,14 +32,22 @@ class RampResult:
         return columns.text(heads, list(self.columns.values()))
 
 
+LARGEST = 1e12
+"""Largest end of a ramp [SI]: a meganewton a million times over."""
+
+
 def steps(to: float, step: float) -> Array:
     """Points 0, step, 2 step ... to; the last step may be shorter.
 
-    Raises ValueError if a value is not finite, the step is zero, or it leads away from `to`.
+    Raises ValueError if a value is not finite, `to` beyond LARGEST, the step zero, or leads away from `to`.
     """
     for name, value in (("to", to), ("step", step)):
         if not np.isfinite(value):
             raise ValueError(f"{name} = {value:g} is outside (-inf, inf): must be finite")
+    if abs(to) > LARGEST:
+        raise ValueError(
+            f"to = {to:g} is outside [-{LARGEST:g}, {LARGEST:g}] (SI): no load or motion is so large"
+        )
     if step == 0.0 or to / step < 0.0:
         allowed = "(-inf, 0)" if to < 0.0 else "(0, inf)"
         raise ValueError(f"step = {step:g} is outside {allowed}: it must lead from 0 to {to:g}")
