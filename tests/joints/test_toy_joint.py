@@ -31,7 +31,7 @@ def toy():
     builders.PARTS["toy"], tools.PARTS["toy"] = toy_fmu.PARTS, toy_tools.PARTS
     yield
     del builders.PARTS["toy"], tools.PARTS["toy"]
-    joints.unregister(toy_joint.KIND)
+    del joints.KINDS["toy"], joints.MODELS["ToySpring"]
 
 
 @pytest.fixture(scope="module")

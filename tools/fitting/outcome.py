@@ -43,7 +43,7 @@ class FitResult:
 
     facts : {name: (value, unit, meaning)} beside the parameters
     notes : what the user should know, one line each
-    beside : a second picture, drawn beside the first
+    second_picture : drawn beside the first
     """
 
     parameters: ParameterFile
@@ -51,7 +51,7 @@ class FitResult:
     facts: Mapping[str, tuple[float, str, str]]
     picture: Picture
     notes: Sequence[str] = ()
-    beside: Picture | None = None
+    second_picture: Picture | None = None
 
     def rows(self) -> list[dict[str, Any]]:
         """Every unknown with value, unit, relative standard deviation and whether it is determined."""

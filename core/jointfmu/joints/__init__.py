@@ -27,10 +27,3 @@ def register(kind: Kind) -> None:
         raise ValueError(f"joint {kind.name!r}: the name {taken[0]!r} is taken; allowed is one of its own")
     KINDS[kind.name] = kind
     MODELS.update((model.name, model) for model in kind.models)
-
-
-def unregister(kind: Kind) -> None:
-    """Take back `register`."""
-    del KINDS[kind.name]
-    for model in kind.models:
-        del MODELS[model.name]

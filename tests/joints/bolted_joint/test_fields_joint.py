@@ -16,7 +16,7 @@ from jointfmu_tools.modelica import library
 
 from jointfmu import plots
 from jointfmu.fmi import ramp
-from jointfmu.joints import register, unregister
+from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
 from jointfmu.joints.bolted_joint.published import p_between
@@ -166,13 +166,10 @@ def test_other_joints_have_no_field():
 def test_a_joint_of_another_name_may_have_a_field(monkeypatch):
     """Whatever joint has the part `field` gets its own parameter set with the field."""
     toy = replace(KIND, name="toy", models=())
-    register(toy)
+    monkeypatch.setitem(KINDS, "toy", toy)
     monkeypatch.setitem(PARTS, "toy", PARTS[KIND.name])
-    try:
-        few = ContactField(*(a[:50] for a in _parts(FIELD)))
-        file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
-    finally:
-        unregister(toy)
+    few = ContactField(*(a[:50] for a in _parts(FIELD)))
+    file, found = with_field(replace(FILE, joint="toy"), few, _preload(FIELD, 50), "test")
     assert (file.joint, found.nodes) == ("toy", 50)
     assert isinstance(file.values, toy.parameters)
     assert len(file.values.pattern.share) == 50

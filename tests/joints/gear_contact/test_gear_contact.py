@@ -1,15 +1,22 @@
-"""The gear contact: force in, approach out; the law of Yu 2022 behind it."""
+"""The gear contact: force in, approach out; the law of Yu 2022 behind it; its FMU; from a drawing."""
 
+import json
+import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
+from conftest import refused_line
+from joint_cases import SAME, STATE, TABLE, parameters
+from jointfmu_tools import cli
+from natives import Host, close, jacobian
 from scipy.integrate import quad
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.mechanics.curve import CLOSING_RATIO, MAX_ERROR
-from jointfmu.parameters import default
+from jointfmu.parameters import default, load
 from jointfmu.quantity import build, flatten
 
 EPS = np.finfo(float).eps
@@ -180,3 +187,88 @@ def test_impossible_contacts_are_refused(changes, words):
     assert "\n" not in str(error.value)
     for word in words:
         assert word in str(error.value)
+
+
+def test_rigid_flat_takes_the_second_body_out(fmu: Host) -> None:
+    def at(**changes: Any) -> dict[str, float]:
+        return fmu("GearContact").start(changes | STATE["GearContact"]).get()
+
+    rigid, both = at(rigid_flat=True), at(rigid_flat=False)
+    assert at() == rigid  # the default
+    assert at(**{"rigid_flat": True, "side2.E": 1e11}) == rigid
+    assert at(**{"rigid_flat": False, "side2.E": 1e11}) != both
+    # two equal bodies are as soft as one of half the modulus against a rigid flat
+    assert at(**{"rigid_flat": True, "side1.E": 1.03e11}) == pytest.approx(both, rel=1e-9)
+
+
+def test_gear_contact_follows_the_law_without_a_table(fmu: Host) -> None:
+    contact, instance = parameters("GearContact"), fmu("GearContact").start()
+    for f in (300.0, 2e3, 2e4, 6e4):
+        found, expected = instance.at({"f": f}), at_pressure(contact, f / contact.A_0)
+        assert found["K_N"] == pytest.approx(float(expected["K_N"]), rel=TABLE)
+        for output in ("A_r", "elastic_fraction"):
+            assert found[output] == pytest.approx(float(expected[output]), rel=SAME)
+    assert found["elastic_fraction"] > 0.0
+    assert list(instance.at({"f": 0.0}).values()) == [0.0] * 4
+
+
+def test_derivatives_keep_the_closed_relations_of_the_gear_contact(host: Host, version: str) -> None:
+    instance = host("GearContact", version).start()
+    for f in (1e-3, 1.0, 300.0, 2e4, 6e4, 1e6):
+        values, J = instance.at({"f": f}), jacobian(instance)
+        assert J["s_rel", "f"] == close(1.0 / values["K_N"], 1e-12)
+        assert J["A_r", "f"] > 0.0
+    for f in (0.0, -5.0):
+        instance.at({"f": f})
+        assert set(jacobian(instance).values()) == {0.0}
+
+
+DRAWING = ["--width", "20", "--load", "2000", "--material", "hardened steel", "--Ra", "0.4"]
+
+
+def made(capsys, *words, path=None):
+    out = ["--out", str(path)] if path else []
+    assert cli.main(["new", "gear-contact", *words, *out, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    ("radii", "curvature"),
+    [
+        (["12", "30"], 1 / 0.012 + 1 / 0.03),
+        (["12", "-30"], 1 / 0.012 - 1 / 0.03),
+        (["12", "flat"], 1 / 0.012),
+    ],
+)
+def test_the_patch_is_hertz(capsys, radii, curvature):
+    found = made(capsys, *DRAWING, "--radii", *radii)
+    E = 0.5 * 206e9 / (1.0 - 0.09)
+    b = math.sqrt(4.0 * 2000.0 / (math.pi * 0.02 * E * curvature))
+    facts = {name: fact["value"] for name, fact in found["facts"].items()}
+    assert facts["half_width"] == pytest.approx(b)
+    assert facts["p_hertz"] == pytest.approx(math.sqrt(2000.0 * E * curvature / (math.pi * 0.02)))
+    assert found["parameters"]["A_0"] == pytest.approx(2.0 * b * 0.02)
+
+
+def test_the_file_has_the_stiffness_it_shows(capsys, tmp_path):
+    path = tmp_path / "flanks.toml"
+    found = made(capsys, *DRAWING, "--radii", "12", "30", path=path)
+    file = load(path)
+    assert (file.law, file.start("f")) == ("roughness", 2000.0)
+    state = GearContactSpring.of(file.values).approach(2000.0)
+    assert found["facts"]["K_N"]["value"] == pytest.approx(float(state["K_N"]))
+    assert float(state["K_N"]) == pytest.approx(2000.0 / (0.45 * file.values.h), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("radii", "text"),
+    [
+        (["12"], "--radii has 1 values, expected one of each flank"),
+        (["-12", "30"], "--radii = -12 30: the flanks do not bulge towards each other"),
+        (["flat", "flat"], "do not bulge towards each other"),
+        (["0", "30"], "--radii = 0 mm is no radius"),
+        (["a", "30"], "--radii = 'a' is no number"),
+    ],
+)
+def test_what_does_not_fit_is_refused(capsys, radii, text):
+    assert text in refused_line(capsys, "new", "gear-contact", *DRAWING, "--radii", *radii)

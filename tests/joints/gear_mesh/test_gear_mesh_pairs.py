@@ -1,13 +1,22 @@
-"""The number of tooth pairs over the mesh cycle."""
+"""Tooth pairs of the gear mesh: how many over the mesh cycle; flanks and teeth of one in series."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from laws import RANDOM, decades
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from test_gear_mesh_spring import MESH, each, motion
 
-from jointfmu.joints.gear_mesh.spring import pairs
+from jointfmu.contact.interface import at_pressure
+from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs
+from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
+from jointfmu.parameters import default
+from jointfmu.quantity import build, changed, flatten
 
 EPS = np.finfo(float).eps
 
@@ -121,3 +130,114 @@ def test_a_vanishing_overlap_is_a_spur_mesh():
         np.testing.assert_allclose(count, spur, atol=1e-9)
         # overlap^2/24 times the slope's curvature of 60/width^3, width 0.093
         np.testing.assert_allclose(change, slope, atol=2e-8)
+
+
+def contact_of(mesh):
+    """The flanks of one pair alone."""
+    names = flatten(default("gear_contact").values)
+    return GearContactSpring.of(build(GearContact, {name: flatten(mesh)[name] for name in names}))
+
+
+@each
+def test_the_pair_is_flanks_and_teeth_in_series(spring):
+    """s = delta(F) + F/K_tooth solved for F by brentq, delta by adaptive quadrature of the law itself."""
+    mesh = spring.joint
+    flanks = approach_curve(mesh)
+    first, force, delta = mesh.A_0 * flanks.closed, 0.0, -float(flanks.displacement[0])
+
+    def per_log(t):
+        return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
+
+    spots = mesh.spots()
+    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
+    last = first
+    for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
+        ends = np.log([last, *(b for b in breaks if last < b < force), force])
+        delta += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in pairwise(ends))
+        last = force
+        s = delta + force / mesh.K_tooth
+        stiffness = 1.0 / (1.0 / float(at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth)
+
+        def miss(f, s=s, mesh=mesh, flanks=flanks):
+            approach = float(flanks.inverse(f / mesh.A_0) - flanks.displacement[0])
+            return approach + f / mesh.K_tooth - s
+
+        solved = brentq(miss, 0.5 * force, 2.0 * force, xtol=1e-12 * force, rtol=1e-14)
+        found, K = spring.curve.derivatives(s, 1)
+        assert found == pytest.approx(force, rel=2.0 * MAX_ERROR)  # of the flanks' table and the pair's
+        assert found == pytest.approx(solved, rel=2.0 * MAX_ERROR)
+        assert pytest.approx(stiffness, rel=2.0 * MAX_ERROR) == K
+
+
+@each
+def test_the_closing_is_in_series_too(spring):
+    """Where the contact closes the flanks' curve is one polynomial: brentq on it, to the table's error."""
+    mesh, flanks = spring.joint, approach_curve(spring.joint)
+    start = float(flanks.displacement[0])
+    for part in (1e-3, 0.02, 0.2, 0.7, 0.999):
+        x = (1.0 - part) * start
+
+        def load(x, mesh=mesh, flanks=flanks):
+            return mesh.A_0 * float(flanks.derivatives(x, 0)[0])
+
+        s = x - start + load(x) / mesh.K_tooth
+
+        def miss(y, s=s, start=start, load=load, mesh=mesh):
+            return y - start + load(y) / mesh.K_tooth - s
+
+        solved = brentq(miss, start, 0.0, xtol=1e-22, rtol=1e-15)
+        # the approach is known to 1e-16 of the closing, the load grows with its cube
+        allowed = MAX_ERROR + 10.0 * EPS / part
+        assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
+    assert spring.closing == pytest.approx(-start + mesh.A_0 * flanks.closed / mesh.K_tooth, rel=4.0 * EPS)
+
+
+@each
+def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
+    assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
+    assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
+    assert spring.curve.error <= MAX_ERROR
+    assert np.all(np.diff(spring.curve.load) > 0.0)
+
+
+@settings(max_examples=25)
+@given(law=RANDOM["yu"], teeth=decades(1e-3, 1e6))
+def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
+    """Teeth by their stiffness over that of the flanks where their closing ends."""
+    try:
+        flanks = approach_curve(law)
+    except ValueError as error:
+        assert "plastic" in str(error)  # noqa: PT017
+        return
+    closed = int(np.searchsorted(flanks.displacement, 0.0))
+    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
+    assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
+    own = {"K_tooth": float(teeth * law.A_0 * k)}
+    try:
+        spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
+    except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
+        assert "nodes" in str(error)  # noqa: PT017
+        assert teeth < 0.1
+        return
+    assert spring.curve.error <= MAX_ERROR
+    x = spring.curve.displacement
+    places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
+    load, stiffness = spring.curve.derivatives(places, 1)
+    assert np.all(np.diff(load) > 0.0)
+    assert np.all(stiffness[1:] > 0.0)
+    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_ERROR))
+
+
+def test_hard_teeth_leave_the_contact_alone():
+    hard = GearMeshSpring.of(changed(MESH, {"K_tooth": 1e20, "contact_ratio": 1.0}))
+    contact = contact_of(MESH)
+    f = np.geomspace(1e-3, 0.99, 20) * contact.max_force
+    alone = contact.approach(f)
+    found = motion(hard, alone["s_rel"], 0.0)
+    np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_ERROR)
+    np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_ERROR)
+
+
+def test_teeth_too_soft_for_a_table_are_refused():
+    with pytest.raises(RuntimeError, match="not smooth enough"):
+        GearMeshSpring.of(changed(MESH, {"K_tooth": 1.0}))

@@ -1,22 +1,14 @@
 """The gear mesh: one pair's series of flanks and teeth, and the torques of all pairs as a gradient."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
-from laws import RANDOM, decades
-from scipy.integrate import quad
-from scipy.optimize import brentq
 
-from jointfmu.contact.interface import at_pressure
 from jointfmu.joints import MODELS
-from jointfmu.joints.gear_contact.spring import GearContact, GearContactSpring
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch
-from jointfmu.mechanics.curve import MAX_ERROR, approach_curve
 from jointfmu.parameters import default, dump, load
-from jointfmu.quantity import build, changed, flatten
+from jointfmu.quantity import changed
 
 EPS = np.finfo(float).eps
 STENCIL = np.array([1.0, -8.0, 0.0, 8.0, -1.0]) / 12.0
@@ -38,12 +30,6 @@ SPRINGS = {name: GearMeshSpring.of(mesh) for name, mesh in SETS.items()}
 each = pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS)
 
 
-def contact_of(mesh):
-    """The flanks of one pair alone."""
-    names = flatten(default("gear_contact").values)
-    return GearContactSpring.of(build(GearContact, {name: flatten(mesh)[name] for name in names}))
-
-
 def at(spring, s, roll):
     """Angles [rad] of both wheels for a deflection s (...) [m] and a rolling way (...) [m]."""
     along = s + 0.5 * spring.joint.backlash * np.sign(s)
@@ -54,106 +40,6 @@ def motion(spring, s, roll, rate=0.0):
     """The spring at a deflection and a rolling way [m], both flanks closing with `rate` [m/s]."""
     phi1, phi2 = at(spring, s, roll)
     return spring.motion(phi1, rate / spring.joint.r_b1, phi2, 0.0)
-
-
-@each
-def test_the_pair_is_flanks_and_teeth_in_series(spring):
-    """s = delta(F) + F/K_tooth solved for F by brentq, delta by adaptive quadrature of the law itself."""
-    mesh = spring.joint
-    flanks = approach_curve(mesh)
-    first, force, delta = mesh.A_0 * flanks.closed, 0.0, -float(flanks.displacement[0])
-
-    def per_log(t):
-        return np.exp(t) / float(at_pressure(mesh, np.exp(t) / mesh.A_0)["K_N"])
-
-    spots = mesh.spots()
-    breaks = [float(spots.total("load", u)) for u in spots.breaks if u > spots.stiff_onset]
-    last = first
-    for force in np.geomspace(3.0 * first, 0.9 * mesh.A_0 * mesh.hardness, 5):
-        ends = np.log([last, *(b for b in breaks if last < b < force), force])
-        delta += sum(quad(per_log, a, b, epsabs=0.0, epsrel=1e-11)[0] for a, b in pairwise(ends))
-        last = force
-        s = delta + force / mesh.K_tooth
-        stiffness = 1.0 / (1.0 / float(at_pressure(mesh, force / mesh.A_0)["K_N"]) + 1.0 / mesh.K_tooth)
-
-        def miss(f, s=s, mesh=mesh, flanks=flanks):
-            approach = float(flanks.inverse(f / mesh.A_0) - flanks.displacement[0])
-            return approach + f / mesh.K_tooth - s
-
-        solved = brentq(miss, 0.5 * force, 2.0 * force, xtol=1e-12 * force, rtol=1e-14)
-        found, K = spring.curve.derivatives(s, 1)
-        assert found == pytest.approx(force, rel=2.0 * MAX_ERROR)  # of the flanks' table and the pair's
-        assert found == pytest.approx(solved, rel=2.0 * MAX_ERROR)
-        assert pytest.approx(stiffness, rel=2.0 * MAX_ERROR) == K
-
-
-@each
-def test_the_closing_is_in_series_too(spring):
-    """Where the contact closes the flanks' curve is one polynomial: brentq on it, to the table's error."""
-    mesh, flanks = spring.joint, approach_curve(spring.joint)
-    start = float(flanks.displacement[0])
-    for part in (1e-3, 0.02, 0.2, 0.7, 0.999):
-        x = (1.0 - part) * start
-
-        def load(x, mesh=mesh, flanks=flanks):
-            return mesh.A_0 * float(flanks.derivatives(x, 0)[0])
-
-        s = x - start + load(x) / mesh.K_tooth
-
-        def miss(y, s=s, start=start, load=load, mesh=mesh):
-            return y - start + load(y) / mesh.K_tooth - s
-
-        solved = brentq(miss, start, 0.0, xtol=1e-22, rtol=1e-15)
-        # the approach is known to 1e-16 of the closing, the load grows with its cube
-        allowed = MAX_ERROR + 10.0 * EPS / part
-        assert spring.curve.derivatives(s, 0)[0] == pytest.approx(load(solved), rel=allowed)
-    assert spring.closing == pytest.approx(-start + mesh.A_0 * flanks.closed / mesh.K_tooth, rel=4.0 * EPS)
-
-
-@each
-def test_the_table_starts_at_first_touch_and_ends_at_the_hardness(spring):
-    assert (spring.curve.displacement[0], spring.curve.load[0], spring.curve.stiffness[0]) == (0.0, 0.0, 0.0)
-    assert spring.curve.end[1] == pytest.approx(spring.joint.A_0 * spring.joint.hardness, rel=1e-12)
-    assert spring.curve.error <= MAX_ERROR
-    assert np.all(np.diff(spring.curve.load) > 0.0)
-
-
-@settings(max_examples=25)
-@given(law=RANDOM["yu"], teeth=decades(1e-3, 1e6))
-def test_any_mesh_gives_a_monotone_table_or_is_refused(law, teeth):
-    """Teeth by their stiffness over that of the flanks where their closing ends."""
-    try:
-        flanks = approach_curve(law)
-    except ValueError as error:
-        assert "plastic" in str(error)  # noqa: PT017
-        return
-    closed = int(np.searchsorted(flanks.displacement, 0.0))
-    p, k, bend = flanks.load[closed], flanks.stiffness[closed], flanks.bend_end[closed - 1]
-    assume(bend * p >= 0.75 * k**2)  # else the flanks' own closing begins with a load below zero
-    own = {"K_tooth": float(teeth * law.A_0 * k)}
-    try:
-        spring = GearMeshSpring.of(build(GearMesh, flatten(MESH) | flatten(law) | own))
-    except RuntimeError as error:  # only teeth much softer than their flanks need too many nodes
-        assert "nodes" in str(error)  # noqa: PT017
-        assert teeth < 0.1
-        return
-    assert spring.curve.error <= MAX_ERROR
-    x = spring.curve.displacement
-    places = (x[:-1] + np.linspace(0, 1, 9)[:-1, None] * np.diff(x)).T.ravel()
-    load, stiffness = spring.curve.derivatives(places, 1)
-    assert np.all(np.diff(load) > 0.0)
-    assert np.all(stiffness[1:] > 0.0)
-    assert np.all(stiffness < own["K_tooth"] * (1.0 + MAX_ERROR))
-
-
-def test_hard_teeth_leave_the_contact_alone():
-    hard = GearMeshSpring.of(changed(MESH, {"K_tooth": 1e20, "contact_ratio": 1.0}))
-    contact = contact_of(MESH)
-    f = np.geomspace(1e-3, 0.99, 20) * contact.max_force
-    alone = contact.approach(f)
-    found = motion(hard, alone["s_rel"], 0.0)
-    np.testing.assert_allclose(found["f"], f, rtol=2.0 * MAX_ERROR)
-    np.testing.assert_allclose(found["K"], alone["K_N"], rtol=2.0 * MAX_ERROR)
 
 
 @each
@@ -434,11 +320,6 @@ def test_impossible_meshes_are_refused(changes, words):
     assert "\n" not in str(error.value)
     for word in words:
         assert word in str(error.value)
-
-
-def test_teeth_too_soft_for_a_table_are_refused():
-    with pytest.raises(RuntimeError, match="not smooth enough"):
-        GearMeshSpring.of(changed(MESH, {"K_tooth": 1.0}))
 
 
 def test_parameter_file_round_trip(tmp_path):

@@ -35,7 +35,7 @@ OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with
 
 
 def _import(steps: Commands) -> None:
-    step = command(steps, "import", _bring, "bring a nodal contact result into a joint's parameter file")
+    step = command(steps, "import", _run_import, "bring a nodal contact result into a joint's parameter file")
     step.add_argument(
         "file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh"
     )
@@ -71,7 +71,7 @@ def _import(steps: Commands) -> None:
     step.set_defaults(options=OPTIONS)
 
 
-def _bring(args: argparse.Namespace) -> int:
+def _run_import(args: argparse.Namespace) -> int:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
     if args.out:

@@ -4,9 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("laboratory", "modelica", "new", "reduced"),
+    ("modelica", "new", "reduced"),
     checks="job",
     figures="job",
     export="load",
+    laboratory="load",
     pressure="load",
 )

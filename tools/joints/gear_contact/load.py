@@ -1,4 +1,4 @@
-"""What a load does to a gear contact: curves for other solvers, and pressure on the flanks."""
+"""The load of a gear contact: curves for other solvers, pressure on the flanks, span in the laboratory."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -7,6 +7,7 @@ from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import Contact, GearContact, GearContactSpring
 
 from ...export.exports import Exports, LoadCurve
+from ...laboratory.part import LaboratoryModel
 from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
@@ -46,3 +47,6 @@ PRESSURE = NominalPressure(
     mean=_pressure,
     peak=_pressure,
 )
+
+LABORATORY = {"GearContact": LaboratoryModel(spans={"f": (0.0, 3e3)})}
+"""{FMU: what the page shows beside its variables}."""

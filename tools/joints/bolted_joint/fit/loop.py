@@ -151,7 +151,7 @@ def fit(
         | memory.facts(data, solution, law, scale),
         picture,
         notes=memory.notes(data, solution),
-        beside=beside,
+        second_picture=beside,
     )
 
 

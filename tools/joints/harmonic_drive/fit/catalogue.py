@@ -83,7 +83,7 @@ def fit(
         facts,
         angle_picture(row, result.values, {}, torque),
         notes=[note],
-        beside=stiffness_picture(row, result.values, {}, most),
+        second_picture=stiffness_picture(row, result.values, {}, most),
     )
 
 

@@ -107,7 +107,7 @@ def fit(
         described | memory.facts(data, solution, found, scale),
         picture,
         notes=memory.notes(data, solution),
-        beside=beside,
+        second_picture=beside,
     )
 
 

@@ -86,7 +86,7 @@ def fit(
         facts,
         angle_picture(row, file.values, also, torque),
         notes=note,
-        beside=stiffness_picture(row, file.values, also, most),
+        second_picture=stiffness_picture(row, file.values, also, most),
     )
 
 

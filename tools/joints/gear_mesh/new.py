@@ -1,4 +1,4 @@
-"""The parameters of a gear mesh from the drawing of its wheels."""
+"""A gear mesh from a drawing: module, teeth, width, angles and faces of two external wheels."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,12 @@ from jointfmu.contact.surface import Elastic, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
-from ....drawing import faces
-from ....drawing.line_contact import patch
-from ....drawing.part import Given, NewJoint
-from ....drawing.reading import number
-from ....drawing.sheet import Sheet
+from ...drawing import faces
+from ...drawing.faces import OPTIONS
+from ...drawing.line_contact import patch
+from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.reading import number
+from ...drawing.sheet import Sheet
 
 E_STEEL = 206e9
 """Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""
@@ -173,3 +174,24 @@ def _put(sheet: Sheet, wheels: InvoluteGearPair, given: Given, K: float) -> None
     sheet.put("d", d, "estimate", f"a damping ratio of {DAMPING:g} for the wheels as solid discs")
     for name in ("phi1", "phi2"):
         sheet.put(f"inputs.{name}", 0.0, "user", "default choice: the middle of the backlash")
+
+
+NEW = Drawing(
+    text="the mesh of two external involute wheels without profile shift",
+    example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
+    options=(
+        Option(name="module", text="normal module [mm]", metavar="M", required=True),
+        Option(name="teeth", text="of wheel 1 and wheel 2", metavar="Z", many=True, required=True),
+        Option(name="width", text="common face width [mm]", metavar="B", required=True),
+        Option(name="torque", text="of wheel 1 at work [N.m]: decides the patch", metavar="T", required=True),
+        Option(name="pressure_angle", text="normal pressure angle [deg] (default: 20)", metavar="A"),
+        Option(name="helix_angle", text="at the reference circle [deg] (default: 0)", metavar="A"),
+        Option(
+            name="backlash",
+            text="along the line of action [um] (default: the least of ISO/TR 10064-2)",
+            metavar="J",
+        ),
+        *OPTIONS,
+    ),
+    run=mesh,
+)

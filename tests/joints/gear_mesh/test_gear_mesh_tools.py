@@ -1,16 +1,22 @@
-"""Gear meshes from a drawing: geometry against printed numbers, patches, every refusal."""
+"""The gear mesh in the tools: from a drawing, as tables, in Modelica run by rumoca, for many samples."""
 
 import json
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.joints.gear_mesh.new.wheels import InvoluteGearPair
+from jointfmu_tools.export.exports import required
+from jointfmu_tools.joints.gear_mesh.new import InvoluteGearPair
+from jointfmu_tools.uncertainty import propagate
+from jointfmu_tools.uncertainty.problem import pose
+from test_modelica import EXACT, move, simulate, top
 
-from jointfmu.joints.gear_mesh.spring import GearMeshSpring, pairs
+from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, base_pitch, pairs
 from jointfmu.parameters import default, load
+from jointfmu.quantity import build, flatten
 
 DRAWING = ["--module", "4", "--teeth", "29", "45", "--width", "10", "--torque", "150"]
 FACES = ["--material", "hardened steel", "--Ra", "0.4"]
@@ -158,3 +164,152 @@ def test_what_does_not_fit_is_refused(capsys, words, text):
 def test_a_pressure_beyond_the_hardness_is_warned_of(capsys):
     (line,) = made(capsys, *DRAWING, *FACES, "--material", "steel", "--torque", "1000")["warnings"]
     assert "above the hardness" in line
+
+
+MESH = default("gear_mesh").values
+
+
+def test_force_over_deflection_is_the_mean_over_the_mesh_cycle():
+    table = required("gear_mesh", "curve").table(MESH, None, 1e-3)
+    spring = GearMeshSpring.of(MESH)
+    s, f, K = table.rows.T
+    load, stiffness = spring.curve.derivatives(np.abs(s), 1)
+    np.testing.assert_allclose(f, MESH.contact_ratio * load * np.sign(s), rtol=1e-9)  # a shift of the table
+    np.testing.assert_allclose(K, MESH.contact_ratio * stiffness, rtol=1e-9, atol=1e-9 * np.max(K))
+    np.testing.assert_array_equal(table.rows[::-1] * [-1.0, -1.0, 1.0], table.rows)
+    between = np.linspace(spring.closing, s[-1], 5001)
+    exact = MESH.contact_ratio * spring.curve.derivatives(between, 0)[0]
+    np.testing.assert_allclose(np.interp(between, s, f), exact, rtol=1.01e-3)
+    assert table.straight[0] <= 1e-3
+
+
+def test_the_contact_is_that_of_the_flanks():
+    """The same surfaces as the gear contact's default."""
+    mesh, _ = required("gear_mesh", "contact")(MESH)
+    flanks, _ = required("gear_contact", "contact")(default("gear_contact").values)
+    np.testing.assert_array_equal(mesh.load, flanks.load)
+
+
+@pytest.mark.parametrize("what", ["curve", "contact"])
+def test_command(what, tmp_path, capsys):
+    path = tmp_path / "mesh.csv"
+    assert cli.main(["export", "csv", what, "--joint", "gear_mesh", "--out", str(path)]) == 0
+    capsys.readouterr()
+    assert "gear_mesh" in path.read_text()
+
+
+SPRING = GearMeshSpring.of(default("gear_mesh").values)
+
+
+def rolling(cycles: float, along: float) -> tuple[float, float]:
+    """Rates of both wheels [rad/s] for so many mesh cycles and a way along the line of action [m]."""
+    way = cycles * float(base_pitch(MESH))
+    return (way + 0.5 * along) / MESH.r_b1, (0.5 * along - way) / MESH.r_b2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("start", "rate"),
+    [
+        pytest.param((-1e-2, 0.0), (2e-2, 0.0), id="both flanks to beyond the table"),
+        pytest.param((0.0, 1e-3), rolling(2.4, 4e-5), id="mesh cycles under load"),
+        pytest.param((0.0, 0.0), rolling(1.2, -2e-4), id="into the back flanks"),
+    ],
+)
+def test_component_gives_the_torques_of_the_package(
+    start: tuple[float, float], rate: tuple[float, float]
+) -> None:
+    rumoca: Any = pytest.importorskip("rumoca")
+    moved = "".join(
+        f"\n  Move m{i}(at={at!r}, rate={w!r});" for i, at, w in zip((1, 2), start, rate, strict=True)
+    )
+    text = top(
+        f"JointStiffness.Components.GearMesh mesh;{moved}",
+        "connect(m1.flange, mesh.flange_a);\n  connect(mesh.flange_b, m2.flange);",
+        move("Rotational", "phi"),
+    )
+    found = simulate(rumoca, text, 1.0, 1e-3)
+    phi1, phi2 = (at + w * found.time for at, w in zip(start, rate, strict=True))
+    exact = SPRING.motion(phi1, rate[0], phi2, rate[1])
+    exact |= {"flange_a.tau": -exact["tau1"], "flange_b.tau": -exact["tau2"]}
+    for name in ("flange_a.tau", "flange_b.tau", "s_rel", "f", "K", "pairs", "E"):
+        # where damping and spring cancel the error is that of the larger one
+        least = 1e-6 * np.abs(exact[name]).max()
+        error = np.abs(found[f"mesh.{name}"] - exact[name])
+        assert np.all(error <= EXACT * np.maximum(np.abs(exact[name]), least)), name
+    assert np.ptp(exact["E"]) > 0.0
+
+
+REDUCED = 1e-4
+"""Relative error that the reduced evaluation states (docs/uncertainty.md)."""
+STUDIES = {
+    "surfaces": {
+        "surface1.D": "1.35..1.6",
+        "surface2.D": "1.35..1.6",
+        "surface1.G": "loguniform(2e-11, 1e-9)",
+        "e": "0.05..0.7",
+        "lambda": "0.7..1",
+        "sigma_y": "+-20%",
+        "phi1": "+-10%",
+    },
+    "wheels and teeth": {
+        "K_tooth": "loguniform(1e7, 1e10)",
+        "A_0": "loguniform(2e-5, 1e-3)",
+        "contact_ratio": "1..2.9",
+        "engagement": "0.1..1",
+        "backlash": "0..3e-4",
+        "r_b1": "+-10%",
+        "r_b2": "+-10%",
+        "d": "+-50%",
+    },
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("s_rel", [5e-7, 2e-5, 3e-4], ids=["closing", "default ramp", "end of the table"])
+def test_reduced_evaluation_against_the_spring(name, s_rel):
+    """Deflections [m] of the driving flanks; the default table ends at 474 um, with stiff teeth sooner."""
+    joint = default("gear_mesh")
+    shorter = 0.1 if "K_tooth" in STUDIES[name] and s_rel > 1e-6 else 1.0
+    end = shorter * s_rel / joint.values.r_b1
+    task = pose(joint, STUDIES[name], end, 9)
+    points = propagate.design(task, 256, 5)[0][:24]
+    outcome = propagate.run(task, points, task.loads, "")
+    assert np.count_nonzero(outcome.good) > 12
+    for i in np.flatnonzero(outcome.good):
+        values, factor, _ = propagate.one_sample(task, points, i)
+        exact = task.reduced.exact(build(GearMesh, values), factor * task.loads)
+        for output, value in exact.items():
+            found = outcome.outputs[output][:, i]
+            assert found[1:] == pytest.approx(value[1:], rel=REDUCED), (output, values)
+            assert found[0] == 0.0
+
+
+@pytest.mark.slow
+def test_bands():
+    """The command's own check, and what turns the band: the teeth are the softer part."""
+    task = pose(default("gear_mesh"), {"surface1.D": "1.4..1.5", "K_tooth": "+-10%"}, None, 6)
+    found = propagate.bands(task, propagate.design(task, 64, 0)[0])
+    assert found.error < REDUCED
+    assert found.refused.count == 0
+    low, high = found.quantiles["K"][[0, -1], -1]
+    nominal = found.nominal["K"][-1]
+    assert low < 0.95 * nominal < 1.05 * nominal < high
+
+
+@pytest.mark.slow
+def test_default_ramp_ends_inside_the_table():
+    joint = default("gear_mesh").values
+    task = pose(default("gear_mesh"), {"K_tooth": "+-1%"}, None, 2)
+    f = task.reduced.exact(joint, task.loads)["f"][-1]
+    assert 0.5 < f / (2.0 * 0.05 * joint.hardness * joint.A_0) < 1.0  # two pairs; the flanks give way too
+
+
+@pytest.mark.slow
+def test_every_parameter_can_be_uncertain():
+    values = flatten(default("gear_mesh").values)
+    names = [n for n, v in values.items() if isinstance(v, float) and v and n != "teeth1"]
+    task = pose(default("gear_mesh"), dict.fromkeys(names, "+-1%"), None, 3)
+    outcome = propagate.run(task, propagate.design(task, 16, 0)[0], task.loads, "")
+    assert np.all(outcome.good)
