@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.shape import PressureShape, growing, mean_squares
+from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PressureShape, growing, means
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import build
 from jointfmu.quantity.refusal import Refusal
@@ -67,8 +67,8 @@ def with_field(
     given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
     given["A_0"] = float(np.sum(field.area))
     if bolts is not None:
-        x2, y2 = mean_squares(bolts - field.centroid)
-        given |= {"field.bolt_x2": x2, "field.bolt_y2": y2}
+        places = means(bolts - field.centroid)
+        given |= {f"field.{name}": value for name, value in zip(BOLT_MEANS, places, strict=True)}
     kept = {n: v for n, v in file.flat.items() if not n.startswith(_REPLACED)}
     text = f"{source}, {preload:g} N per bolt; {reduction.points} points for {reduction.nodes} nodes"
     return replace(

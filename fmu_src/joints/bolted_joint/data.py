@@ -7,7 +7,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.law import Bolted
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PressureShape
 from jointfmu.mechanics.sliders import offsets
 from jointfmu.quantity import flatten
 
@@ -21,7 +21,7 @@ _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0
 def _stands(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
-    spread = dict(zip(("bolt_x2", "bolt_y2"), joint.pattern.bolt_spread, strict=True))
+    spread = dict(zip(BOLT_MEANS, joint.pattern.bolt_means, strict=True))
     return own | {f"field.{name}": value for name, value in (_ONE | spread).items()}
 
 

@@ -229,3 +229,39 @@ def test_bolts_carry_the_open_joint_and_the_stiffness_is_the_derivative():
         up, down = (spring.motion(*state, (0.0, 0.0, z + d), STILL)["f_z"] for d in (h, -h))
         K = spring.motion(*state, (0.0, 0.0, z), STILL)["K_zz"]
         assert (down - up) / (2.0 * h) == pytest.approx(K, rel=1e-5)
+
+
+M12 = 3.416e8
+"""Stiffness [N/m] of a bolt M12 with a grip of 40 mm, VDI 2230."""
+
+
+@pytest.mark.parametrize(("s_z", "by_hand"), [(1e-4, 1967.0), (3e-4, 4062.0)])
+def test_bolts_off_the_centre_turn_the_open_joint(s_z, by_hand):
+    pattern = plate([-0.08, 0.08, 0.0], [-0.03, -0.03, 0.03])
+    spring = BoltedJointSpring.of(joint(pattern, bolt_stiffness=M12))
+    open_ = spring.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL)
+    assert open_["m_x"] == pytest.approx(by_hand, rel=1e-3)  # printed to four digits
+    assert open_["m_y"] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_bolts_on_a_diagonal_couple_both_tilts():
+    spring = BoltedJointSpring.of(joint(plate([-0.08, 0.08], [-0.03, 0.03]), bolt_stiffness=M12))
+    about_x = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (1e-4, 0.0, 0.0))
+    assert about_x["m_y"] == pytest.approx(2 * M12 * 0.08 * 0.03 * 1e-4, rel=1e-9)  # 164 N.m
+    about_y = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (0.0, 1e-4, 0.0))
+    assert about_y["m_x"] == pytest.approx(2 * M12 * 0.08 * 0.03 * 1e-4, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+def test_each_bolt_pulls_at_its_place(name):
+    pattern = plate(*LAYOUTS[name])
+    free, held = (BoltedJointSpring.of(joint(pattern, bolt_stiffness=k)) for k in (0.0, M12))
+    s_z, turn = 1e-4, (2e-4, -3e-4, 1e-4)
+    without, with_ = (one.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL, turn) for one in (free, held))
+    areas, points = cells(pattern)
+    x, y = (pattern.bolts - areas @ points / areas.sum()).T
+    tension = M12 * (s_z + turn[0] * y - turn[1] * x)
+    cut = 1e-3 * M12 * s_z  # the centroid of cells is that of the plate within their cut at a hole's edge
+    assert with_["f_z"] - without["f_z"] == pytest.approx(-tension.sum(), rel=1e-3, abs=cut)
+    assert with_["m_x"] - without["m_x"] == pytest.approx(-(tension @ y), rel=1e-3, abs=0.1 * cut)
+    assert with_["m_y"] - without["m_y"] == pytest.approx(tension @ x, rel=1e-3, abs=0.1 * cut)

@@ -43,17 +43,18 @@ def outputs(
     """Outputs from the SUMS at a shift s_rel [m] and small turn theta [rad] with rates v_rel and omega.
 
     A unit rotation about an in-plane axis moves a node along its normal, about the normal along the
-    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, by their tension alone.
+    plane: Hu 2023, Eq. 45, corrected. The bolts act beside the interface, each at its place, by their tension
+    alone.
     """
     area, rho = joint.A_0, shear_ratio(joint)
-    bolts, (bolt_x2, bolt_y2) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_spread
+    bolts, (_, _, bolt_x2, bolt_y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
     K_n = area * sums["stiffness"]
     eta_n, eta_t = sums["plastic"] / sums["elastic"], joint.loss_factor()
     first_loading = mindlin.viscous_equivalent(eta_n, joint.mass, K_n)
     C_n = where(joint.plastic_damping, first_loading, 0.0 * K_n)
     C_t = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K_n)
     viscous = [where(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
-    tension = [-bolts * shift[2], -bolts * bolt_y2 * turn[0], -bolts * bolt_x2 * turn[1]]
+    tension = _tension(bolts, joint.pattern.bolt_means, shift[2], turn)
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
     return {
@@ -81,6 +82,21 @@ def outputs(
         "eta_loop": eta_loop,
         "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, rho * K_n),
     }
+
+
+def _tension(
+    stiffness: Number, means: Sequence[Number], s_z: Number, turn: Sequence[Number]
+) -> tuple[Number, Number, Number]:
+    """f_z, m_x, m_y [N, N.m] of bolts, each stretched by s_z + theta_x y - theta_y x.
+
+    stiffness is the sum of theirs, means those of their x, y, x^2, y^2, x y.
+    """
+    x, y, x2, y2, xy = means
+    return (
+        -stiffness * (s_z + y * turn[0] - x * turn[1]),
+        -stiffness * (y * s_z + y2 * turn[0] - xy * turn[1]),
+        stiffness * (x * s_z + xy * turn[0] - x2 * turn[1]),
+    )
 
 
 def _ratio(part: Number, whole: Number) -> Number:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...quantity import check, quantity
 from .plate import EDGE, BoltedPlate
-from .shape import NodalField, PressureShape, mean_squares
+from .shape import Means, NodalField, PressureShape, means
 
 Array = NDArray[np.float64]
 
@@ -58,9 +58,9 @@ class BoltPattern:
         return 3.0, self.row_spacing
 
     @property
-    def bolt_spread(self) -> tuple[float, float]:
-        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
-        return mean_squares(self.bolts)
+    def bolt_means(self) -> Means:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+        return means(self.bolts)
 
     def decay(self, distance: Array) -> Array:
         """Pressure of one bolt, up to its factor: (1 + (r/decay_length)^2)^-decay_exponent [1]."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...quantity import check, quantity, series
-from .shape import PressureShape, growing, mean_squares
+from .shape import Means, PressureShape, growing, means
 
 Array = NDArray[np.float64]
 
@@ -85,10 +85,10 @@ class BoltedPlate:
         return self.length * self.width - 0.25 * np.pi * len(self.x) * self.hole_diameter**2
 
     @property
-    def bolt_spread(self) -> tuple[float, float]:
-        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
+    def bolt_means(self) -> Means:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
         holes = 0.25 * np.pi * self.hole_diameter**2
-        return mean_squares(self.bolts + holes / self.area * self.bolts.sum(axis=0))
+        return means(self.bolts + holes / self.area * self.bolts.sum(axis=0))
 
     @property
     def rows(self) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """What a bolted contact's pressure looks like, and the shape that comes as numbers: a nodal field."""
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,10 +64,16 @@ def growing(share: Array, y: Array, equal: Array) -> Array:
     return np.asarray(equal * away / spread)
 
 
-def mean_squares(points: Array) -> tuple[float, float]:
-    """Means of x^2 and y^2 of points (n, 2)."""
-    x2, y2 = np.mean(points**2, axis=0).tolist()
-    return x2, y2
+BOLT_MEANS = ("bolt_x", "bolt_y", "bolt_x2", "bolt_y2", "bolt_xy")
+"""What a field says of its bolts, in the order of `means`."""
+Means: TypeAlias = tuple[float, float, float, float, float]
+
+
+def means(points: Array) -> Means:
+    """Means of x, y, x^2, y^2 and x y of points (n, 2)."""
+    x, y = points.T
+    first, second, xx, yy, xy = (float(np.mean(values)) for values in (x, y, x * x, y * y, x * y))
+    return first, second, xx, yy, xy
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,11 +109,16 @@ class NodalField:
     tilt: tuple[float, ...] = series(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
+    bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
+    bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
     bolt_x2: float = quantity(
         "m2", "mean square of the bolts' distances along the rows, from the centroid", ge=0.0, default=0.0
     )
     bolt_y2: float = quantity(
         "m2", "mean square of the bolts' distances across the rows, from the centroid", ge=0.0, default=0.0
+    )
+    bolt_xy: float = quantity(
+        "m2", "mean product of the bolts' places along and across the rows", default=0.0
     )
 
     def __post_init__(self) -> None:
@@ -131,9 +143,9 @@ class NodalField:
                 raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
 
     @property
-    def bolt_spread(self) -> tuple[float, float]:
-        """Means of the squared distances of the bolts from the centroid, along and across the rows [m2]."""
-        return self.bolt_x2, self.bolt_y2
+    def bolt_means(self) -> Means:
+        """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
+        return self.bolt_x, self.bolt_y, self.bolt_x2, self.bolt_y2, self.bolt_xy
 
     def shape(self) -> PressureShape:
         """The points as arrays."""
