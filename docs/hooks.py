@@ -47,7 +47,7 @@ def laboratory() -> str:
     made = ROOT / "dist" / "report" / "laboratory.html"
     if made.is_file():
         return made.read_text(encoding="utf-8")
-    from jointfmu_tools.laboratory import page
+    from jointfmu_tools.laboratory.assemble import page
 
     return page()
 

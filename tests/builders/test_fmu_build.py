@@ -94,7 +94,7 @@ def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
     assert status == 0
     found = json.loads(capsys.readouterr().out)
     assert found["built"] == [str(tmp_path / "python" / "BoltedJoint.fmu")]
-    assert found.keys() == {"built", "joints"}
+    assert found.keys() == {"built", "replaced", "joints"}
     assert found["joints"]["bolted_joint"].keys() == {"level", "warnings"}
 
 

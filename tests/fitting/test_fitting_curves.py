@@ -241,7 +241,6 @@ BAD = {
     "twice": ("torque [N.m], torque [N.m], angle [rad]", "given twice"),
     "few": ([HEADING, *GOOD[:9]], "has 9 points, at least 10 are needed"),
     "nan": ([HEADING, *GOOD, "nan,1"], "line 22: torque = 'nan' is no finite"),
-    "comma": ([HEADING.replace(",", ";"), *["1,5;2"] * 10], "'1,5' is no finite number with a decimal"),
     "ragged": ([HEADING, *GOOD, "1"], "line 22 has 1 columns, expected 2"),
     "constant": ([HEADING, *["2,1"] * 12], "torque is 2 N.m throughout"),
     "reversed": ([HEADING, *FALLING], "reverse the sign of one column"),

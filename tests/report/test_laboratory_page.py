@@ -10,7 +10,7 @@ from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from joint_cases import JOINTS
 from jointfmu_tools import cli
-from jointfmu_tools.laboratory import write_laboratory
+from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.laboratory.modules import modules
 
 from jointfmu.joints import KINDS, MODELS

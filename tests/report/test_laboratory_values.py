@@ -14,7 +14,7 @@ import pytest
 from browser import PROGRAM, browser
 from conftest import Fmu
 from joint_cases import random_inputs
-from jointfmu_tools.laboratory import write_laboratory
+from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.laboratory.modules import Module, modules
 from webassembly import Instance, native_fmu, random_values, refused_values
 

@@ -15,7 +15,7 @@ from jointfmu.proof.outcome import Proof
 from jointfmu.proof.run import prove
 from jointfmu.published import validation
 
-from ..laboratory import write_laboratory
+from ..laboratory.assemble import write_laboratory
 from ..report import write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay

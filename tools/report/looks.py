@@ -4,7 +4,7 @@ from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts import chart
 
-from ..laboratory import web_file
+from ..laboratory.assemble import web_file
 
 
 def style() -> str:

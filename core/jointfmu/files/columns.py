@@ -147,6 +147,8 @@ def _places(
 ) -> dict[str, tuple[int, float, str]]:
     """{name: (place, size of its unit, the unit)} of the columns asked for."""
     places: dict[str, tuple[int, float, str]] = {}
+    named = {head(cell)[0].lower() for cell in cells}
+    others = {name: words for name, words in others.items() if name not in named}
     for place, cell in enumerate(cells):
         name, unit = head(cell)
         name = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)

@@ -8,7 +8,7 @@ from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
 from jointfmu_tools.joints.harmonic_drive.laboratory import LABORATORY
-from jointfmu_tools.laboratory import write_laboratory
+from jointfmu_tools.laboratory.assemble import write_laboratory
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
