@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.progress import track
+from jointfmu.progress import each
 
 from .naming import checked_name
 from .native.build import build_fmi2, build_fmi3
@@ -54,9 +54,8 @@ def build(
         if parameters:
             MODELS[name].of(parameters.joint, parameters.values)
     work = partial(_built, flavours, parameters, out, (variability, alias or ""))
-    made = (pool.map if pool else map)(work, names)
-    built = list(track(made, "build", len(names)))
-    return [paths[k] for k in range(len(flavours)) for paths in built]
+    built = each(pool, work, "build", names)
+    return [path for paths in zip(*built, strict=True) for path in paths]
 
 
 def _built(

@@ -4,11 +4,11 @@ import multiprocessing
 import os
 import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from threading import RLock
-from typing import TypeVar
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 
@@ -22,6 +22,17 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
         return
     tqdm.set_lock(RLock())  # its own is shared by processes, and left behind by those that are ended
     yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+
+
+def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[Any]) -> list[T]:
+    """Results of a function for all jobs, in their order, with a bar.
+
+    pool : processes that share several jobs; None: this one does them
+    jobs : an argument of the function each
+    """
+    count = len(jobs[0])
+    run = pool.map if pool and count > 1 else map
+    return list(track(run(work, *jobs), text, count))
 
 
 @contextmanager

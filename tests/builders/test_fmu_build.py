@@ -89,6 +89,22 @@ def test_the_command_builds_what_it_is_asked_for(tmp_path: Path, gear_file: Path
     assert ramp.run(built, "f", 100.0, 100.0).columns["K_N"][-1] > 0.0
 
 
+def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: Capture) -> None:
+    other = tmp_path / "other.toml"
+    other.write_text(dump(default("gear_contact").with_values({"e": 0.3}, "user", "test")))
+    build = ["build", "GearContact", "--flavour", "python", "--out", str(tmp_path)]
+    fmu = tmp_path / "python" / "GearContact.fmu"
+    (tmp_path / "python").mkdir()
+    (tmp_path / "python" / "mine.fmu").write_text("no FMU")
+    assert cli.main(build) == 0
+    assert "replaced" not in capsys.readouterr().err
+    assert cli.main([*build, "--params", str(other)]) == 0
+    was = default("gear_contact").flat["e"]
+    assert f"replaced {fmu}: e was {was}, is 0.3\n" in capsys.readouterr().err
+    assert cli.main([*build, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["replaced"] == {str(fmu): {"e": ["0.3", str(was)]}}
+
+
 def test_json_lists_what_was_built(tmp_path: Path, capsys: Capture) -> None:
     status = cli.main(["build", "BoltedJoint", "--flavour", "python", "--out", str(tmp_path), "--json"])
     assert status == 0

@@ -5,7 +5,6 @@ import json
 import sys
 import zipfile
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -62,11 +61,9 @@ def _build(args: argparse.Namespace) -> int:
     try:
         from jointfmu_fmu_src import building
 
-        built, before = (
-            [],
-            {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")},
-        )
-        with processes() if args.systems or len(args.names) != 1 else nullcontext() as pool:
+        before = {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")}
+        built = []
+        with processes() as pool:
             if args.names or not args.systems:
                 built += building.build(
                     args.names, args.flavour, file, args.out, args.parameters, args.name, pool

@@ -14,7 +14,7 @@ from jointfmu_fmu_src.ssv import Value, parameter_set
 from jointfmu_fmu_src.xml_parts import VARIABILITIES
 
 from jointfmu.parameters import ParameterFile
-from jointfmu.progress import track
+from jointfmu.progress import each
 
 from .structure import MASTERS, Master, metadata, structure
 from .system import Component, System, systems
@@ -56,11 +56,10 @@ def build_systems(
         for name, fmu in fmu_names(system).items():
             used.setdefault(fmu, system.components[name])
     wanted_fmus = {fmu: one for fmu, one in used.items() if joints or one.own or not one.file}
-    names, ones = list(wanted_fmus), list(wanted_fmus.values())
-    made = (pool.map if pool else map)(partial(_versions, out, variability), names, ones)
-    built = list(track(made, "build FMUs of systems", len(names)))
-    archives = [path for system in chosen for path in pack_system(system, out)]
-    return [*(paths[k] for k in range(len(VERSIONS)) for paths in built), *archives]
+    work = partial(_versions, out, variability)
+    built = each(pool, work, "build FMUs of systems", [*wanted_fmus], [*wanted_fmus.values()])
+    fmus = [path for paths in zip(*built, strict=True) for path in paths]
+    return fmus + [path for system in chosen for path in pack_system(system, out)]
 
 
 def _versions(out: Path, variability: str, fmu: str, one: Component) -> list[Path]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from jointfmu.fmi import ramp
+from jointfmu.fmi.host import runs
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +42,9 @@ FILES: dict[str, Path] = {}
 
 def slim(data: bytes) -> bytes:
     """The FMU without sources, documentation and other machines' binaries."""
-    from fmpy import platform, platform_tuple
-
-    kept = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
     small = io.BytesIO()
     with zipfile.ZipFile(io.BytesIO(data)) as full, zipfile.ZipFile(small, "w") as less:
         for item in full.infolist():
-            if item.filename.startswith(kept) and not item.is_dir():
+            if runs(item.filename) and not item.is_dir():
                 less.writestr(item, full.read(item))
     return small.getvalue()

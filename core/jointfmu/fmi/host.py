@@ -203,7 +203,7 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
         version = _fmi_version(path)
         if known := version.startswith(("2.", "3.")):
             described = description(path)
-            folder = extract(str(path), include=_runs)
+            folder = extract(str(path), include=runs)
     except (zipfile.BadZipFile, KeyError, OSError) as error:
         raise ValueError(f"{path}: is no FMU ({error}); expected a zip with modelDescription.xml") from None
     except Exception as error:  # fmpy raises bare Exception for a broken description
@@ -220,14 +220,12 @@ def unpacked(fmu: str | Path, exchange: bool = False) -> "Iterator[tuple[str, Mo
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _runs(member: str) -> bool:
-    """Whether a member of an FMU is used when it runs: its description, resources and own binary."""
+def runs(member: str) -> bool:
+    """Whether a member of an FMU is used where it runs: its description, resources and own binaries."""
     from fmpy import platform, platform_tuple
 
-    top, _, rest = member.partition("/")
-    if top == "binaries":
-        return rest.partition("/")[0] in (platform, platform_tuple)
-    return top not in ("documentation", "extra", "sources", "terminalsAndIcons")
+    kept = ("modelDescription.xml", "resources/", f"binaries/{platform}/", f"binaries/{platform_tuple}/")
+    return member.startswith(kept)
 
 
 def _fmi_version(path: Path) -> str:

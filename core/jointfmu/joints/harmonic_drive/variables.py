@@ -24,7 +24,6 @@ _LOSSY = {"hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3}
 """One arcmin of hysteresis: the default drive has none."""
 _DAMPED = {"w2": "parameters"}
 _ERROR = tuple(f"error_{n}{what}" for n in HARMONICS for what in ("", "_phase"))
-_LOAD = ("load_loss", "load_loss_back")
 _FRICTION = (
     "friction_coulomb",
     "friction_stribeck",

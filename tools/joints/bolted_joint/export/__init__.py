@@ -63,7 +63,6 @@ def _pull(joint: Bolted, state: State | None, error: float) -> "LoadTable":
 
 
 _VARIABLES = KIND.variables
-_PULL = Variable("pull", "N", "force that holds the joint together")
 EXPORTS = Exports(
     state=State,
     springs=_springs,
