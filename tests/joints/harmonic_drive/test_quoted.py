@@ -4,6 +4,7 @@ import csv
 import math
 from importlib.resources import files
 
+import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
@@ -42,7 +43,7 @@ def made(name, **options):
 @pytest.mark.slow
 @pytest.mark.parametrize("size", sorted({item.name.rsplit("-", 1)[0] for item in DRIVES}))
 def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
-    """A prediction of stiffness and rated torque alone; with hysteresis at its limit the loop opens by it.
+    """A prediction of stiffness and rated torque alone; hysteresis at its limit takes up to 15 % of it.
 
     No row needs a play of its own. The largest is 0.89 of the limit, so that a first line softer by 11 %,
     or a limit at 5 % of rated torque, would break it.
@@ -59,7 +60,22 @@ def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
         most = item.numbers["hysteresis_loss"].value
         open_ = HarmonicDriveSpring.of(file.with_values({"hysteresis_loss": most}, "user", "limit").values)
         assert hysteresis_loss(open_) == pytest.approx(most, rel=1e-9)
-        assert 0.0 < lost_motion(open_) < lost_motion(plain)
+        assert 0.85 * lost_motion(plain) < lost_motion(open_) <= (1.0 + 1e-9) * lost_motion(plain)
+
+
+def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
+    """The mean of both angles at 4 % of rated torque less that at -4 %, read off the loop itself."""
+    spring = HarmonicDriveSpring.of(made("CSG-17-100", hysteresis="1").values)
+    rated = spring.joint.rated_torque
+    steps = rated * np.concatenate([np.linspace(1.0, -1.0, 51), np.linspace(-0.96, 1.0, 50)])
+    memory, angles = spring.loaded(rated, spring.rest())[1], []
+    for torque in steps:
+        out, memory = spring.loaded(torque, memory)
+        angles.append(float(out["phi_rel"]))
+    passed = list(zip(angles, steps / rated, strict=True))
+    at = {sign: [angle for angle, part in passed if np.isclose(part, 0.04 * sign)] for sign in (1, -1)}
+    assert [len(both) for both in at.values()] == [2, 2]
+    assert lost_motion(spring) == pytest.approx(np.mean(at[1]) - np.mean(at[-1]), rel=1e-9)
 
 
 def test_lost_motion_counts_play_and_a_loop_is_what_it_was_made_for():

@@ -29,7 +29,7 @@ COLUMNS = (
     Column("rated_torque", "N.m", "rated torque", "N.m"),
     Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
     Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
-    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque", "arcmin"),
+    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque, midway in the loop", "arcmin"),
     Column("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
     Column("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
     Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),

@@ -180,7 +180,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     spring = HarmonicDriveSpring.of(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
-    text = f"of this drive, between +-{LOST_MOTION:g} times the rated torque"
+    text = f"of this drive, midway in its loop between +-{LOST_MOTION:g} times the rated torque"
     text += f"; below {play.value:.4g} rad: {_short(play)}" if play else ""
     facts["lost_motion"] = (lost_motion(spring), "rad", text)
     if brakes:
