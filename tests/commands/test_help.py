@@ -64,7 +64,7 @@ def shear() -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """What examples read: parameters, a scan, loops of a drive and in shear, a log, stiffness over preload."""
+    """What examples read: parameters, a scan, loops, a log, stiffness over preload."""
     curve = HarmonicDriveSpring.of(default("harmonic_drive").values).curve
     torque = 15.0 * np.sin(np.linspace(0.0, 2.5 * np.pi, 200))
     angle = np.sign(torque) * np.interp(np.abs(torque), curve.load, curve.displacement)
