@@ -11,14 +11,16 @@ from pathlib import Path
 
 import numpy as np
 from scipy import stats
+from scipy.linalg import block_diag
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.parameters import ParameterFile, default
 
 from ....fitting.identifiability import undetermined
 from ....fitting.least_squares import Array, Solution, solve
-from ....fitting.outcome import FitResult, fitted, unknowns
-from . import log_pictures
+from ....fitting.outcome import FitResult, Picture, fitted, unknowns
+from . import log_link, log_pictures
+from .hysteresis import LOSS as LOOP
 from .log_model import Linear, filtered, friction
 from .log_reading import ONE_SPEED, Samples, joined, named, read
 
@@ -85,26 +87,72 @@ def fit(
     """
     file = _begun(start, ratio)
     names = named(columns or ())
-    samples = joined([read(path, names, torque_constant, file.values) for path in paths])
+    logs = [read(path, names, torque_constant, file.values) for path in paths]
+    samples = joined([log.part(log.built) for log in logs])
     label = ", ".join(path.name for path in paths)
+    turned = [log for log in logs if np.all(np.isfinite(log.motor + log.q))]
+    if not turned and (alone := [name for name in free or () if name in (*log_link.LINES, LOOP)]):
+        raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _speeds(label, samples)
     rotor = motor_inertia or 0.0
     wanted, left = _wanted(samples, file.values, free, rotor)
     whole = _fitted(file, samples, wanted, rotor)
-    intervals = _intervals(whole.solution)
-    result = fitted(file, whole.solution.values, "calibration", label, _span(samples))
+    found, pictures = whole.solution, [*log_pictures.pictures(samples, whole)]
+    if samples.dynamic.any() and motor_inertia is None:
+        left.append(
+            "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss and "
+            "stiffness, is off by the rotor's share"
+        )
+    if turned:
+        more, why = _link(file, turned[0], whole, free)
+        left += why
+        if more is not None:
+            found, pictures = _both(found, more[0]), [*pictures, more[1]]
+    intervals = _intervals(found)
+    result = fitted(file, found.values, "calibration", label, _span(samples))
     for name, (low, high) in intervals.items():
         text = f"{result.sources[name]}; {100.0 * LEVEL:g} % interval {low:.4g} to {high:.4g}"
         result = replace(result, sources={**result.sources, name: text})
-    first, *more = log_pictures.pictures(samples, whole)
     return FitResult(
         result,
-        whole.solution,
+        found,
         _facts(file, samples, whole, wanted, rotor),
-        first,
+        pictures[0],
         notes=left,
-        more_pictures=more,
+        more_pictures=pictures[1:],
         intervals=intervals,
+    )
+
+
+def _link(
+    file: ParameterFile, log: Samples, whole: Fitted, free: Sequence[str] | None
+) -> tuple[tuple[Solution, Picture] | None, list[str]]:
+    """Stiffness and hysteresis of a log with the motor's angle, or why they are not found."""
+    own = (*log_link.LINES, LOOP)
+    if free and not any(name in own for name in free):
+        return None, []
+    names = [name for name in own if name in file.flat and (not free or name in free)]
+    if file.law != "catalogue" or not names:
+        return None, ["stiffness and hysteresis are found with a start of the law catalogue"]
+    ratio = abs(whole.drive.ratio)
+    load = log.sensed
+    if not np.all(np.isfinite(load)):
+        load = Linear.of(log, ratio).load(log, whole.linear, ratio, whole.rotor)
+    return log_link.fit(file, names, log_link.wind_up(log, ratio), -load), []
+
+
+def _both(one: Solution, other: Solution) -> Solution:
+    """Two fits of different unknowns to different data as one, in standard deviations of their noise."""
+    scaled = [(fit.residuals / fit.noise, fit.jacobian / fit.noise) for fit in (one, other)]
+    return Solution(
+        unknowns=(*one.unknowns, *other.unknowns),
+        values={**one.values, **other.values},
+        residuals=np.concatenate([residuals for residuals, _ in scaled]),
+        noise=1.0,
+        jacobian=block_diag(*(jacobian for _, jacobian in scaled)),
+        covariance=block_diag(one.covariance, other.covariance),
+        at_bound=(*one.at_bound, *other.at_bound),
+        limit=one.limit or other.limit,
     )
 
 
@@ -135,8 +183,8 @@ def _wanted(
     samples: Samples, drive: Drive, free: Sequence[str] | None, rotor: float
 ) -> tuple[list[str], list[str]]:
     """Names to fit, and why others of FREE are left as they are."""
-    if free:
-        return list(free), []
+    if own := [name for name in free or () if name not in (*log_link.LINES, LOOP)]:
+        return own, []
     left: dict[str, str] = {}
     load = _first_load(samples, drive, rotor)
     if np.max(np.abs(load)) < LOADED * drive.rated_torque:

@@ -1,8 +1,9 @@
-"""A robot's logs: columns, checks, and the samples at which friction has built up.
+"""A robot's logs: columns, checks, and samples.
 
 A log with a time is dynamic: its motion and torque pass one filter, a polynomial over WINDOW (Savitzky and
 Golay 1964), which gives the derivatives too; kept are samples so far apart that their noise is independent,
-where the drive has turned on since its last reversal. A log without a time is a table of steady speeds.
+and marked are those where the drive has turned on since its last reversal. A log without a time is a table of
+steady speeds.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,9 +30,12 @@ COLUMNS: Mapping[str, Sizes] = {
     "i": {"A": 1.0, "mA": 1e-3},
     "tau": sizes("N.m", "mN.m"),
     "gravity": sizes("N.m", "mN.m"),
+    "q_motor": sizes("rad", "deg", "rev"),
+    "link_torque": sizes("N.m", "mN.m"),
     "temperature": {"K": 1.0, "degC": 1.0, "°C": 1.0, "C": 1.0},
 }
-"""Angle and speed of the joint, current and torque of the motor, torque at the joint that holds the arm."""
+"""Angle and speed of the joint, current and torque of the motor, torque at the joint that holds the arm; the
+motor's own angle, and the torque at the joint that a sensor measures."""
 OTHERS: Mapping[str, Sequence[str]] = {
     "time": ("t", "timestamp", "zeit"),
     "q": ("position", "angle", "actual_q", "joint_position"),
@@ -39,6 +43,8 @@ OTHERS: Mapping[str, Sequence[str]] = {
     "i": ("current", "actual_current", "motor_current"),
     "tau": ("torque", "motor_torque"),
     "gravity": ("tau_g", "gravity_torque"),
+    "q_motor": ("motor_angle", "motor_position", "theta"),
+    "link_torque": ("joint_torque", "torque_sensor"),
     "temperature": ("temp", "motor_temperature", "joint_temperature"),
 }
 LEAST = 6
@@ -74,8 +80,10 @@ class Samples:
     weights  : (n, NODES) [1] of the filter there: friction is filtered as the torque is
     torque   : of the motor
     gravity  : torque at the joint that holds the arm
+    motor, sensed : angle of the motor, torque at the joint
     later    : of the last part of a log, which is held out
     dynamic  : of a log with a time
+    built    : friction has built up
     """
 
     time: Array
@@ -87,8 +95,11 @@ class Samples:
     torque: Array
     gravity: Array
     temperature: Array
+    motor: Array
+    sensed: Array
     later: NDArray[np.bool_]
     dynamic: NDArray[np.bool_]
+    built: NDArray[np.bool_]
 
     def part(self, rows: NDArray[np.bool_] | Places) -> "Samples":
         """The samples of some rows."""
@@ -169,8 +180,11 @@ def _steady(have: Mapping[str, Array], torque: Array) -> Samples:
         torque=torque,
         gravity=have.get("gravity", none),
         temperature=have.get("temperature", none),
+        motor=none,
+        sensed=none,
         later=np.arange(torque.size) % 3 == 1,
         dynamic=np.zeros(torque.size, dtype=bool),
+        built=have["dq"] != 0.0,
     )
 
 
@@ -207,12 +221,14 @@ def _dynamic(table: columns.Columns, have: Mapping[str, Array], torque: Array, d
         torque=smooth(have["tau"]),
         gravity=smooth(have["gravity"]) if "gravity" in have else none,
         temperature=have.get("temperature", none),
+        motor=smooth(have["q_motor"]) if "q_motor" in have else none,
+        sensed=smooth(have["link_torque"]) if "link_torque" in have else none,
         later=even > even[0] + 0.7 * (even[-1] - even[0]),
         dynamic=np.ones(even.size, dtype=bool),
+        built=_built_up(dq, step, width, drive),
     )
     _check(table.path, samples, drive)
-    rows = np.flatnonzero(_built_up(dq, step, width, drive))
-    return samples.part(_apart(rows, width))
+    return samples.part(np.arange(width // 2, even.size - width // 2, width))
 
 
 def _nodes(width: int) -> tuple[Places, Array]:
@@ -295,13 +311,3 @@ def _built_up(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bo
     since, left = place - first[run], last[run] - 1 - place
     turned = way - way[first[run]] > TURNED * drive.presliding
     return np.asarray(turned & (since > width // 2) & (left > width // 2) & (sign != 0.0))
-
-
-def _apart(rows: Places, width: int) -> Places:
-    """Some of ascending rows, each at least `width` from the one before."""
-    kept, last = [], -width
-    for row in rows.tolist():
-        if row - last >= width:
-            kept.append(row)
-            last = row
-    return np.array(kept, dtype=int)
