@@ -390,8 +390,21 @@ static inline double energy_near(const Joint *joint, double x, double *load)
     return energy_inside(&joint->kind.energy, curve, segment, t);
 }
 
-/* Arguments of `loop`, and of those that change a seed. */
-enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP };
+/* Arguments of `loop` and `short_loop`; those from the amplitude on change a seed. */
+enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP, L_NOW = L_LOAD, L_THERE = L_NOW + 3, N_SHORT = L_THERE + 3 };
+
+/* As `short` of the package. */
+static inline bool is_short(const Point *at, double reach)
+{
+    return reach * at->y[1] < SLIDER_SHORT * at->y[0];
+}
+
+/* Load with four derivatives at both ends of a reach. */
+static inline void both_ends(const Joint *joint, const Point *at, double reach, double now[5], double then[5])
+{
+    curve_at(&joint->curve, at->approach, 4, now);
+    curve_at(&joint->curve, at->approach - reach, 4, then);
+}
 
 /* Add the loops whose amplitude is the present shift, see `loop_sums`. */
 static void add_loops(const Joint *joint, const double *inputs, double *x)
@@ -401,10 +414,19 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
-        double then, y[2];
-        const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
-        const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
-        loop(given, NULL, y);
+        const double reach = size * per_reach;
+        double y[2];
+        if (is_short(at, reach)) {
+            double now[5], then[5];
+            both_ends(joint, at, reach, now, then);
+            const double given[N_SHORT] = {mu, ratio, size, now[1], now[2], now[3], then[1], then[2], then[3]};
+            short_loop(given, NULL, y);
+        } else {
+            double then;
+            const double energy = at->energy - energy_near(joint, at->approach - reach, &then);
+            const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
+            loop(given, NULL, y);
+        }
         works += data.patches[j][SHARE] * y[0];
         energies += data.patches[j][SHARE] * y[1];
     }
@@ -419,13 +441,31 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
     const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
     if (size == 0.0)
         return;
-    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio, *now = at->y;
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio;
     const double grows = (u * rates[1] + v * rates[2]) / size, falls = rates[0] - grows / reach;
-    double then[2], y[2];
-    const double energy = at->energy - energy_at(joint, at->approach - size / reach, then);
-    const double x[2 * N_LOOP - L_SIZE] = {mu, ratio, size, now[0], then[0], energy, grows, now[1] * rates[0],
-                                           then[1] * falls, now[0] * rates[0] - then[0] * falls};
-    loop_seed(x, NULL, y);
+    double now[5], then[5], y[2], x[2 * N_SHORT - L_SIZE] = {mu, ratio, size};
+    both_ends(joint, at, size / reach, now, then);
+    if (is_short(at, size / reach)) {
+        double *rate = x + N_SHORT;
+        rate[0] = grows;
+        for (int d = 0; d < 3; d++) {
+            x[L_NOW + d] = now[1 + d];
+            x[L_THERE + d] = then[1 + d];
+            rate[1 + d] = now[2 + d] * rates[0];
+            rate[4 + d] = then[2 + d] * falls;
+        }
+        short_loop_seed(x, NULL, y);
+    } else {
+        double load[2];
+        const double energy = at->energy - energy_at(joint, at->approach - size / reach, load);
+        const double rate[N_LOOP - L_SIZE] = {grows, now[1] * rates[0], then[1] * falls,
+                                              now[0] * rates[0] - then[0] * falls};
+        x[L_LOAD] = now[0];
+        x[L_THEN] = then[0];
+        x[L_ENERGY] = energy;
+        memcpy(x + N_LOOP, rate, sizeof rate);
+        loop_seed(x, NULL, y);
+    }
     dx[SUM_LOOP_WORK] += patch[SHARE] * y[0];
     dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
 }

@@ -49,6 +49,10 @@ def _shear(g: Graph) -> None:
     x = symbols("x", 6)
     doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
     g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
+    head, now, then = symbols("x", 3), symbols("n", 3), symbols("t", 3)
+    doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
+    y = sliders.short_loop(*head, now, then)
+    g.add_with_seed("short_loop", doc, [*head, *now, *then], y, fixed=2)
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
@@ -107,7 +111,7 @@ def _range(g: Graph) -> None:
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
-    names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
+    names = ("SMALL", "SHORT", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
     counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.footprint.shape import PressureShape
-from ...mechanics.sliders import Foundation, loop
+from ...mechanics.sliders import Foundation
 from ...quantity import Number, where
 
 Array = NDArray[np.float64]
@@ -118,7 +118,6 @@ def elastic_shear(
 
 
 def loop_sums(foundation: Foundation, share: Array, approach: Array, size: Array) -> dict[str, Number]:
-    """Sums of `loop` over amplitudes (n) [m] at approaches (n) [m]."""
-    slipped = foundation.slipped(approach, size)
-    loss, stored = loop(foundation.friction, foundation.ratio, size, *slipped)
+    """Sums of `Foundation.loop` over amplitudes (n) [m] at approaches (n) [m]."""
+    loss, stored = foundation.loop(approach, size)
     return {"loop_work": share @ loss, "loop_energy": share @ stored}
