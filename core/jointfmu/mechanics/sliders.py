@@ -136,6 +136,11 @@ class Foundation:
         """Forces (*shape, 2, n) of sliders that have not moved."""
         return np.zeros((*shape, 2, self.sliders))
 
+    def stick(self, approach: ArrayLike) -> Array:
+        """Stiffness (...) [Pa/m] along the surface of all sliders that touch at approaches (...) [m]."""
+        here, first = (self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0]))
+        return np.asarray(self.ratio * np.maximum(here - first, 0.0))
+
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Traction (...) [Pa] from rest over shifts (...) >= 0 [m], at approaches (...) [m] that stay.
 

@@ -17,6 +17,7 @@ enum { /* places of the inputs */
 };
 _Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
+_Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 _Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
 
@@ -186,16 +187,59 @@ static inline void add_normal(double *x, const double *node, double p, double k,
     x[SUM_ABOUT_XY] += stiffness * px * py;
 }
 
-/* Add a shear traction and its derivatives xx, xy, yy in the shift. */
-static inline void add_shear(double *x, const double *point, const double *traction, const double *tangent)
+static inline void add_traction(double *x, const double *point, const double *traction)
 {
     const double share = point[SHARE], px = point[PLACE_X], py = point[PLACE_Y];
     x[SUM_TRACTION_X] += share * traction[0];
     x[SUM_TRACTION_Y] += share * traction[1];
     x[SUM_TORSION] += share * (px * traction[1] - py * traction[0]);
-    x[SUM_TANGENT_X] += share * tangent[0];
-    x[SUM_TANGENT_Y] += share * tangent[2];
-    x[SUM_TANGENT_Z] += share * (py * py * tangent[0] - 2.0 * px * py * tangent[1] + px * px * tangent[2]);
+}
+
+/* xx, xy, yy of a point for a shift along x, along y and a turn. */
+static inline void for_motions(const double *point, const double *tangent, double *motions)
+{
+    const double share = point[SHARE], px = point[PLACE_X], py = point[PLACE_Y];
+    motions[0] = share * tangent[0];
+    motions[1] = share * tangent[2];
+    motions[2] = share * (py * py * tangent[0] - 2.0 * px * py * tangent[1] + px * px * tangent[2]);
+}
+
+/* Add a shear traction and its derivatives xx, xy, yy in the shift. */
+static inline void add_shear(double *x, const double *point, const double *traction, const double *tangent)
+{
+    double motions[3];
+    add_traction(x, point, traction);
+    for_motions(point, tangent, motions);
+    for (int d = 0; d < 3; d++)
+        x[SUM_TANGENT_X + d] += motions[d];
+}
+
+/* Sums over the patches for `further_tangent` of the package: of all that stick, of what those at their limits miss,
+ * and this with the sign by which the traction goes along the motion. */
+typedef struct {
+    double stick[3], spent[3], along[3];
+} Further;
+
+static inline void add_further(Further *sum, const double *patch, double stick, const double *tangent,
+                               const double *traction)
+{
+    const double px = patch[PLACE_X], py = patch[PLACE_Y], t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0]};
+    const double all[3] = {stick, 0.0, stick}, less[3] = {stick - tangent[0], -tangent[1], stick - tangent[2]};
+    double sticks[3], spent[3];
+    for_motions(patch, all, sticks);
+    for_motions(patch, less, spent);
+    for (int d = 0; d < 3; d++) {
+        sum->stick[d] += sticks[d];
+        sum->spent[d] += spent[d];
+        sum->along[d] += t[d] < 0.0 ? -spent[d] : spent[d];
+    }
+}
+
+/* The tangents of a further motion, each in the direction in which more slips on; or rates of them. */
+static inline void tell_further(const Further *sum, const double *along, double *x)
+{
+    for (int d = 0; d < 3; d++)
+        x[SUM_TANGENT_X + d] = sum->stick[d] - 0.5 * (sum->spent[d] + (along[d] < 0.0 ? -sum->along[d] : sum->along[d]));
 }
 
 enum { LIFTED = 5, STIFFER, N_ELASTIC };              /* results of `elastic_shear`: traction, tangent, then these */
@@ -501,15 +545,22 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
 {
     Kind *kind = &joint->kind;
     double heat = 0.0;
+    Further sum = {.stick = {0.0}};
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
         const Shear shear = slide(joint, j, inputs, memory, after + AT_FORCE + 2 * j * SLIDERS);
-        add_shear(x, data.patches[j], shear.traction, shear.tangent);
+        add_traction(x, data.patches[j], shear.traction);
+        add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
+        memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
         heat += data.patches[j][SHARE] * shear.loss;
         after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
         after[AT_APPROACH + j] = kind->to[j].approach;
+    }
+    if (kind->memory) {
+        memcpy(kind->along, sum.along, sizeof sum.along);
+        tell_further(&sum, kind->along, x);
     }
     const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
@@ -615,28 +666,56 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
     return true;
 }
 
-static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *seed,
-                        const double *bolts, double *dx)
+/* Rates of a patch in a further motion from the place of the last evaluation, whose memory is `after`: the mean of
+ * both directions, of which sliders at their limits slip on in one and stick in the other. */
+static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[2])
+{
+    const double *force = after + AT_FORCE + j * 2 * SLIDERS;
+    const Foundation *f = &joint->kind.foundation[j];
+    const Point *at = &joint->kind.to[j];
+    PatchPath path = {.force = {force, force + SLIDERS}, .from = at, .to = at};
+    Shear mean, on;
+    foundation_rates(f, &path, ends, shift, &mean);
+    path.onward = true;
+    foundation_rates(f, &path, ends, shift, &on);
+    for (int d = 0; d < 2; d++)
+        mean.traction[d] = 0.5 * (mean.traction[d] + on.traction[d]);
+    for (int d = 0; d < 3; d++)
+        mean.tangent[d] = 0.5 * (mean.tangent[d] + on.tangent[d]);
+    mean.loss = 0.5 * (mean.loss + on.loss);
+    return mean;
+}
+
+static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *after,
+                        const double *seed, const double *bolts, double *dx)
 {
     const Kind *kind = &joint->kind;
+    Further sum = {.stick = {0.0}};
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j];
-        const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
-        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {(int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
-        add_loop_rate(joint, patch, path.to, inputs, loop, dx);
+        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {after || (int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate};
+        add_loop_rate(joint, patch, &kind->to[j], inputs, loop, dx);
         if (!kind->memory)
             continue;
         Shear shear;
-        foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
-        add_shear(dx, patch, shear.traction, shear.tangent);
+        if (after) {
+            shear = further_rates(joint, j, after, ends, shift);
+        } else {
+            const PatchPath path = path_of(joint, j, inputs, memory);
+            foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
+        }
+        add_traction(dx, patch, shear.traction);
+        add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }
+    if (kind->memory)
+        tell_further(&sum, kind->along, dx);
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
     const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
     double x[2 * N_X] = {0.0}, *dx = x + N_X, bolts[4];
@@ -647,7 +726,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     bolt_pressures_seed(at, joint->c, bolts + 2);
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
         return;
-    patch_rates(joint, inputs, memory, seed, bolts, dx);
+    patch_rates(joint, inputs, memory, after, seed, bolts, dx);
     memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);
