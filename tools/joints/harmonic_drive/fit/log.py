@@ -108,7 +108,7 @@ def fit(
         left += why
         if more is not None:
             found, pictures = _both(found, more[0]), [*pictures, more[1]]
-    intervals = _intervals(found)
+    intervals = _intervals(whole.solution)
     result = fitted(file, found.values, "calibration", label, _span(samples))
     for name, (low, high) in intervals.items():
         text = f"{result.sources[name]}; {100.0 * LEVEL:g} % interval {low:.4g} to {high:.4g}"
@@ -138,7 +138,8 @@ def _link(
     load = log.sensed
     if not np.all(np.isfinite(load)):
         load = Linear.of(log, ratio).load(log, whole.linear, ratio, whole.rotor)
-    return log_link.fit(file, names, log_link.wind_up(log, ratio), -load), []
+    note = f"{', '.join(names)} have no intervals: the load under which they are found is taken as known"
+    return log_link.fit(file, names, log_link.wind_up(log, ratio), -load), [note]
 
 
 def _both(one: Solution, other: Solution) -> Solution:
