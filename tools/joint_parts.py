@@ -30,6 +30,7 @@ TOOLS = (
     "reduced",
     "report",
     "ringing",
+    "transmission",
 )
 """Names that a part may have: each is of the tool that asks for it."""
 

@@ -12,7 +12,7 @@ from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
 from ..export import exports
-from ..export.forms import ERROR, FORMS, WHAT
+from ..export.forms import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, Placing
 from ..export.units import SI, UNITS
 from ..pressure import judge_file, nominal_pressure
@@ -32,14 +32,15 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     export = command(commands, "export", _export, "write the joint for another solver")
     with_springs = exports.able("springs")
-    export.add_argument("form", choices=list(FORMS), metavar="FORMAT", help=f"one of {', '.join(FORMS)}")
+    forms = [*FORMS, *ROBOTS]
+    export.add_argument("form", choices=forms, metavar="FORMAT", help=f"one of {', '.join(forms)}")
     export.add_argument(
         "what",
-        choices=WHAT,
         metavar="WHAT",
         help="springs: springs and dashpots between node pairs "
         f"({', '.join(KINDS[joint].title for joint in with_springs)}); contact: pressure over overclosure; "
-        "curve: load over displacement of the whole joint",
+        "curve: load over displacement of the whole joint; "
+        f"{', '.join(ROBOTS)}: a drive's parameter file or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
     joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
@@ -71,6 +72,12 @@ def add(commands: Commands) -> None:
     export.add_argument(
         "--error", type=float, metavar="E", help=f"tables: largest error by straight lines ({ERROR:g})"
     )
+    export.add_argument(
+        "--torque",
+        type=float,
+        metavar="T",
+        help=f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)",
+    )
     export.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write")
 
 
@@ -84,6 +91,13 @@ def _working_points() -> dict[str, list[str]]:
 
 
 def _export(args: argparse.Namespace) -> int:
+    if args.form in ROBOTS:
+        return _robots(args)
+    if args.what not in WHAT:
+        choices = ", ".join(map(repr, WHAT))
+        raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
+    if args.torque is not None:
+        raise ValueError(f"--torque has no meaning for {args.form}; it is for {', '.join(ROBOTS)}")
     if args.what not in FORMS[args.form]:
         raise ValueError(
             f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
@@ -103,6 +117,32 @@ def _export(args: argparse.Namespace) -> int:
         number = f"{value:.6g}" if isinstance(value, float) else value
         print(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
     tell(found)
+    return 0
+
+
+def _robots(args: argparse.Namespace) -> int:
+    """Write a drive for a robot's simulator, and say what it misses."""
+    idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
+    for name in idle:
+        if getattr(args, name) is not None:
+            raise ValueError(f"{flag(name)} has no meaning for {args.form}")
+    if args.units != SI.name:
+        raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
+    check_writable(args.out)
+    from ..robots.writing import written
+
+    try:
+        found = written(args.form, args.what, args.torque)
+    except ImportError as error:
+        raise ValueError(
+            f"the package {error.name or error} is missing, needed to measure the file; "
+            "install it with: pip install 'jointfmu[mujoco]'"
+        ) from None
+    write_text(args.out, found.text)
+    if args.json:
+        print(json.dumps({"written": str(args.out), "format": args.form, **found.facts}))
+        return 0
+    print("\n".join([f"wrote {args.out}: {found.name} for {args.form}", *(f"  {x}" for x in found.lines)]))
     return 0
 
 

@@ -8,6 +8,8 @@ FORMS = {
     "csv": ("springs", "contact", "curve"),
 }
 """{format: what it can hold}."""
+ROBOTS = ("mjcf",)
+"""Formats of robots, which hold a drive."""
 WHAT = ("springs", "contact", "curve")
 ERROR = 1e-3
 """Largest error of a table's load [1] by straight lines, unless another is asked for."""

@@ -18,5 +18,6 @@ PARTS = ToolParts(
         "reduced",
         "report",
         "ringing",
+        "transmission",
     ),
 )

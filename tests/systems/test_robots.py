@@ -1,0 +1,138 @@
+"""Drives as plain MJCF: what the command writes is run in MuJoCo beside the drive's own spring."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+
+import jointfmu
+
+mujoco = pytest.importorskip("mujoco")
+
+STEPS = 4000
+"""Of a quarter of the loop."""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def exported(capsys, source, *words):
+    assert cli.main(["export", "mjcf", source, "--out", "drive.xml", "--json", *words]) == 0
+    return json.loads(capsys.readouterr().out), mujoco.MjModel.from_xml_path("drive.xml")
+
+
+def pulled(model, torques):
+    """Wind-ups under torques at the link, motor locked, each held for several periods at a high damping."""
+    model.opt.gravity[:], model.opt.timestep = 0.0, 1e-4
+    model.dof_armature[model.joint("motor").dofadr[0]] = 1e9
+    link = model.joint("link").dofadr[0]
+    stiffness = model.tendon_stiffness.sum()
+    model.dof_damping[link] = 1.4 * np.sqrt(stiffness * model.dof_armature[link])
+    data, found = mujoco.MjData(model), []
+    mujoco.mj_setConst(model, data)
+    for torque in torques:
+        data.qfrc_applied[link] = torque
+        mujoco.mj_step(model, data)
+        found.append(data.qpos[link])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100", "CSG-40-160", "HarmonicDriveSpring"])
+def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
+    """A ramp of 2 s; the promise is 3 %."""
+    said, model = exported(capsys, name)
+    drive = jointfmu.load(name)
+    rated = drive.values["rated_torque"]
+    assert said["torque"] == rated
+    ramp = np.append(np.linspace(0.0, rated, 20_000), np.full(2000, rated))
+    found = pulled(model, ramp)[-1] / float(drive.wind_up(rated)) - 1.0
+    assert abs(found) < 0.03
+    assert found == pytest.approx(said["wind_up"], abs=1e-4)  # what the file says of itself
+    assert said["area"] is None
+
+
+def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
+    """The promise is 5 %; the work of link's and drive's damping is known and left out."""
+    drive = jointfmu.drive("CSG-25-100", hysteresis=1.0)
+    drive.save("drive.toml")
+    said, model = exported(capsys, "drive.toml")
+    rated = drive.values["rated_torque"]
+    torques = rated * np.concatenate([np.linspace(0, 1, STEPS), np.cos(np.linspace(0, 2 * np.pi, 4 * STEPS))])
+    memory, spring, expected = drive.spring.rest(), drive.spring, []
+    for torque in torques[::20]:
+        out, memory = spring.loaded(torque, memory)
+        expected.append(float(out["phi_rel"]))
+    own = np.trapezoid(torques[::20][STEPS // 20 :], expected[STEPS // 20 :])
+    x = pulled(model, torques)[STEPS:]
+    damping = model.dof_damping[model.joint("link").dofadr[0]] + model.tendon_damping.sum()
+    viscous = damping * np.sum(np.diff(x) ** 2) / model.opt.timestep
+    found = np.trapezoid(torques[STEPS:], x) - viscous
+    assert own > 0.0
+    assert found / own == pytest.approx(1.0, abs=0.05)
+    assert abs(said["area"]) < 0.05
+    assert abs(said["wind_up"]) < 0.03
+    text = (folder / "drive.xml").read_text()
+    assert f"{100.0 * said['area']:+.2f} % of the FMU's, within 5 %" in text
+
+
+def test_the_motor_turns_the_link_with_the_ratio(capsys):
+    """Led slowly, the link follows within the wind-up of its own weight's torque: none."""
+    _, model = exported(capsys, "CSG-14-100")
+    data = mujoco.MjData(model)
+    motor, link = (model.joint(name).dofadr[0] for name in ("motor", "link"))
+    data.qpos[motor], data.qpos[link] = 1.0, -0.01
+    mujoco.mj_forward(model, data)
+    assert data.qfrc_passive.tolist() == pytest.approx([0.0, 0.0], abs=1e-9)
+    data.qpos[link] += 1e-3
+    mujoco.mj_forward(model, data)
+    assert data.qfrc_passive[motor] == pytest.approx(data.qfrc_passive[link] * 0.01, rel=1e-12)
+    assert data.qfrc_passive[link] < 0.0
+
+
+def test_what_it_cannot_carry_is_said(folder, capsys):
+    jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75).save(
+        "d.toml"
+    )
+    said, model = exported(capsys, "d.toml")
+    lacks = " ".join(said["lacks"])
+    assert "friction that grows with the load: at rated torque" in lacks
+    assert "presliding" in lacks
+    text = (folder / "drive.xml").read_text()
+    assert "it cannot carry:" in text
+    assert all(line in text for line in said["lacks"])
+    motor = model.joint("motor").dofadr[0]
+    values = jointfmu.load("d.toml").values
+    assert model.dof_frictionloss[motor] == pytest.approx(values["friction_coulomb"], rel=1e-8)
+    assert model.dof_damping[motor] == pytest.approx(values["friction_viscous"], rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["mjcf", "CSG-25-1000"], "'CSG-25-1000' is no parameter file"),
+        (["mjcf", "BoltedJoint"], "is a bolted_joint, no drive of a motor; allowed is a harmonic_drive"),
+        (
+            ["mjcf", "CSG-25-100", "--torque", "0"],
+            r"--torque = 0 N.m is outside \(0, 204\] N.m of CSG-25-100",
+        ),
+        (["mjcf", "CSG-25-100", "--torque", "nan"], r"--torque = nan N.m is outside"),
+        (["mjcf", "CSG-25-100", "--units", "mm-N-MPa-t"], "--units = mm-N-MPa-t: mjcf is in m-N-Pa-kg"),
+        (["mjcf", "CSG-25-100", "--error", "0.1"], "--error has no meaning for mjcf"),
+        (["csv", "curve", "--torque", "3"], "--torque has no meaning for csv; it is for mjcf"),
+    ],
+)
+def test_refusals(words, line, capsys):
+    assert re.search(line, refused_line(capsys, "export", *words, "--out", "x.xml"))
+
+
+def test_without_mujoco_it_is_refused_in_one_line(capsys, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "mujoco", None)
+    line = refused_line(capsys, "export", "mjcf", "CSG-14-100", "--out", "x.xml")
+    assert "the package mujoco is missing" in line
+    assert "jointfmu[mujoco]" in line

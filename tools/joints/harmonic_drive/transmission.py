@@ -1,0 +1,60 @@
+"""The harmonic drive between a motor and a link of a robot."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+
+from ...robots.transmission import Transmission
+
+Array = NDArray[np.float64]
+
+
+def TRANSMISSION(name: str, drive: Drive) -> Transmission:
+    """The drive with its spring."""
+    spring = HarmonicDriveSpring.of(drive)
+
+    def wind_up(torques: ArrayLike) -> Array:
+        memory, found = spring.rest(), []
+        for torque in np.asarray(torques, dtype=np.float64):
+            out, memory = spring.loaded(torque, memory)
+            found.append(float(out["phi_rel"]))
+        return np.array(found)
+
+    return Transmission(
+        name=name,
+        ratio=drive.ratio,
+        damping=drive.d,
+        rated_torque=drive.rated_torque,
+        max_torque=float(spring.curve.end[1]),
+        dry=drive.friction_coulomb,
+        viscous=drive.friction_viscous,
+        wind_up=wind_up,
+        lacks=tuple(_lacks(drive)),
+    )
+
+
+def _lacks(drive: Drive) -> Iterator[str]:
+    """What is no spring, slider or constant friction."""
+    if drive.friction_stribeck:
+        stribeck, speed = drive.friction_stribeck, drive.stribeck_speed
+        yield f"{stribeck:.4g} N.m more dry friction at the motor below {speed:g} rad/s"
+    if drive.load_loss or drive.loss_back:
+        loss, back = (
+            share * drive.rated_torque / abs(drive.ratio) for share in (drive.load_loss, drive.loss_back)
+        )
+        yield (
+            "friction that grows with the load: at rated torque "
+            f"{loss:.4g} N.m at the motor where it drives, {back:.4g} N.m where the load does"
+        )
+    if drive.friction_coulomb or drive.friction_stribeck or drive.load_loss:
+        yield f"presliding over {drive.presliding:g} rad of the motor"
+    if drive.friction_coulomb or drive.friction_viscous:
+        yield "the temperature of the lubricant: friction is that at 20 degrees C"
+    error = sum(abs(getattr(drive, f"error_{n}")) for n in HARMONICS)
+    if error:
+        yield f"the kinematic error, up to {error:.3g} rad"

@@ -1,0 +1,158 @@
+"""A drive as plain MJCF of MuJoCo 4: fixed tendons between the hinges of motor and link.
+
+The length of each tendon is the wind-up, link - motor/ratio. One has the elastic torque, stiffness with a
+linear and a cubic coefficient, and the damping; beside it lie springs that yield, Jenkins elements, for the
+hysteresis. Friction and damping of the motor are its hinge's.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu import __version__
+
+from .fitted import Fitted, fit
+from .transmission import RAMP, Transmission, area
+
+Array = NDArray[np.float64]
+
+LOCKED = 1e12
+"""Armature [kg.m2] of hinges that are led: their speed stays whatever the torque."""
+LEAD = 1e4
+"""Time [s] of a measured loop: damping adds nothing to it."""
+FREQUENCY = 60.0
+"""[Hz] of the link on the drive that the written file shows, motor locked."""
+WIND_UP, AREA = 0.03, 0.05
+"""What is promised of wind-up at the torque of the fit and area of the loop [1]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Miss:
+    """How far MuJoCo is from the FMU.
+
+    wind_up : [1] at the torque of the fit from rest, over that of the FMU, less 1
+    area    : [1] of the loop between both signs of that torque, likewise; None without hysteresis
+    """
+
+    wind_up: float
+    area: float | None
+
+    def lines(self, torque: float) -> Iterator[str]:
+        """What is measured, in words."""
+        yield _verdict(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP)
+        if self.area is None:
+            yield "loop: none, the drive has no hysteresis"
+        else:
+            yield _verdict(f"area of the loop at {torque:g} N.m", self.area, AREA)
+
+
+def _verdict(what: str, miss: float, most: float) -> str:
+    kept = "within" if abs(miss) <= most else "MISSED:"
+    return f"{what}: {100.0 * miss:+.2f} % of the FMU's, {kept} {100.0 * most:g} %"
+
+
+def tendons(drive: Transmission, fitted: Fitted, name: str, motor: str, link: str) -> str:
+    """The tendons between two hinges, children of `<tendon>`."""
+    joints = (
+        f'<joint joint={quoteattr(link)} coef="1"/>'
+        f'<joint joint={quoteattr(motor)} coef="{-1.0 / drive.ratio:.17g}"/>'
+    )
+    elastic = f'stiffness="{fitted.linear:.9g} 0 {fitted.cubic:.9g}" damping="{drive.damping:.9g}"'
+    springs = [(name, elastic)] + [
+        (f"{name}_slider{i}", f'stiffness="{k:.9g}" springyield="{y:.9g}"')
+        for i, (k, y) in enumerate(fitted.sliders, 1)
+    ]
+    return "\n".join(
+        f'    <fixed name={quoteattr(own)} springlength="0 0" {numbers}>{joints}</fixed>'
+        for own, numbers in springs
+    )
+
+
+def _model(drive: Transmission, fitted: Fitted, motor_inertia: float, link_inertia: float) -> str:
+    torque = drive.max_torque / abs(drive.ratio)
+    small = '<inertial pos="0 0 0" mass="0.001" diaginertia="1e-9 1e-9 1e-9"/>'
+    return f"""<mujoco model={quoteattr(drive.name)}>
+  <worldbody>
+    <body name="motor">
+      <joint name="motor" type="hinge" axis="0 0 1" armature="{motor_inertia:.9g}" \
+frictionloss="{drive.dry:.9g}" damping="{drive.viscous:.9g}" \
+actuatorfrclimited="true" actuatorfrcrange="{-torque:.9g} {torque:.9g}"/>
+      {small}
+    </body>
+    <body name="link">
+      <joint name="link" type="hinge" axis="0 0 1" armature="{link_inertia:.9g}"/>
+      {small}
+    </body>
+  </worldbody>
+  <tendon>
+{tendons(drive, fitted, "drive", "motor", "link")}
+  </tendon>
+  <actuator>
+    <motor name="motor" joint="motor"/>
+  </actuator>
+</mujoco>
+"""
+
+
+def led(drive: Transmission, fitted: Fitted, wind_up: Array) -> Array:
+    """MuJoCo's torques (n) [N.m] of the drive while the link is led along wind-ups (n) [rad] from rest.
+
+    Raises ImportError without mujoco, ValueError where it has no springs that yield.
+    """
+    import mujoco
+
+    steps = LEAD / len(wind_up)
+    text = _model(drive, fitted, LOCKED, LOCKED)
+    made = mujoco.MjModel.from_xml_string(text)
+    made.opt.timestep, made.opt.gravity[:] = steps, 0.0
+    data, link = mujoco.MjData(made), made.joint("link").dofadr[0]
+    torques = []
+    for x, ahead in zip(wind_up, [*wind_up[1:], wind_up[-1]], strict=True):
+        data.qpos[link], data.qvel[:] = x, 0.0
+        data.qvel[link] = (ahead - x) / steps
+        mujoco.mj_forward(made, data)
+        torques.append(-data.qfrc_passive[link])
+        mujoco.mj_step(made, data)
+    return np.array(torques)
+
+
+def measured(drive: Transmission, fitted: Fitted) -> Miss:
+    """MuJoCo beside the FMU's spring on the way from rest to the torque of the fit and once round."""
+    torques, x = drive.loop(fitted.torque)
+    found = led(drive, fitted, x)
+    own, others = area(x, torques), area(x, found)
+    wide = 1.2 * x[: RAMP + 1]
+    reached = np.interp(fitted.torque, led(drive, fitted, wide), wide)
+    return Miss(float(reached / x[RAMP] - 1.0), others / own - 1.0 if fitted.sliders else None)
+
+
+def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
+    """The file of a drive fitted up to a torque [N.m], and what running it showed.
+
+    Raises ImportError without mujoco.
+    """
+    import mujoco
+
+    if not hasattr(mujoco.MjModel, "tendon_springyield"):
+        raise ValueError(f"mujoco {mujoco.__version__} has no springs that yield; expected 4.0 or newer")
+    fitted = fit(drive, torque)
+    miss = measured(drive, fitted)
+    stiffness = fitted.linear + sum(k for k, _ in fitted.sliders)
+    link = stiffness / (2.0 * np.pi * FREQUENCY) ** 2
+    about = [
+        f"{drive.name} as plain MJCF, jointfmu {__version__}; needs MuJoCo 4.0 or newer, no plugin",
+        f"torque = k x + k3 x^3 and {len(fitted.sliders)} springs that yield, x = link - motor/ratio, "
+        f"by least squares up to {torque:g} N.m",
+        f"measured in MuJoCo {mujoco.__version__} beside the FMU, motor locked:",
+        *(f"  {line}" for line in miss.lines(torque)),
+        f"beyond {torque:g} N.m the cubic goes on; the FMU is tabulated to {drive.max_torque:g} N.m",
+        f"inertias stand for yours: {FREQUENCY:g} Hz of the link, motor locked; the motor's is as large",
+        "it cannot carry:" if drive.lacks else "nothing of the drive is left out",
+        *(f"  {line}" for line in drive.lacks),
+    ]
+    comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
+    model = _model(drive, fitted, link / drive.ratio**2, link)
+    return f"<!--\n{comment}\n-->\n{model}", miss

@@ -1,0 +1,42 @@
+"""A drive as a file of a robot's simulator."""
+
+from dataclasses import asdict, dataclass
+
+from ..interface import load
+from . import mjcf
+from .transmission import transmission
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """A file's text, the drive's name, what is worth saying about it, and the same as numbers (SI)."""
+
+    text: str
+    name: str
+    lines: tuple[str, ...]
+    facts: dict[str, object]
+
+
+def written(form: str, source: str, torque: float | None) -> Written:
+    """A drive by its file or name in a format of robots, fitted up to a torque [N.m], rated unless stated.
+
+    Raises ValueError for what is no drive or a torque outside its table, ImportError without mujoco.
+    """
+    drive = transmission(load(source).file)
+    reached = drive.rated_torque if torque is None else torque
+    if not 0.0 < reached <= drive.max_torque:
+        raise ValueError(
+            f"--torque = {reached:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
+        )
+    text, miss = WRITERS[form](drive, reached)
+    lines = (*miss.lines(reached), *(f"not carried: {line}" for line in drive.lacks))
+    return Written(
+        text,
+        drive.name,
+        lines,
+        {"drive": drive.name, "torque": reached, **asdict(miss), "lacks": [*drive.lacks]},
+    )
+
+
+WRITERS = {"mjcf": mjcf.text}
+"""{format: (drive, torque [N.m]) -> text and what it misses}."""
