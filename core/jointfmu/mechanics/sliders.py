@@ -79,6 +79,10 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     return np.concatenate([lowest, between, last], axis=-1)
 
 
+HARDLY = 1e-3
+"""Shift over that of gross slip [1] below which sliders are at rest: they stick, whatever the heights."""
+
+
 @dataclass(frozen=True, slots=True)
 class Carried:
     """What sliders (..., n) have at an approach, per area.
@@ -140,6 +144,30 @@ class Foundation:
         """Stiffness (...) [Pa/m] along the surface of all sliders that touch at approaches (...) [m]."""
         here, first = (self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0]))
         return np.asarray(self.ratio * np.maximum(here - first, 0.0))
+
+    def rested(
+        self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike
+    ) -> tuple[Array, Array]:
+        """Traction (..., 2) [Pa] of sliders that all stick after a straight path, and whether (...) they do.
+
+        force         : (..., 2) [Pa] of all sliders before
+        before, after : (...) [m] approaches
+        shift         : (..., 2) [m] of the other side along the surface
+        """
+        stiff, now = self.stick(before), self.stick(after)
+        falls = np.asarray(after) < np.asarray(before)
+        rule = rest_rule(stiff, now, falls)
+        kept, gain = (np.asarray(each)[..., None] for each in rule)
+        traction = kept * force + gain * np.asarray(shift)
+        most = HARDLY * self.friction / self.ratio * now * (np.asarray(after) - self.height[..., 0])
+        return traction, np.hypot(traction[..., 0], traction[..., 1]) <= most
+
+    def spread(self, force: Array, approach: ArrayLike) -> Array:
+        """Forces (..., 2, n) of sliders that have stuck so far with forces (..., 2) together."""
+        stiffness = self.carried(approach).stiffness
+        whole = np.sum(stiffness, axis=-1, keepdims=True)
+        part = np.divide(stiffness, whole, out=np.zeros_like(stiffness), where=whole > 0.0)
+        return np.asarray(force[..., None] * part[..., None, :])
 
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Traction (...) [Pa] from rest over shifts (...) >= 0 [m], at approaches (...) [m] that stay.
@@ -390,6 +418,14 @@ def heat(
     stiffness = start.stiffness, end.stiffness
     changing = changing_loss(force, slid.force, shift, stiffness, slid.slip, across, between)
     return where(start.stiffness == end.stiffness, slid.loss, changing)
+
+
+def rest_rule(stiff: Number, now: Number, falls: Number) -> tuple[Number, Number]:
+    """Part of its force that a foundation at rest keeps while its stiffness [Pa/m] goes from `stiff` to `now`
+    [1], and what the shift adds [Pa/m], as `carrying`."""
+    some = stiff > 0.0
+    kept = where(some, np.minimum(now / where(some, stiff, 1.0), 1.0), 0.0)
+    return where(falls, kept, 1.0), where(falls, now, 0.5 * (stiff + now))
 
 
 def carrying(

@@ -381,7 +381,8 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
-        const double start = begun ? memory[AT_APPROACH + j] : end, reference = begun ? memory[AT_REFERENCE + j] : end;
+        const double start = begun ? memory[AT_APPROACH + j] : end;
+        const double reference = (int)memory[AT_STATE] < ALONG ? start : memory[AT_REFERENCE + j];
         if (kind->moved != RESTING && kind->foundation[j].reference != reference)
             lay(kind, j, reference);
         const Foundation *f = &kind->foundation[j];
@@ -394,7 +395,9 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
 
 static inline PatchPath path_of(const Joint *joint, int j, const double *inputs, const double *memory)
 {
-    const double *patch = data.patches[j], *force = memory + AT_FORCE + j * 2 * SLIDERS;
+    const bool spread = joint->kind.moved != RESTING && (int)memory[AT_STATE] < ALONG;
+    const double *patch = data.patches[j];
+    const double *force = spread ? joint->kind.spread[j][0] : memory + AT_FORCE + j * 2 * SLIDERS;
     const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
     const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y];
     const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X];
@@ -514,30 +517,76 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
     dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
 }
 
-/* How it has moved after the way to inputs. */
+/* How it has moved after the way to inputs, where it is no longer at rest. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    if ((int)memory[AT_STATE] == FREE || inputs[S_REL + 1] != memory[AT_RIGID + 1] || inputs[THETA + 2] != memory[AT_RIGID + 2])
-        return FREE;
-    return (int)memory[AT_STATE] == ALONG || inputs[S_REL] != memory[AT_RIGID] ? ALONG : RESTING;
+    bool straight = (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
+                    inputs[THETA + 2] == memory[AT_RIGID + 2];
+    for (int j = 0; j < n_patches() && straight; j++)
+        straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0;
+    return straight ? ALONG : FREE;
 }
 
-/* A patch moves: its sums, and the forces of all its sliders. */
-static Shear slide(Joint *joint, int j, const double *inputs, const double *memory, double *force)
+/* The traction of a patch at rest. */
+static inline void resting_traction(const double *memory, int j, double traction[2])
+{
+    traction[0] = memory[AT_FORCE + 2 * j * SLIDERS];
+    traction[1] = memory[AT_FORCE + (2 * j + 1) * SLIDERS];
+}
+
+/* All patches after the way if they stay at rest; false: one moves more than hardly. */
+static bool rest_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
+{
+    bool rests = (int)memory[AT_STATE] < ALONG;
+    if (rests) {
+        joint->kind.moved = RESTING;
+        find_points(joint, inputs, memory);
+    }
+    for (int j = 0; j < n_patches() && rests; j++) {
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        double before[2];
+        resting_traction(memory, j, before);
+        rests = foundation_rest(&joint->kind.foundation[j], &path, before, &shears[j]);
+    }
+    return rests;
+}
+
+/* How all patches move, with the points of their paths; at rest with their sums. */
+static void move_all(Joint *joint, const double *inputs, const double *memory, Shear *shears)
+{
+    Kind *kind = &joint->kind;
+    if (rest_all(joint, inputs, memory, shears))
+        return;
+    kind->moved = moved_on(inputs, memory);
+    find_points(joint, inputs, memory);
+    for (int j = 0; j < n_patches() && (int)memory[AT_STATE] < ALONG; j++) {
+        double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[2];
+        resting_traction(memory, j, before);
+        foundation_spread(&kind->foundation[j], &kind->from[j], before, spread);
+    }
+}
+
+/* A patch that is not at rest moves: its sums, and the forces of all its sliders. */
+static Shear slide(Joint *joint, int j, const double *inputs, const double *memory, double *const moved[2])
 {
     Kind *kind = &joint->kind;
     const PatchPath path = path_of(joint, j, inputs, memory);
-    double *const moved[2] = {force, force + SLIDERS};
     const int touched = path.from->touched > path.to->touched ? path.from->touched : path.to->touched;
-    const int n = kind->moved == RESTING ? 0 : 2 * touched, n_y = kind->moved < FREE ? 0 : n;
+    const int n = 2 * touched, n_y = kind->moved < FREE ? 0 : n;
     Shear shear;
-    if (kind->moved == RESTING) /* without forces all springs in contact stick, whatever the heights */
-        shear = foundation_at_rest(&kind->foundation[j], path.to);
-    else
-        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
-    memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *force);
-    memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *force);
+    foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+    memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *moved[0]);
+    memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *moved[1]);
     return shear;
+}
+
+/* A patch at rest: its force stands in the place of the first slider. */
+static void keep_at_rest(const Shear *shear, double *const moved[2])
+{
+    for (int d = 0; d < 2; d++) {
+        memset(moved[d], 0, SLIDERS * sizeof *moved[d]);
+        moved[d][0] = shear->traction[d];
+    }
 }
 
 /* Sums over the patches, and the memory after the way. */
@@ -546,11 +595,19 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     Kind *kind = &joint->kind;
     double heat = 0.0;
     Further sum = {.stick = {0.0}};
-    kind->moved = moved_on(inputs, memory);
-    find_points(joint, inputs, memory);
+    Shear shears[MOST_PATCHES];
+    if (kind->memory) {
+        move_all(joint, inputs, memory, shears);
+    } else {
+        kind->moved = RESTING;
+        find_points(joint, inputs, memory);
+    }
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
-        const Shear shear = slide(joint, j, inputs, memory, after + AT_FORCE + 2 * j * SLIDERS);
+        double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
+        const Shear shear = kind->moved == RESTING ? shears[j] : slide(joint, j, inputs, memory, moved);
+        if (kind->moved == RESTING)
+            keep_at_rest(&shear, moved);
         add_traction(x, data.patches[j], shear.traction);
         add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
@@ -700,10 +757,15 @@ static void patch_rates(const Joint *joint, const double *inputs, const double *
         if (!kind->memory)
             continue;
         Shear shear;
-        if (after) {
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        if (kind->moved == RESTING) {
+            const PatchPath here = {.from = path.to, .to = path.to};
+            double before[2];
+            resting_traction(after ? after : memory, j, before);
+            foundation_rest_rates(&kind->foundation[j], after ? &here : &path, before, ends, shift, &shear);
+        } else if (after) {
             shear = further_rates(joint, j, after, ends, shift);
         } else {
-            const PatchPath path = path_of(joint, j, inputs, memory);
             foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
         }
         add_traction(dx, patch, shear.traction);

@@ -31,6 +31,7 @@ typedef struct {
     int moved;                       /* how it has moved up to the last evaluation */
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
     double traction[MOST_PATCHES][2], along[3]; /* of the patches in it, and what `Further` has there */
+    double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work; /* of the patch at hand */
 } Kind;
 

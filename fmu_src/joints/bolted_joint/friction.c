@@ -1,5 +1,6 @@
 #include "friction.h"
 
+#include <math.h>
 #include <string.h>
 
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
@@ -344,10 +345,47 @@ double foundation_stick(const Foundation *f, const Point *at)
     return f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
 }
 
-Shear foundation_at_rest(const Foundation *f, const Point *at)
+enum { R_FALLS, R_BEFORE, R_AFTER, N_REST }; /* arguments of `rest_rule` */
+
+/* As `Foundation.rested` of the package. */
+bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[2], Shear *shear)
 {
-    const double K = foundation_stick(f, at);
-    return (Shear){.tangent = {K, 0.0, K}};
+    const Point *from = path->from, *to = path->to;
+    const double x[N_REST] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to)};
+    const double most = SLIDER_HARDLY * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
+    double rule[2], *t = shear->traction;
+    rest_rule(x, NULL, rule);
+    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER]}};
+    for (int d = 0; d < 2; d++)
+        t[d] = rule[0] * before[d] + rule[1] * path->shift[d];
+    return sqrt(t[0] * t[0] + t[1] * t[1]) <= most;
+}
+
+void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[2], const double rates[2],
+                           const double shift[2], Shear *rate)
+{
+    const Point *from = path->from, *to = path->to;
+    const double first = f->ratio * from->y[2] * rates[0], last = f->ratio * to->y[2] * rates[1];
+    const double x[2 * N_REST - 1] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to),
+                                      first, last};
+    double rule[2], slopes[2];
+    rest_rule(x, NULL, rule);
+    rest_rule_seed(x, NULL, slopes);
+    *rate = (Shear){.tangent = {last, 0.0, last}};
+    for (int d = 0; d < 2; d++)
+        rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * shift[d];
+}
+
+void foundation_spread(const Foundation *f, const Point *at, const double traction[2], double *const force[2])
+{
+    const double stick = foundation_stick(f, at);
+    for (int i = 0; i < at->touched; i++) {
+        const double part = stick > 0.0 ? pair_at(f, i, at).K / stick : 0.0;
+        for (int d = 0; d < 2; d++)
+            force[d][2 * i] = force[d][2 * i + 1] = part * traction[d];
+    }
+    for (int d = 0; d < 2; d++)
+        memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
 /* Rates */

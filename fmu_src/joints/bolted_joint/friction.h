@@ -65,8 +65,13 @@ void foundation_move(const Foundation *foundation, const PatchPath *path, double
                      Shear *shear);
 /* Stiffness of all sliders that touch at a point. */
 double foundation_stick(const Foundation *foundation, const Point *at);
-/* What sliders without force give that do not move along the surface. */
-Shear foundation_at_rest(const Foundation *foundation, const Point *at);
+/* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */
+bool foundation_rest(const Foundation *foundation, const PatchPath *path, const double before[2], Shear *shear);
+/* Derivative of what it gives by the approach at both ends and the shift. */
+void foundation_rest_rates(const Foundation *foundation, const PatchPath *path, const double before[2],
+                           const double rates[2], const double shift[2], Shear *rate);
+/* Forces of sliders that have stuck so far with a traction together. */
+void foundation_spread(const Foundation *foundation, const Point *at, const double traction[2], double *const force[2]);
 /* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */
 void foundation_rates(const Foundation *foundation, const PatchPath *path, const double rates[2],
                       const double shift[2], Shear *rate);

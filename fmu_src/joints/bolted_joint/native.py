@@ -47,6 +47,7 @@ def _shear(g: Graph) -> None:
     g.add_with_seed("elastic_shear", doc, x, y)
     add_sliders(g)
     _loops(g)
+    _rest(g)
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
@@ -63,6 +64,13 @@ def _shear(g: Graph) -> None:
     x = [across, *force, *moved, *shift, *ends, slip, *between]
     g.add("changing_loss", doc, x, [loss])
     _range(g)
+
+
+def _rest(g: Graph) -> None:
+    """A foundation at rest."""
+    stiff, now, falls = symbols("x", 3)
+    doc = "whether the load falls; stiffness before and after -> part kept, gain"
+    g.add_with_seed("rest_rule", doc, [falls, stiff, now], sliders.rest_rule(stiff, now, falls), fixed=1)
 
 
 def _loops(g: Graph) -> None:
@@ -116,7 +124,7 @@ def _range(g: Graph) -> None:
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
-    names = ("SMALL", "SHORT", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
+    names = ("SMALL", "SHORT", "HARDLY", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}

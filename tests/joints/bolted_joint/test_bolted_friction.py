@@ -157,6 +157,26 @@ def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
     assert after / before == pytest.approx(3.01 / 2.99, rel=1e-3)
 
 
+@pytest.mark.parametrize("part", [0.05, 0.1, 0.2, 0.3, 0.5])
+def test_noise_while_it_is_tightened_leaves_no_trace(spring, part):
+    """Losses of a loop within 5 % of the theorem, its amplitude over that of gross slip."""
+    rng, memory = np.random.default_rng(45), spring.at_rest()
+    for preload in np.linspace(0.0, 3e4, 31):
+        place = 1e-12 * (preload > 1e3) * rng.normal(size=6) * np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])
+        _, memory = MODEL.evolve(spring, at(place, preload=preload), memory)
+    approach = spring.curve.inverse(pressures(JOINT, spring.patches, 3e4, 0.0))
+    law = spring.foundation()
+    gross = law.friction / law.ratio * float(spring.patches.share @ (approach - spring.curve.displacement[0]))
+    amplitude, losses = part * gross, []
+    for u in amplitude * np.concatenate([np.linspace(0, 1, 5), np.linspace(1, -1, 9), np.linspace(-1, 1, 9)]):
+        out, memory = MODEL.evolve(spring, at([u, 0, 0, 0, 0, 0], preload=3e4), memory)
+        losses.append(float(out["E_loss"]))
+    theory = JOINT.A_0 * float(
+        spring.patches.share @ law.loop(approach, np.full(approach.size, amplitude))[0]
+    )
+    assert losses[-1] - losses[4] == pytest.approx(theory, rel=0.05)
+
+
 def test_separated_joint_forgets(spring):
     out = walk(
         spring, [np.array([s, 0, z, 0, 0, 0]) for s, z in ((0, 0), (5e-7, 0), (5e-7, 1e-4), (5e-7, 0))]

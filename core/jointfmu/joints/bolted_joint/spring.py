@@ -13,6 +13,7 @@ from ...mechanics.footprint.bolts import PressureSource, pressure_shape
 from ...mechanics.footprint.friction import friction_patches
 from ...mechanics.footprint.patches import few_points
 from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
@@ -44,13 +45,13 @@ def memory_of(patches: int) -> Layout:
     """What friction remembers on so many patches.
 
     state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
-                shift; RESTING: it has not moved along its surface; ALONG: it has along x alone; FREE: along
-                y or by a turn, too
+                shift; RESTING: it has hardly moved along its surface; ALONG: it has along x alone; FREE:
+                along y or by a turn, too
     loss      : [J] turned into heat so far
     rigid     : (3) shift along x and y [m] and turn about the normal [rad]
     reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
     approach  : (m) [m] of the patches
-    force     : (m, 2, n) [Pa] of the sliders
+    force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all
     """
     one = (patches,)
     return Layout(
@@ -213,24 +214,45 @@ class BoltedJointSpring:
         """Sums of the shear at approaches (m) [m] of the patches, and the memory after the straight path."""
         patches, area, before = self.patches, self.joint.A_0, self.memory.split(memory)
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        shift, state = along(patches, rigid - before["rigid"]), _moved_on(before, rigid)
-        begins = before["state"] == UNKNOWN
-        first, reference = (approach,) * 2 if begins else (before["approach"], before["reference"])
-        moved = self.foundation(reference).moved(before["force"], first, approach, shift)
+        shift = along(patches, rigid - before["rigid"])
+        first = approach if before["state"] == UNKNOWN else before["approach"]
+        stick = self.foundation().stick(approach)
+        moved = self._at_rest(before, first, approach, shift, stick) if before["state"] < ALONG else None
+        state, reference = RESTING, approach
+        if moved is None:
+            state = _moved_on(before, rigid)
+            reference = before["reference"] if before["state"] >= ALONG else first
+            foundation, force = self.foundation(reference), before["force"]
+            if before["state"] < ALONG:
+                force = foundation.spread(force[..., 0], first)
+            moved = foundation.moved(force, first, approach, shift)
         loss = float(before["loss"]) + area * float(patches.share @ moved.loss)
         after = self.memory.joined(
             {
                 "state": state,
                 "loss": loss,
                 "rigid": rigid,
-                "reference": approach if state == RESTING else reference,
+                "reference": reference,
                 "approach": approach,
                 "force": moved.force,
             }
         )
-        stick = self.foundation(reference).stick(approach)
         further = further_tangent(patches, stick, moved.tangent, moved.traction)
         return shear_sums(patches, moved.traction, moved.tangent) | further | {"loss": loss / area}, after
+
+    def _at_rest(
+        self, before: Mapping[str, Array], first: Array, approach: Array, shift: Array, stick: Array
+    ) -> Moved | None:
+        """The patches after a straight path on which all sliders stick; None if one moves more than hardly.
+
+        Their force stands in the place of the first slider: so heights may follow the load.
+        """
+        traction, rests = self.foundation().rested(before["force"][..., 0], first, approach, shift)
+        if not np.all(rests):
+            return None
+        force = np.zeros_like(before["force"])
+        force[..., 0] = traction
+        return Moved(force, np.zeros_like(stick), stick[:, None] * np.array([1.0, 0.0, 1.0]))
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -243,7 +265,6 @@ class BoltedJointSpring:
 
 
 def _moved_on(before: Mapping[str, Array], rigid: Array) -> int:
-    """How friction has moved after the way to a shift and turn."""
-    if before["state"] == FREE or not np.array_equal(rigid[1:], before["rigid"][1:]):
-        return FREE
-    return RESTING if before["state"] < ALONG and rigid[0] == before["rigid"][0] else ALONG
+    """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
+    free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
+    return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
