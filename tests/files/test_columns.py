@@ -20,6 +20,17 @@ def saved(folder, content, encoding="utf-8"):
     return path
 
 
+def test_a_unit_at_the_end_of_a_name(tmp_path):
+    spec = {"speed": sizes("rad/s", "deg/s"), "load": sizes("N", "kN"), "warmth": {"K": 1.0, "degC": 1.0}}
+    words = {"speed": ("joint_speed",), "load": ("axial_load",), "warmth": ("oil_temperature",)}
+    path = saved(tmp_path, "joint_speed_rad_per_s,axial_load_kN,oil_temperature_degC,note_s\n1,2,3,4\n")
+    found = read(path, spec, 1, words)
+    assert found.units == {"speed": "rad/s", "load": "kN", "warmth": "degC"}
+    assert [float(found.columns[name][0]) for name in spec] == [1.0, 2e3, 3.0]
+    wrong = saved(tmp_path, "axial_load_mm,speed [rad/s]\n1,2\n")
+    assert list(read(wrong, spec, 1, words).columns) == ["speed"]
+
+
 @given(st.lists(st.tuples(*[st.floats(allow_nan=False, allow_infinity=False)] * 2), min_size=1, max_size=20))
 def test_round_trip_to_the_last_bit(tmp_path_factory, values):
     load, angle = np.array(values).T

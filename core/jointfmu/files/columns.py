@@ -2,7 +2,7 @@
 
 The first line that is no comment (#) names the columns, `torque [N.m], angle [arcmin]`. Columns are
 separated by semicolon, tab or comma; numbers have a decimal point or, where the comma divides no
-columns, a comma. A unit may also be written `Angle (deg)` or `F / N`. Columns that are not asked for are
+columns, a comma. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that are not asked for are
 passed over. What is written has commas and points.
 """
 
@@ -169,8 +169,7 @@ def _places(
     named = {head(cell)[0].lower() for cell in cells}
     others = {name: words for name, words in others.items() if name not in named}
     for place, cell in enumerate(cells):
-        name, unit = head(cell)
-        name = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)
+        name, unit = _called(cell, spec, others)
         if name not in spec:
             continue
         allowed = ", ".join(spec[name])
@@ -191,6 +190,21 @@ def _places(
         shown = ", ".join(cell.strip() for cell in cells)[:80]
         raise ValueError(f"{path}: the first line is {shown!r}; expected columns {heading(spec)}")
     return places
+
+
+def _called(cell: str, spec: Mapping[str, Sizes], others: Mapping[str, Sequence[str]]) -> Head:
+    """Column and unit that a heading means; the unit may be the end of its name, `joint_speed_rad_per_s`."""
+    name, unit = head(cell)
+    found = name.lower() if name.lower() in spec else _meant(name.lower(), unit, spec, others)
+    if found in spec or unit is not None:
+        return found, unit
+    for mark in re.finditer("_", name):
+        word, end = name[: mark.start()].lower(), name[mark.end() :].replace("_per_", "/")
+        meant = word if word in spec else _meant(word, end, spec, others)
+        with suppress(ValueError, KeyError):
+            measured(end, spec[meant])
+            return meant, end
+    return found, unit
 
 
 def _meant(

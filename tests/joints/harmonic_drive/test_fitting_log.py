@@ -114,9 +114,20 @@ def test_the_base_joint_of_a_robot(drive, tmp_path, capsys):
     assert low < values.friction_coulomb < high
 
 
-def test_a_current_needs_its_constant(drive, capsys):
-    names = ["--columns", NAMES[0], "i=current_A [A]"]
-    asked = ["fit", "log", str(TABLE), "--params", str(drive), *names]
+def test_headings_may_end_in_their_units(drive, capsys):
+    """joint_speed_rad_per_s, motor_torque_Nm, temperature_degC mean what is stated of them elsewhere."""
+    found = []
+    for names in ([], ["--columns", *NAMES, WARM]):
+        assert cli.main(["fit", "log", str(TABLE), "--params", str(drive), *names, "--json"]) == 0
+        found.append(json.loads(capsys.readouterr().out)["unknowns"])
+    assert found[0] == found[1]
+
+
+def test_a_current_needs_its_constant(drive, capsys, tmp_path):
+    rows = [line.rsplit(",", 1)[0] for line in TABLE.read_text(encoding="utf-8").splitlines() if "," in line]
+    path = tmp_path / "current.csv"
+    path.write_text("\n".join(row for row in rows if not row.startswith("#")), encoding="utf-8")
+    asked = ["fit", "log", str(path), "--params", str(drive)]
     assert "expected --torque-constant [N.m/A] beside it" in refused_line(capsys, *asked)
     assert cli.main([*asked, "--torque-constant", "0.1005"]) == 0
     assert "friction_coulomb" in capsys.readouterr().out
