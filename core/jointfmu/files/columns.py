@@ -2,8 +2,8 @@
 
 The first line that is no comment (#) names the columns, `torque [N.m], angle [arcmin]`. Columns are
 separated by semicolon, tab or comma; numbers have a decimal point or, where the comma divides no
-columns, a comma. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that are not asked for are
-passed over. What is written has commas and points.
+columns, a comma. A unit may also be written `Angle (deg)`, `F / N` or `speed_rad_per_s`. Columns that are
+not asked for are passed over. What is written has commas and points.
 """
 
 import csv
