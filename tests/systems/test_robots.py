@@ -1,7 +1,8 @@
-"""Drives as plain MJCF: what the command writes is run in MuJoCo beside the drive's own spring."""
+"""Drives as plain MJCF and URDF: what the command writes is run in MuJoCo beside the drive's own spring."""
 
 import json
 import re
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -112,6 +113,41 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     assert model.dof_damping[motor] == pytest.approx(values["friction_viscous"], rel=1e-8)
 
 
+def test_urdf_says_what_it_misses_and_mujoco_reads_the_rest(folder, capsys):
+    """MuJoCo takes friction and the mimic pair of the file; damping acts on the joint as on the motor."""
+    drive = jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75)
+    drive.save("d.toml")
+    assert cli.main(["export", "urdf", "d.toml", "--out", "drive.urdf", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["wind_up"] == -1.0
+    text, values = (folder / "drive.urdf").read_text(), drive.values
+    rated, ratio = values["rated_torque"], values["ratio"]
+    assert f"the wind-up, {float(drive.wind_up(rated)):.4g} rad at {rated:g} N.m" in text
+    assert "friction that grows with the load" in text
+    model = mujoco.MjModel.from_xml_path("drive.urdf")
+    link = model.joint("link").dofadr[0]
+    assert model.dof_frictionloss[link] == pytest.approx(values["friction_coulomb"] * abs(ratio), rel=1e-8)
+    assert model.dof_damping[link] == pytest.approx(values["friction_viscous"] * ratio**2, rel=1e-8)
+    assert model.neq == 1
+    assert model.eq_data[0, :2].tolist() == pytest.approx([0.0, ratio])
+    transmission = ElementTree.fromstring(text.split("-->")[1]).find("ros2_control/transmission")
+    assert float(transmission.find("joint/mechanical_reduction").text) == ratio
+
+
+def test_urdf_states_the_loop(folder, capsys):
+    """The area is that of the drive's spring, four branches of a quarter each."""
+    drive = jointfmu.drive("CSG-25-100", hysteresis=1.0)
+    drive.save("drive.toml")
+    assert cli.main(["export", "urdf", "drive.toml", "--out", "drive.urdf", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["area"] == -1.0
+    text = (folder / "drive.urdf").read_text()
+    stated = float(re.search(r"the hysteresis, (\S+) J a loop at 87 N.m", text)[1])
+    memory, losses = drive.spring.rest(), []
+    for torque in 87.0 * np.cos(np.linspace(0.0, 2.0 * np.pi, 201)):
+        out, memory = drive.spring.loaded(torque, memory)
+        losses.append(float(out["E_loss"]))
+    assert stated == pytest.approx(losses[-1] - losses[0], rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("words", "line"),
     [
@@ -124,7 +160,8 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
         (["mjcf", "CSG-25-100", "--torque", "nan"], r"--torque = nan N.m is outside"),
         (["mjcf", "CSG-25-100", "--units", "mm-N-MPa-t"], "--units = mm-N-MPa-t: mjcf is in m-N-Pa-kg"),
         (["mjcf", "CSG-25-100", "--error", "0.1"], "--error has no meaning for mjcf"),
-        (["csv", "curve", "--torque", "3"], "--torque has no meaning for csv; it is for mjcf"),
+        (["csv", "curve", "--torque", "3"], "--torque has no meaning for csv; it is for mjcf, urdf"),
+        (["urdf", "GearMesh"], "is a gear_mesh, no drive of a motor"),
     ],
 )
 def test_refusals(words, line, capsys):

@@ -8,7 +8,7 @@ FORMS = {
     "csv": ("springs", "contact", "curve"),
 }
 """{format: what it can hold}."""
-ROBOTS = ("mjcf",)
+ROBOTS = ("mjcf", "urdf")
 """Formats of robots, which hold a drive."""
 WHAT = ("springs", "contact", "curve")
 ERROR = 1e-3

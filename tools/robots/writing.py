@@ -3,7 +3,7 @@
 from dataclasses import asdict, dataclass
 
 from ..interface import load
-from . import mjcf
+from . import mjcf, urdf
 from .transmission import transmission
 
 
@@ -38,5 +38,5 @@ def written(form: str, source: str, torque: float | None) -> Written:
     )
 
 
-WRITERS = {"mjcf": mjcf.text}
+WRITERS = {"mjcf": mjcf.text, "urdf": urdf.text}
 """{format: (drive, torque [N.m]) -> text and what it misses}."""

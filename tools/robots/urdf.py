@@ -1,0 +1,72 @@
+"""A drive as URDF: joint, friction, the motor's mimic pair, and what ros2_control reads of a transmission."""
+
+from xml.sax.saxutils import quoteattr
+
+from jointfmu import __version__
+
+from .mjcf import Miss
+from .transmission import Transmission, area
+
+RATED_SPEED = 209.44
+"""Speed [rad/s] of the motor at which catalogues state the rated torque: 2000 rpm."""
+LIGHT = (
+    '<inertial><mass value="0.001"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/>'
+    "</inertial>"
+)
+
+
+def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
+    """The file of a drive, and what it misses: URDF has no springs, so all of the wind-up and of its loop."""
+    torques, x = drive.loop(torque)
+    lossy = bool(drive.wind_up([torque, 0.0])[1])
+    miss = Miss(-1.0, -1.0 if lossy else None)
+    about = [
+        f"{drive.name} as URDF, jointfmu {__version__}; not run in ROS",
+        "friction of the motor is that of the joint, times the ratio and its square",
+        "it cannot carry, as URDF has no springs:",
+        f"  the wind-up, {x[: len(x) // 2].max():.4g} rad at {torque:g} N.m",
+        *([f"  the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"] if lossy else []),
+        f"  the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
+        *(f"  {line}" for line in drive.lacks),
+        "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
+    ]
+    comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
+    return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{_robot(drive)}', miss
+
+
+def _robot(drive: Transmission) -> str:
+    size, most = abs(drive.ratio), drive.max_torque
+    return f"""<robot name={quoteattr(drive.name)}>
+  <link name="base">{LIGHT}</link>
+  <link name="output">{LIGHT}</link>
+  <link name="rotor">{LIGHT}</link>
+  <joint name="link" type="continuous">
+    <parent link="base"/>
+    <child link="output"/>
+    <axis xyz="0 0 1"/>
+    <limit effort="{most:.9g}" velocity="{RATED_SPEED / size:.9g}"/>
+    <dynamics damping="{drive.viscous * size**2:.9g}" friction="{drive.dry * size:.9g}"/>
+  </joint>
+  <joint name="motor" type="continuous">
+    <parent link="base"/>
+    <child link="rotor"/>
+    <axis xyz="0 0 1"/>
+    <limit effort="{most / size:.9g}" velocity="{RATED_SPEED:.9g}"/>
+    <mimic joint="link" multiplier="{drive.ratio:.9g}" offset="0"/>
+  </joint>
+  <ros2_control name="drive" type="actuator">
+    <joint name="link">
+      <command_interface name="effort"/>
+      <state_interface name="position"/>
+      <state_interface name="velocity"/>
+    </joint>
+    <transmission name="drive">
+      <plugin>transmission_interface/SimpleTransmission</plugin>
+      <actuator name="motor" role="actuator"/>
+      <joint name="link" role="link">
+        <mechanical_reduction>{drive.ratio:.9g}</mechanical_reduction>
+      </joint>
+    </transmission>
+  </ros2_control>
+</robot>
+"""
