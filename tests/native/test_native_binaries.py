@@ -39,7 +39,7 @@ BINARIES = {
         "aarch64-darwin": "dylib",
     },
 }
-LARGEST_FMU = 550_000
+LARGEST_FMU = 600_000
 """Bytes [1]. The proof inside is less than a tenth of them, the own elementary functions are another."""
 MACHO = lief.MachO.Header.CPU_TYPE
 SYSTEM_DLL = re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|kernel32\.dll", re.IGNORECASE)
