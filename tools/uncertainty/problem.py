@@ -55,6 +55,8 @@ class Problem:
 def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, points: int) -> Problem:
     """The problem of a parameter file and settings (values and distributions by name).
 
+    A parameter of which nothing is set has the range that the file states, evenly.
+
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
     """
     kind = KINDS[file.joint]
@@ -65,6 +67,7 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     if unknown := [name for name in given if name not in known]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+    given = {name: f"{low!r}..{high!r}" for name, (low, high) in file.ranges.items()} | dict(given)
     load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
