@@ -9,7 +9,7 @@ from conftest import Fmu, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
-from jointfmu_tools.joints.bolted_joint.new import layout
+from jointfmu_tools.joints.bolted_joint.new import layout, whole
 from jointfmu_tools.shown import stated
 from jointfmu_tools.uncertainty.problem import pose
 
@@ -22,6 +22,12 @@ STEEL = ["--material", "steel"]
 FACES = [*STEEL, "--Ra", "0.8"]
 LOAD = ["--preload", "30e3"]
 STILL = (0.0, 0.0, 0.0)
+
+
+@pytest.fixture(autouse=True)
+def interface_alone(monkeypatch):
+    """The finite elements of the whole joint take seconds; test_whole_bolted_joint.py looks at them."""
+    monkeypatch.setattr(whole, "facts", lambda *arguments: ({}, []))
 
 
 def made(capsys, *words, path=None):
@@ -383,6 +389,7 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = pose(file, {}, 30e3, 3)
     assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
+    assert pose(file, {"mu": "interval"}, 30e3, 3).uncertain == study.uncertain
     assert "mu" not in {each.name for each in pose(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain}
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 
