@@ -389,7 +389,7 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     assert mu.source.startswith(f"{low:g} to {high:g}; ")
     study = pose(file, {}, 30e3, 3)
     assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
-    assert pose(file, {"mu": "interval"}, 30e3, 3).uncertain == study.uncertain
+    assert pose(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
     assert "mu" not in {each.name for each in pose(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain}
     assert not file.with_values({"mu": 0.2}, "user", "set").ranges
 
