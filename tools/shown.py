@@ -47,6 +47,13 @@ class Stated(NamedTuple):
     source: str
 
 
+def _source(file: ParameterFile, name: str) -> str:
+    """Where a number comes from, with the range that the file states for it."""
+    text = file.sources.get(name, "default choice")
+    low, high = file.ranges.get(name, (0.0, 0.0))
+    return f"{low:g} to {high:g}; {text}" if high > low else text
+
+
 def stated(file: ParameterFile) -> list[Stated]:
     """Every number of a file: parameters, start values of inputs, roughnesses."""
     fields: dict[str, Mapping[str, Any]] = {
@@ -65,7 +72,7 @@ def stated(file: ParameterFile) -> list[Stated]:
             fields[name].get("unit"),
             fields[name]["doc"],
             file.origins.get(name, "user"),
-            file.sources.get(name, "default choice"),
+            _source(file, name),
         )
         for name, value in values.items()
     ]

@@ -47,6 +47,7 @@ class ParameterFile:
     origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME`
     inputs  : {input: start value in its SI unit}, where it is given
     roughness : {name: height [m]} of the surfaces, where it is known: names of `roughness.DECLARED`
+    ranges  : {structured name: least and greatest value} of what is known no better, by the same source
     flat    : {structured name: value} of `values`, opened once
     """
 
@@ -57,6 +58,7 @@ class ParameterFile:
     sources: Mapping[str, str]
     inputs: Mapping[str, float] = field(default_factory=dict)
     roughness: Mapping[str, float] = field(default_factory=dict)
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     flat: Mapping[str, Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -79,6 +81,7 @@ class ParameterFile:
             values=changed(self.values, changes),
             origins={**self.origins, **dict.fromkeys(changes, origin)},
             sources={**self.sources, **dict.fromkeys(changes, source)},
+            ranges={name: ends for name, ends in self.ranges.items() if name not in changes},
         )
 
     def with_roughness(self, stated: Mapping[str, float], origin: str, source: str) -> "ParameterFile":
@@ -122,7 +125,8 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
     declared = dict(flat_fields(cls)) | _input_fields(stated) | _roughness_fields()
-    values, origins, sources = entries(path, declared, body)
+    keys = ("value", "unit", "kind", "source", "range")
+    values, origins, sources = entries(path, declared, body, keys)
     given, surfaces = _section(values, _INPUTS), _section(values, _ROUGHNESS)
     try:
         inputs, heights = _start_values(stated, given), roughness.check(surfaces, _ROUGHNESS)
@@ -136,7 +140,9 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     text = "; ".join(dict.fromkeys(sources[_ROUGHNESS + height] for height in heights))
     origins |= dict.fromkeys(of_law, "derived")
     sources |= dict.fromkeys(of_law, f"from {', '.join(_ROUGHNESS + height for height in heights)}: {text}")
-    return ParameterFile(stated, name, parameters, origins, sources, inputs, heights)
+    return ParameterFile(
+        stated, name, parameters, origins, sources, inputs, heights, _ranges(path, declared, body)
+    )
 
 
 def _height_of_law(
@@ -181,7 +187,10 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
 
 
 def entries(
-    path: Path, declared: Mapping[str, Field[Any]], body: Mapping[str, Any]
+    path: Path,
+    declared: Mapping[str, Field[Any]],
+    body: Mapping[str, Any],
+    keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
     """Values, origins and sources by structured name; every unit checked against the field `declared`."""
     values: dict[str, Any] = {}
@@ -190,10 +199,9 @@ def entries(
     for name, entry in _leaves(body, ""):
         if not isinstance(entry, Mapping):
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
-        if unknown := set(entry) - {"value", "unit", "kind", "source"}:
+        if unknown := set(entry) - set(keys):
             raise ValueError(
-                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, "
-                "allowed are value, unit, kind, source"
+                f"{path}: {name} has an unknown key {sorted(unknown)[0]!r}, allowed are {', '.join(keys)}"
             )
         if name in declared:
             unit = declared[name].metadata.get("unit")
@@ -208,6 +216,25 @@ def entries(
             raise ValueError(f"{path}: {name}: source = {source!r}, expected where the value comes from")
         values[name], origins[name], sources[name] = entry.get("value"), str(entry["kind"]), source
     return values, origins, sources
+
+
+def _ranges(
+    path: Path, declared: Mapping[str, Field[Any]], body: Mapping[str, Any]
+) -> dict[str, tuple[float, float]]:
+    """{structured name: least and greatest value} of the parameters whose entries state a range."""
+    found: dict[str, tuple[float, float]] = {}
+    for name, entry in _leaves(body, ""):
+        if "range" not in entry:
+            continue
+        ends, value = entry["range"], entry.get("value")
+        numbers = isinstance(ends, list) and len(ends) == 2 and all(type(x) in (int, float) for x in ends)
+        if not numbers or type(value) not in (int, float) or not ends[0] <= value <= ends[1] > ends[0]:
+            raise ValueError(f"{path}: {name}: range = {ends!r}, expected [LOW, HIGH] around {value!r}")
+        for text in (problem(name, float(end), declared[name]) for end in ends):
+            if text:
+                raise ValueError(f"{path}: range of {text}")
+        found[name] = (float(ends[0]), float(ends[1]))
+    return found
 
 
 def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
@@ -273,6 +300,8 @@ def dump(parameters: ParameterFile) -> str:
             section = head
         unit = declared[name].metadata.get("unit")
         fields = [f"value = {_toml(value)}", *([f'unit = "{unit}"'] if unit else [])]
+        if name in parameters.ranges:
+            fields += [f"range = [{', '.join(map(repr, parameters.ranges[name]))}]"]
         fields += [f'kind = "{parameters.origins.get(name, "user")}"']
         fields += [f"source = {_quoted(parameters.sources.get(name, 'default choice'))}"]
         lines.append(f"{leaf} = {{ {', '.join(fields)} }}")

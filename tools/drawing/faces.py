@@ -35,6 +35,9 @@ OPTIONS = (
     Option(name="mu", text="coefficient of friction [1] (default: 0.15)"),
 )
 """What every joint with rough faces takes."""
+MU, MU_RANGE = 0.15, (0.1, 0.3)
+"""Coefficient of friction of faces of which nothing is said, and its range [1]."""
+MU_SOURCE = "dry machined metal: a table of usual values, no measurement; VDI 2230, Table A6 has 0.1 to 0.3"
 SLOPE = 0.1
 """Rms slope [1] of a surface of which only a height is known."""
 HURST = 0.8
@@ -93,7 +96,8 @@ def put(sheet: Sheet, given: Given) -> Heights:
     else:
         sheet.stated("H", number("hardness", given["hardness"], "MPa", "Pa"))
     if given["mu"] is None:
-        sheet.put("mu", 0.15, "estimate", "dry machined metal; VDI 2230, Table A6 has 0.1 to 0.3")
+        sheet.put("mu", MU, "estimate", MU_SOURCE)
+        sheet.between("mu", *MU_RANGE)
     else:
         sheet.stated("mu", number("mu", given["mu"], "1", "1"))
     sheet.put("traction_ratio", 0.1, "estimate", "vibration far below slip")

@@ -13,18 +13,23 @@ from .tables import Known
 
 @dataclass(slots=True)
 class Sheet:
-    """{structured name: (value, kind, source)} of a joint, and of start values of its inputs."""
+    """{structured name: (value, kind, source)} of a joint, start values of its inputs, ranges of some."""
 
     joint: str
     law: str
     known: dict[str, tuple[object, str, str]] = field(default_factory=dict)
     inputs: dict[str, float] = field(default_factory=dict)
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def put(self, name: str, value: Any, kind: str, source: str) -> None:
         """A parameter, or with the prefix `inputs.` a start value."""
         if name.startswith("inputs."):
             self.inputs[name.removeprefix("inputs.")] = value
         self.known[name] = (value, kind, source)
+
+    def between(self, name: str, low: float, high: float) -> None:
+        """Least and greatest value that a parameter may have, by the source of its value."""
+        self.ranges[name] = (low, high)
 
     def stated(self, name: str, value: object) -> None:
         """A parameter that stands on the drawing."""
@@ -55,5 +60,6 @@ class Sheet:
             {key: kind for key, (_, kind, _) in kept.items()},
             {key: source for key, (_, _, source) in kept.items()},
             self.inputs,
+            ranges={name: ends for name, ends in self.ranges.items() if name in own},
         )
         return file.with_roughness(roughness, "user", "stated on the drawing") if roughness else file

@@ -59,6 +59,8 @@ class Problem:
 def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, points: int) -> Problem:
     """The problem of a parameter file and settings (values and distributions by name).
 
+    A parameter of which nothing is set has the range that the file states, evenly.
+
     Raises ValueError naming what is unknown, outside its interval, or cannot be uncertain.
     """
     kind = KINDS[file.joint]
@@ -69,6 +71,7 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     if unknown := [name for name in given if name not in known]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+    given = dict.fromkeys(file.ranges, INTERVAL) | dict(given)
     given = {n: _of_source(n, file) if value == INTERVAL else value for n, value in given.items()}
     load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
@@ -88,10 +91,12 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
 
 
 def _of_source(name: str, file: ParameterFile) -> str:
-    """The distribution between the ends that the source of a parameter states.
+    """The distribution between the ends of a parameter's range, or those that its source states.
 
     Raises ValueError if it states none.
     """
+    if name in file.ranges:
+        return "{!r}..{!r}".format(*file.ranges[name])
     source = file.sources.get(name, "")
     if not (found := _ENDS.search(source)):
         raise ValueError(

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import Fmu
-from joint_cases import SAME, STATE, TABLE, parameters, random_inputs
+from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
 from natives import SAME as SAME_FLAVOURS
-from natives import jacobian
+from natives import jacobian, near, package
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
@@ -108,3 +108,23 @@ def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, vers
         for name in ("eta_loop", "C_loop"):
             assert found[name] == pytest.approx(other[name], rel=SAME_FLAVOURS, abs=0.0)
             assert J[name, "s_rel_x"] == pytest.approx((up[name] - down[name]) / (2.0 * h), rel=1e-4)
+
+
+def test_a_joint_that_hardly_moves_is_the_packages(host: Host, version: str) -> None:
+    """Noise while it is tightened and opened, then shear beyond rest: the same numbers, and slopes."""
+    rng, places = np.random.default_rng(46), ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_z")
+    instance, expected = host("BoltedJoint", version).start(), package("BoltedJoint").after()
+    zero = dict.fromkeys(RANGES["BoltedJoint"], 0.0)
+    for size in (*(8 * [1e-12]), 1e-10, 1e-9, 3e-9, 1e-8, 1e-7, 3e-7):
+        noise = size * rng.normal(size=5) * np.array([1.0, 1.0, 100.0, 10.0, 1.0])
+        state = zero | {"preload": 3e3 + 2e4 * rng.random()} | dict(zip(places, noise.tolist(), strict=True))
+        found, J = instance.at(state), jacobian(instance)
+        assert found == near("BoltedJoint", expected(state))
+        for name in ("s_rel_x", "preload"):
+            h = 1e-5 * max(abs(state[name]), 1e-3 * size)
+            up, down = (instance.at(state | {name: state[name] + d * h})["f_x"] for d in (1.0, -1.0))
+            scale = abs(J["f_x", "s_rel_x"]) * (1.0 if name == "s_rel_x" else size / state[name])
+            assert abs((up - down) / (2.0 * h) - J["f_x", name]) <= 2e-3 * scale
+        instance.at(state)
+        instance.step()
+        expected = expected.after(state)

@@ -10,6 +10,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
 from jointfmu_tools.joints.bolted_joint.new import layout, whole
+from jointfmu_tools.shown import stated
+from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.contact.roughness import FACTOR, GAMMA
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
@@ -362,3 +364,48 @@ def test_a_computed_field_is_near_the_cones(capsys, tmp_path):
         files[field] = BoltedJointSpring.of(load(path).values).motion(6e4, 0.0, STILL, STILL)
     for name, within in (("K_zz", 0.01), ("K_rx", 0.25), ("p_max", 0.4)):  # docs/new.md has such figures
         assert float(files["cones"][name]) == pytest.approx(float(files["computed"][name]), rel=within), name
+
+
+# The range of the friction
+
+
+def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
+    """In the file, read back, in what the command tells of slip and loss, and in a study."""
+    path = tmp_path / "plate.toml"
+    facts = {
+        name: fact["value"] for name, fact in made(capsys, *PLATE, *FACES, *LOAD, path=path)["facts"].items()
+    }
+    file = load(path)
+    low, high = file.ranges["mu"]
+    assert low < file.flat["mu"] < high
+    assert "VDI 2230" in file.sources["mu"]
+    assert facts["slip_force_low"] == pytest.approx(low * 4 * 30e3)
+    assert facts["slip_force_high"] == pytest.approx(high * 4 * 30e3)
+    # under the same shear a small loop loses as 1/mu: within what partial slip adds at a tenth of gross slip
+    ratio = facts["loss_factor_low"] / facts["loss_factor_high"]
+    assert ratio == pytest.approx(high / low, rel=0.1)
+    assert facts["loss_factor_high"] < facts["loss_factor"] < facts["loss_factor_low"]
+    (mu,) = (each for each in stated(file) if each.name == "mu")
+    assert mu.source.startswith(f"{low:g} to {high:g}; ")
+    study = pose(file, {}, 30e3, 3)
+    assert [(each.name, each.support) for each in study.uncertain] == [("mu", (low, high))]
+    assert pose(file, {"mu": "interval"}, 30e3, 3).uncertain[0].support == (low, high)
+    assert "mu" not in {each.name for each in pose(file, {"mu": 0.2, "h": "+-10%"}, 30e3, 3).uncertain}
+    assert not file.with_values({"mu": 0.2}, "user", "set").ranges
+
+
+def test_friction_that_is_stated_has_no_range(capsys, tmp_path):
+    path = tmp_path / "plate.toml"
+    facts = made(capsys, *PLATE, *FACES, *LOAD, "--mu", "0.2", path=path)["facts"]
+    assert not load(path).ranges
+    assert {name for name in facts if name.startswith("slip_force")} == {"slip_force"}
+
+
+@pytest.mark.parametrize("text", ["[0.2, 0.3]", "[0.1]", "[0.3, 0.1]", "[-0.1, 0.3]", "0.3", '["a", 1]'])
+def test_a_range_that_does_not_hold_the_value_is_refused(capsys, tmp_path, text):
+    path = tmp_path / "plate.toml"
+    made(capsys, *PLATE, *FACES, *LOAD, path=path)
+    path.write_text(path.read_text().replace("range = [0.1, 0.3]", f"range = {text}"))
+    with pytest.raises(ValueError, match=r"mu.*range =|range of mu") as refusal:
+        load(path)
+    assert "\n" not in str(refusal.value)

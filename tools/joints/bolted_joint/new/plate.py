@@ -1,11 +1,12 @@
 """The parameters of a bolted joint from the drawing of its plates."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
@@ -194,6 +195,40 @@ def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[st
     )
 
 
+LOSS_AT = 0.1
+"""Shear over mu times the normal force [1] at which the loss factor is told."""
+
+
+def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
+    """The shear at which all slips and the loss factor at a part of it, with the range of mu beside them.
+
+    The loss factor is that of a loop of the interface between rigid sides, under the same shear force.
+    """
+    joint = file.values
+    shear = LOSS_AT * joint.mu * joint.n_bolts * preload
+    slip, loss = "shear force at which all of the interface slips", f"loss factor at {shear:.3g} N of shear"
+    low, high = file.ranges.get("mu", (joint.mu, joint.mu))
+    facts = {}
+    for name, mu in (("", joint.mu), ("_low", low), ("_high", high))[: 3 if high > low else 1]:
+        text = f"; with mu = {mu:g}"
+        facts[f"slip_force{name}"] = (mu * joint.n_bolts * preload, "N", slip + text)
+        facts[f"loss_factor{name}"] = (_loss_factor(replace(joint, mu=mu), preload, shear), "1", loss + text)
+    return facts
+
+
+def _loss_factor(joint: Bolted, preload: float, shear: float) -> float:
+    """Loss over 2 pi times the stored energy of a loop with an amplitude of the shear force [N]."""
+    spring = BoltedJointSpring.of(joint)
+    law, share = spring.foundation(), spring.patches.share
+    approach = spring.curve.inverse(pressures(joint, spring.patches, preload, 0.0))
+    reach = law.friction / law.ratio * float(np.max(approach - spring.curve.displacement[0]))
+    size = reach * np.linspace(0.0, 1.0, 400)[1:] ** 2
+    force = joint.A_0 * (law.backbone(approach, size[:, None]) @ share)
+    amplitude = float(np.interp(shear, force, size))
+    lost, stored = (float(share @ each) for each in law.loop(approach, np.full(approach.size, amplitude)))
+    return lost / (2.0 * np.pi * stored)
+
+
 def _facts(
     file: ParameterFile, one: Clamped, heights: faces.Heights, preload: float
 ) -> dict[str, tuple[float, str, str]]:
@@ -221,6 +256,7 @@ def _facts(
             "Phi_K = delta_P/(delta_S + delta_P): part of an outer force that the bolts take",
         ),
     }
+    facts |= _friction(file, preload)
     if heights.high > heights.low and file.law == "roughness":
         h = float(file.flat["h"])
         facts["K_zz_low"] = (K * h / heights.high, "N/m", "with the roughest usual finish")
