@@ -74,6 +74,7 @@ def folder(tmp_path: Path) -> Path:
         "preload [N],stiffness [N/m]\n3000,4e9\n9000,9e9\n15000,1.3e10\n20000,1.6e10\n30000,2.2e10\n"
     )
     shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", tmp_path / "my_joint.toml")
+    shutil.copy(ROOT / "models/robots/six_axis.xml", tmp_path / "my_robot.xml")
     (tmp_path / "shear.csv").write_text("displacement [um],force [N]\n" + shear())
     assert cli.main([*shlex.split(EXAMPLES["surface synthesize"])[:-1], str(tmp_path / "scan.csv")]) == 0
     return tmp_path
