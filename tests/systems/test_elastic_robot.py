@@ -135,7 +135,7 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys):
     ("name", "count"), [("panda", 7), ("ur5e", 6), ("iiwa", 7), ("kinova3", 7), ("sawyer", 7), ("xarm7", 7)]
 )
 def test_robots_of_others(name, count, tmp_path, capsys):
-    """Those of robosuite where it is installed: half a gigabyte is too much to ask for. With 1 kg and without."""
+    """Those of robosuite where it is installed: half a gigabyte. With 1 kg and without."""
     spec = find_spec("robosuite")
     if spec is None:
         pytest.skip("robosuite is not installed")
