@@ -1,7 +1,8 @@
 """Write the pictures of README and docs: `python build_fmus.py && python docs/figures.py`.
 
 `python docs/figures.py house` needs no FMUs: it draws the packages and layers from pyproject.toml; no more
-does `python docs/figures.py examples`, which runs the scripts in `examples`.
+does `python docs/figures.py examples`, which runs the scripts in `examples`, nor `elastic`, the arm on its
+drives.
 """
 
 import os
@@ -13,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from jointfmu_fmu_src.python.build import runtime_sources
+from jointfmu_tools import cli
 from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import figures
 from jointfmu_tools.joints.harmonic_drive.fit import lines
@@ -50,6 +52,8 @@ def main() -> None:
     if sys.argv[1:] in ([], ["examples"]):
         for script in EXAMPLES:
             example(script)
+    if sys.argv[1:] in ([], ["elastic"]):
+        elastic(IMAGES / "robot_frequencies.png")
     if sys.argv[1:]:
         return
     result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
@@ -57,6 +61,16 @@ def main() -> None:
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
     robot(IMAGES / "six_axis_robot.png")
+
+
+def elastic(path: Path) -> None:
+    """The frequencies of the six-axis arm over its poses, with the drives of the shipped system."""
+    sizes = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
+    drives = [f"joint{i}={size}" for i, size in enumerate(sizes, 1)]
+    robot = ROOT / "models" / "robots" / "six_axis.xml"
+    with TemporaryDirectory() as folder:
+        cli.main(["robot", str(robot), "--drive", *drives, "--payload", "3", "--out", folder])
+        write_bytes(path, (Path(folder) / "frequencies.png").read_bytes())
 
 
 def example(script: Path) -> None:

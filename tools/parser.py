@@ -12,7 +12,7 @@ from jointfmu.commands.common import IMPLIED, Parser, nearest
 
 GROUPS = {
     "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
-    "build": ("build", "system", "modelica", "export", "report", "cache"),
+    "build": ("build", "system", "robot", "modelica", "export", "report", "cache"),
     "run": ("law", "ramp", "ring", "modes"),
     "check": ("prove", "validate"),
     "study": ("uncertainty", "sweep"),

@@ -3,6 +3,7 @@
 import os
 import shutil
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 CACHE = "JOINTFMU_CACHE"
@@ -34,9 +35,13 @@ def compiler_cache() -> Path:
 
 
 def content() -> tuple[int, int]:
-    """Files in the folder, and their bytes."""
-    files = [path for folder in _own() for path in folder.rglob("*") if path.is_file()]
-    return len(files), sum(path.stat().st_size for path in files)
+    """Files in the folder, and their bytes; what another build removes at the same time does not count."""
+    sizes = []
+    for folder, _, names in (step for own in _own() for step in os.walk(own)):
+        for name in names:
+            with suppress(FileNotFoundError):
+                sizes.append(os.stat(os.path.join(folder, name)).st_size)
+    return len(sizes), sum(sizes)
 
 
 def clear() -> None:

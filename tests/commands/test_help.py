@@ -76,6 +76,7 @@ def folder(tmp_path: Path) -> Path:
     shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", tmp_path / "my_joint.toml")
     speeds = "".join(f"{s * w},{s * (0.5 + 0.3 * w)}\n" for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
     (tmp_path / "robot.csv").write_text("dq [rad/s],i [A]\n" + speeds)
+    shutil.copy(ROOT / "models/robots/six_axis.xml", tmp_path / "my_robot.xml")
     (tmp_path / "shear.csv").write_text("displacement [um],force [N]\n" + shear())
     assert cli.main([*shlex.split(EXAMPLES["surface synthesize"])[:-1], str(tmp_path / "scan.csv")]) == 0
     return tmp_path

@@ -127,6 +127,7 @@ def test_every_kind_of_command_is_shown():
         "footprint",
         "modes",
         "ring",
+        "robot",
         "system",
     }
 

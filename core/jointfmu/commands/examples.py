@@ -22,6 +22,7 @@ EXAMPLES = {
     "prove": "prove dist/fmi2/GearContact.fmu",
     "ring": "ring robot_joint --fmus dist/fmi2 --load 0 2.5 --csv ring.csv",
     "system": "system six_axis_robot --plot tip.png",
+    "robot": "robot my_robot.xml --drive joint2=CSG-40-100 joint3=CSG-25-100 --out robot",
     "surface": "surface scan.csv --side both --joint harmonic_drive --out my_drive.toml",
     "surface identify": "surface identify scan.csv --side both --joint harmonic_drive --out my_drive.toml",
     "surface synthesize": "surface synthesize --size 1e-3 --points 400 --D 2.53 --G 2.4e-7 --out scan.csv",

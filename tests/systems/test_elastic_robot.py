@@ -1,0 +1,182 @@
+"""A robot with elastic axes: what `jointfmu robot` writes, run in MuJoCo beside what it says."""
+
+import json
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+
+mujoco = pytest.importorskip("mujoco")
+
+ROBOT = Path(__file__).parents[2] / "models/robots/six_axis.xml"
+SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
+DRIVES = [f"joint{i}={size}" for i, size in enumerate(SIZES, 1)]
+POSE = ["--pose", "joint2=0.7", "joint3=0.8"]
+SEVEN = """<?xml version="1.0"?><robot name="seven"><link name="l0"/>{}</robot>"""
+LINK = """
+<joint name="j{0}" type="revolute"><parent link="l{1}"/><child link="l{0}"/><origin xyz="0 0 0.2"/>
+  <axis xyz="{2}"/><limit lower="-2" upper="2" effort="100" velocity="3"/></joint>
+<link name="l{0}"><inertial><origin xyz="0 0 0.1"/><mass value="{3}"/>
+  <inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
+
+
+def made(capsys, robot, out, *words):
+    assert cli.main(["robot", str(robot), "--out", str(out), "--json", *words]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+@pytest.fixture
+def six(tmp_path, capsys):
+    said = made(capsys, ROBOT, tmp_path, "--drive", *DRIVES, *POSE, "--payload", "3")
+    return said, mujoco.MjModel.from_xml_path(str(tmp_path / "six_axis_elastic.xml"))
+
+
+def held(model, said, payload):
+    """The elastic robot at its pose with motors held and a payload at the tip, in motion from there."""
+    spec = mujoco.MjSpec.from_file(str(Path(said["written"][0])))
+    body = spec.body("flange")
+    body.mass, body.inertia, body.explicitinertial = max(payload, 1e-9), [1e-9] * 3, True
+    body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
+    for joint in spec.joints:
+        if joint.name.endswith("_motor"):
+            joint.armature = 1e9
+    for actuator in [*spec.actuators]:
+        spec.delete(actuator)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    for name, angle in (("joint2", 0.7), ("joint3", 0.8)):
+        data.joint(name).qpos[0] = angle
+        data.joint(f"{name}_motor").qpos[0] = -100.0 * angle
+    return model, data
+
+
+def test_the_arm_sags_as_it_says(six):
+    """Damped to rest; the tip's error is of first order in wind-ups of 1 mrad."""
+    said, model = six
+    model, data = held(model, said, 3.0)
+    mujoco.mj_forward(model, data)
+    start = data.body("flange").xpos.copy()
+    model.dof_damping[:] = 2000.0
+    model.opt.timestep = 1e-3
+    for _ in range(4000):
+        mujoco.mj_step(model, data)
+    assert np.abs(data.qvel).max() < 1e-6
+    for name, expected in said["wind_up"].items():
+        wound = data.joint(name).qpos[0] + 0.01 * data.joint(f"{name}_motor").qpos[0]
+        assert wound == pytest.approx(expected, rel=0.01, abs=1e-6)
+    moved = np.linalg.norm(data.body("flange").xpos - start)
+    assert moved == pytest.approx(said["tip_error"], rel=0.01)
+
+
+def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
+    """About its sagged pose, linearised by MuJoCo's own finite differences; what weight adds is < 1 %."""
+    from jointfmu_tools.robots import elastic, poses
+    from jointfmu_tools.robots.transmission import transmission
+
+    import jointfmu
+
+    spec = elastic.read(ROBOT)
+    axes = elastic.axes(
+        spec, {f"joint{i}": transmission(jointfmu.load(n).file) for i, n in enumerate(SIZES, 1)}
+    )
+    rigid = spec.compile()
+    pose = elastic.posed(rigid, {"joint2": "0.7", "joint3": "0.8"})
+    expected = poses.frequencies(rigid, axes, pose, 3.0, rigid.body("flange").id)
+    said, model = six
+    model, data = held(model, said, 3.0)
+    links = [int(model.joint(f"joint{i}").dofadr[0]) for i in range(1, 7)]
+    for i in range(1, 7):
+        data.joint(f"joint{i}").qpos[0] += said["wind_up"][f"joint{i}"]
+    stiffness = np.empty((6, 6))
+    for column, place in enumerate(links):
+        forces = []
+        for step in (1e-6, -1e-6):
+            data.qpos[place] += step
+            mujoco.mj_forward(model, data)
+            forces.append((data.qfrc_passive - data.qfrc_bias)[links])
+            data.qpos[place] -= step
+        stiffness[:, column] = (forces[1] - forces[0]) / 2e-6
+    mass = elastic.mass_matrix(model, data.qpos)[np.ix_(links, links)]
+    found = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real)) / (2.0 * np.pi)
+    assert expected == pytest.approx(found, rel=0.01)
+
+
+def test_a_servo_holds_the_axis_as_before(six):
+    """The actuators act at the motors, with their gains seen at the link."""
+    _, model = six
+    assert model.actuator_trnid[:, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
+    assert model.actuator_gear[:, 0].tolist() == pytest.approx([-1.0, -0.01])
+    armature = model.dof_armature[model.joint("joint2_motor").dofadr[0]]
+    assert armature == pytest.approx(2.0 / 100.0**2)
+    assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0
+
+
+def test_seven_axes_of_a_urdf(tmp_path, capsys):
+    """URDF has no armature: said for each axis. One axis hangs upright, so its weight winds nothing."""
+    links = "".join(LINK.format(i, i - 1, "0 1 0" if i % 2 == 0 else "0 0 1", 8 - i) for i in range(1, 8))
+    robot = tmp_path / "seven.urdf"
+    robot.write_text(SEVEN.format(links))
+    words = [f"j{i}=CSG-20-100" for i in range(1, 8)]
+    said = made(capsys, robot, tmp_path / "out", "--drive", *words, "--pose", "j2=1.5708")
+    assert len(said["notes"]) == 7
+    assert list(said["wind_up"]) == [f"j{i}" for i in range(1, 8)]
+    assert said["wind_up"]["j1"] == pytest.approx(0.0, abs=1e-9)
+    assert said["wind_up"]["j2"] > 1e-4
+    model = mujoco.MjModel.from_xml_path(said["written"][0])
+    assert model.nv == 14
+    assert all(Path(path).stat().st_size > 1000 for path in said["written"])
+
+
+@pytest.mark.parametrize(
+    ("name", "count"), [("panda", 7), ("ur5e", 6), ("iiwa", 7), ("kinova3", 7), ("sawyer", 7), ("xarm7", 7)]
+)
+def test_robots_of_others(name, count, tmp_path, capsys):
+    """Those of robosuite where it is installed: half a gigabyte. With 1 kg and without."""
+    spec = find_spec("robosuite")
+    if spec is None:
+        pytest.skip("robosuite is not installed")
+    robot = Path(spec.origin).parent / f"models/assets/robots/{name}/robot.xml"
+    rigid = mujoco.MjModel.from_xml_path(str(robot))
+    joints = [rigid.joint(i).name for i in range(rigid.njnt)]
+    arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][-count:]
+    said = made(capsys, robot, tmp_path, "--drive", *(f"{joint}=CSG-32-100" for joint in arm))
+    bare = made(capsys, robot, tmp_path, "--drive", *(f"{j}=CSG-32-100" for j in arm), "--payload", "0")
+    assert said["frequencies"]["lowest"] < bare["frequencies"]["lowest"]
+    model = mujoco.MjModel.from_xml_path(said["written"][0])
+    assert model.nv == rigid.nv + count
+    data = mujoco.MjData(model)
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+    assert np.isfinite(data.qpos).all()
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["--drive", "joint9=CSG-14-100"], "'joint9' is no hinge of the robot; allowed are joint1, "),
+        (["--drive", "joint1"], "--drive 'joint1': expected JOINT=NAME"),
+        (["--drive", "joint1=CSG-14-100", "joint1=CSG-17-100"], "--drive: joint1 is stated twice"),
+        (["--drive", "joint1=GearMesh"], "is a gear_mesh, no drive of a motor"),
+        (
+            ["--drive", "joint1=CSG-14-100", "--payload", "-1"],
+            r"-1 kg is outside \[0, 10000\] kg",
+        ),
+        (
+            ["--drive", "joint1=CSG-14-100", "--tip", "toe"],
+            "--tip 'toe': no body of the robot; allowed",
+        ),
+        (["--drive", "joint1=CSG-14-100", "--pose", "joint1=up"], "--pose joint1 = 'up' is no number"),
+    ],
+)
+def test_refusals(words, line, tmp_path, capsys):
+    assert re.search(line, refused_line(capsys, "robot", ROBOT, *words, "--out", tmp_path))
+
+
+def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
+    (tmp_path / "no.xml").write_text("<nothing/>")
+    line = refused_line(capsys, "robot", tmp_path / "no.xml", "--drive", "a=CSG-14-100", "--out", tmp_path)
+    assert "no.xml: cannot be read as a robot" in line

@@ -1,0 +1,109 @@
+"""`jointfmu robot`: a robot of others, MJCF or URDF, with elastic axes."""
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jointfmu import plots
+from jointfmu.commands.common import Commands, command
+from jointfmu.files.writing import check_folder, write_text
+
+MOST = 1e4
+"""Largest payload [kg] that is taken."""
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    text = "make named joints of a robot (MJCF, URDF) elastic with their drives"
+    sub = command(commands, "robot", run, text)
+    sub.add_argument("robot", type=Path, metavar="ROBOT", help="the robot's file, MJCF or URDF")
+    sub.add_argument(
+        "--drive",
+        nargs="+",
+        action="extend",
+        required=True,
+        metavar="JOINT=NAME",
+        help="joints and their drives: a name of the catalogue or a parameter file",
+    )
+    sub.add_argument("--payload", type=float, default=1.0, metavar="M", help="mass at the tip [kg] (1)")
+    sub.add_argument("--tip", metavar="BODY", help="body whose origin is the tip (the last body)")
+    sub.add_argument(
+        "--pose",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="JOINT=ANGLE",
+        help="angles [rad] of the pose (zero, or the first keyframe)",
+    )
+    sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the command; returns the exit status."""
+    names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
+    if not 0.0 <= args.payload <= MOST:
+        raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
+    check_folder(args.out)
+    pictures = args.out / "frequencies.png", args.out / "payload.png"
+    plots.check(pictures[0])
+    try:
+        import mujoco  # noqa: F401
+    except ImportError:
+        raise ValueError(
+            "the package mujoco is missing, needed to read robots; "
+            "install it with: pip install 'jointfmu[mujoco]'"
+        ) from None
+    from ..interface import load
+    from ..robots import elastic
+    from ..robots import pictures as drawn
+    from ..robots.transmission import transmission
+
+    spec = elastic.read(args.robot)
+    axes = elastic.axes(spec, {joint: transmission(load(name).file) for joint, name in names.items()})
+    model = spec.compile()
+    pose, tip = elastic.posed(model, angles), elastic.body(model, args.tip, axes)
+    made = elastic.with_drives(spec, axes)
+    elastic.keep_folders(made, args.robot)
+    made.compile()
+    written = args.out / f"{args.robot.stem}_elastic.xml"
+    write_text(written, made.to_xml())
+    grid, found = drawn.over_poses(model, axes, pose, args.payload, tip)
+    drawn.draw_frequencies(pictures[0], axes, grid, found)
+    wound, error = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
+    facts = {
+        "written": [str(path) for path in (written, *pictures)],
+        "payload": args.payload,
+        "tip": model.body(tip).name,
+        "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
+        "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
+        "tip_error": error,
+        "notes": [axis.noted for axis in axes if axis.noted],
+    }
+    print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
+    return 0
+
+
+def _lines(facts: dict[str, Any]) -> Sequence[str]:
+    span, payload = facts["frequencies"], facts["payload"]
+    return [
+        *(f"wrote {path}" for path in facts["written"]),
+        f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
+        *(f"{name}: wind-up {1e3 * x:.4g} mrad with {payload:g} kg" for name, x in facts["wind_up"].items()),
+        f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm",
+        *facts["notes"],
+    ]
+
+
+def _pairs(words: Sequence[str], option: str, value: str) -> dict[str, str]:
+    """{joint: what is stated of it}."""
+    found: dict[str, str] = {}
+    for word in words:
+        joint, sign, stated = word.partition("=")
+        if not (joint and sign and stated):
+            raise ValueError(f"{option} {word!r}: expected JOINT={value}")
+        if joint in found:
+            raise ValueError(f"{option}: {joint} is stated twice")
+        found[joint] = stated
+    return found

@@ -1,0 +1,197 @@
+"""A robot as MJCF or URDF whose named joints become elastic: motor, tendons of the drive, actuators moved."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .fitted import Fitted, fit
+from .transmission import Transmission
+
+Array = NDArray[np.float64]
+
+MOTOR = "_motor"
+"""What the motor's hinge and body have after the name of the joint."""
+_LIGHT = 1e-9
+"""Mass [kg] and inertia [kg.m2] of the motor's body; its rotor is the hinge's armature."""
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """A joint of the robot with its drive.
+
+    rotor : inertia at the output [kg.m2], that of the motor times the square of the ratio
+    noted : where it comes from, if not from the robot's armature
+    """
+
+    joint: str
+    drive: Transmission
+    fitted: Fitted
+    rotor: float
+    noted: str = ""
+
+    def wind_up(self, torque: float) -> float:
+        """[rad] on the way from rest at a torque [N.m]."""
+        up = np.linspace(0.0, 3.0 * self.drive.wind_up([self.fitted.torque])[0], 400)
+        return float(np.copysign(np.interp(abs(torque), self.fitted.along(up), up), torque))
+
+    def stiffness(self, torque: float) -> float:
+        """[N.m/rad] of small vibrations about a torque [N.m]: what slides sticks again."""
+        x = self.wind_up(torque)
+        return self.fitted.linear + 3.0 * self.fitted.cubic * x**2 + sum(k for k, _ in self.fitted.sliders)
+
+
+def read(path: str | Path) -> Any:
+    """The robot of a file, MJCF or URDF, as MuJoCo's MjSpec. ValueError if it cannot be read."""
+    import mujoco
+
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.compile()
+    except (ValueError, OSError, mujoco.FatalError) as error:
+        line = " ".join(str(error).split())
+        raise ValueError(f"{path}: cannot be read as a robot (MJCF or URDF): {line}") from None
+    return spec
+
+
+def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[Axis]:
+    """The joints that get a drive, in the robot's order.
+
+    Raises ValueError for a name that is no hinge.
+    """
+    import mujoco
+
+    model = spec.compile()
+    hinges = [model.joint(i) for i in range(model.njnt) if model.jnt_type[i] == mujoco.mjtJoint.mjJNT_HINGE]
+    known = [joint.name for joint in hinges]
+    for name in drives:
+        if name not in known:
+            raise ValueError(
+                f"{name!r} is no hinge of the robot; allowed are {', '.join(filter(None, known))}"
+            )
+    matrix = mass_matrix(model, model.qpos0)
+    found = []
+    for joint in hinges:
+        if joint.name in drives:
+            drive, dof = drives[joint.name], joint.dofadr[0]
+            own = float(model.dof_armature[dof])
+            rotor, noted = own, ""
+            if own <= 0.0:
+                rotor = float(matrix[dof, dof])
+                noted = f"{joint.name}: no armature; the rotor is taken as large as what the axis turns"
+            found.append(Axis(joint.name, drive, fit(drive, drive.rated_torque), rotor, noted))
+    return found
+
+
+def mass_matrix(model: Any, pose: Array) -> Array:
+    """Of all degrees of freedom (n, n) at a pose."""
+    import mujoco
+
+    data = mujoco.MjData(model)
+    data.qpos[:] = pose
+    mujoco.mj_forward(model, data)
+    columns = []
+    for unit in np.eye(model.nv):
+        column = np.zeros(model.nv)
+        mujoco.mj_mulM(model, data, column, unit)
+        columns.append(column)
+    return np.array(columns)
+
+
+def with_drives(spec: Any, chosen: list[Axis]) -> Any:
+    """A copy of the robot with motors, drives as `mjcf` writes them, and the actuators at the motors.
+
+    Keyframes are left out, whose positions are of fewer joints.
+    """
+    made = spec.copy()
+    model = spec.compile()
+    for key in [*made.keys]:
+        made.delete(key)
+    for axis in chosen:
+        _add_motor(made, model, axis)
+        for name, stiffness, damping, limit in _springs(axis):
+            tendon = made.add_tendon(name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0])
+            tendon.springyield = limit
+            tendon.wrap_joint(axis.joint, 1.0)
+            tendon.wrap_joint(axis.joint + MOTOR, -1.0 / axis.drive.ratio)
+    return made
+
+
+def _springs(axis: Axis) -> Iterator[tuple[str, list[float], list[float], float]]:
+    """Name, stiffness, damping and yield of each tendon."""
+    fitted, none = axis.fitted, [0.0, 0.0, 0.0]
+    name = f"{axis.joint}_drive"
+    yield name, [fitted.linear, 0.0, fitted.cubic], [axis.drive.damping, 0.0, 0.0], 0.0
+    for i, (spring, limit) in enumerate(fitted.sliders, 1):
+        yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
+
+
+def _add_motor(spec: Any, model: Any, axis: Axis) -> None:
+    """The rotor beside the link, about a parallel axis, and the joint's actuators at it."""
+    import mujoco
+
+    joint, drive, ratio = spec.joint(axis.joint), axis.drive, axis.drive.ratio
+    number = model.joint(axis.joint).id
+    body = model.jnt_bodyid[number]
+    direction = np.zeros(3)
+    mujoco.mju_rotVecQuat(direction, model.jnt_axis[number], model.body_quat[body])
+    motor = joint.parent.parent.add_body(name=axis.joint + MOTOR, pos=model.body_pos[body])
+    motor.mass, motor.inertia, motor.explicitinertial = _LIGHT, [_LIGHT] * 3, True
+    motor.ipos, motor.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
+    hinge = motor.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_HINGE, axis=direction)
+    hinge.armature = axis.rotor / ratio**2
+    hinge.frictionloss = drive.dry
+    hinge.damping = [drive.viscous, 0.0, 0.0]
+    joint.armature = 0.0
+    for actuator in spec.actuators:
+        if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
+            actuator.target = axis.joint + MOTOR
+            actuator.gear = np.asarray(actuator.gear) / ratio
+
+
+def posed(model: Any, angles: Mapping[str, str]) -> Array:
+    """Positions of the rigid robot: its first keyframe, or as it is drawn, with stated angles [rad].
+
+    Raises ValueError for a joint that it has not or an angle that is no finite number.
+    """
+    import mujoco
+
+    single = {int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)}
+    pose = np.array(model.key_qpos[0] if model.nkey else model.qpos0)
+    known = {
+        model.joint(i).name: int(model.jnt_qposadr[i])
+        for i in range(model.njnt)
+        if int(model.jnt_type[i]) in single
+    }
+    for name, text in angles.items():
+        if name not in known:
+            raise ValueError(f"--pose {name}: no joint of the robot; allowed are {', '.join(known)}")
+        try:
+            pose[known[name]] = float(text)
+        except ValueError:
+            raise ValueError(f"--pose {name} = {text!r} is no number") from None
+    if not np.isfinite(pose).all():
+        raise ValueError("--pose: an angle is not finite")
+    return pose
+
+
+def body(model: Any, name: str | None, chosen: list[Axis]) -> int:
+    """The body of a name; without one that at the end of what the last axis carries."""
+    known = [model.body(i).name for i in range(model.nbody)]
+    if name is not None:
+        if name not in known:
+            raise ValueError(f"--tip {name!r}: no body of the robot; allowed are {', '.join(known[1:])}")
+        return known.index(name)
+    end = int(model.jnt_bodyid[model.joint(chosen[-1].joint).id])
+    while (children := np.flatnonzero(model.body_parentid[1:] == end) + 1).size:
+        end = int(children[-1])
+    return end
+
+
+def keep_folders(spec: Any, path: Path) -> None:
+    """Let meshes and textures be found from another folder."""
+    for name in ("meshdir", "texturedir"):
+        setattr(spec, name, str((path.parent / getattr(spec, name)).resolve()))

@@ -1,0 +1,54 @@
+"""What elastic axes make of a robot: natural frequencies over poses, wind-up and tip error under weight."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .elastic import Axis, mass_matrix
+
+Array = NDArray[np.float64]
+
+
+def dofs(model: Any, axes: Sequence[Axis]) -> list[int]:
+    """The degrees of freedom of the axes in the rigid robot."""
+    return [int(model.joint(axis.joint).dofadr[0]) for axis in axes]
+
+
+def torques(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> tuple[Array, Array]:
+    """What weight asks of the drives (n) [N.m] with a payload [kg] at the origin of a body, and the rows of
+    the body's Jacobian (3, n) [m/rad].
+    """
+    import mujoco
+
+    data = mujoco.MjData(model)
+    data.qpos[:] = pose
+    mujoco.mj_forward(model, data)
+    jacobian = np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, jacobian, None, data.xpos[tip], tip)
+    own = dofs(model, axes)
+    weight = -data.qfrc_bias + jacobian.T @ (payload * model.opt.gravity)
+    return weight[own], jacobian[:, own]
+
+
+def frequencies(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> Array:
+    """Natural frequencies (n) [Hz], ascending, about a pose under weight: motors and other joints held.
+
+    (K - omega^2 M) x = 0 with the drives' tangents K and the links' masses M, without rotors; the payload
+    is a point. What weight adds to K as the links turn is left out.
+    """
+    load, jacobian = torques(model, axes, pose, payload, tip)
+    own = dofs(model, axes)
+    mass = mass_matrix(model, pose)[np.ix_(own, own)] - np.diag(model.dof_armature[own])
+    mass += payload * jacobian.T @ jacobian
+    scale = 1.0 / np.sqrt([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
+    squares = np.linalg.eigvalsh(scale[:, None] * mass * scale)
+    return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
+
+
+def sag(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> tuple[Array, float]:
+    """Wind-ups (n) [rad] under weight at a pose, motors held, and how far the tip sinks by them [m]."""
+    load, jacobian = torques(model, axes, pose, payload, tip)
+    x = np.array([axis.wind_up(t) for axis, t in zip(axes, load.tolist(), strict=True)])
+    return x, float(np.linalg.norm(jacobian @ x))
