@@ -115,6 +115,17 @@ def test_a_servo_holds_the_axis_as_before(six):
     assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0
 
 
+def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys):
+    words = ["--drive", "joint2=CSG-40-100", "joint3=CSG-25-100", "--payload", "3"]
+    free = made(capsys, ROBOT, tmp_path / "free", *words)
+    posed = made(capsys, ROBOT, tmp_path / "posed", *words, *POSE)
+    assert posed["pose"] == {"joint2": 0.7, "joint3": 0.8}
+    again = [f"{name}={angle}" for name, angle in free["pose"].items()]
+    there = made(capsys, ROBOT, tmp_path / "again", *words, "--pose", *again)
+    assert free["tip_error"] == pytest.approx(there["tip_error"], rel=1e-9)
+    assert free["tip_error"] > posed["tip_error"]
+
+
 def test_seven_axes_of_a_urdf(tmp_path, capsys):
     """URDF has no armature: said for each axis. One axis hangs upright, so its weight winds nothing."""
     links = "".join(LINK.format(i, i - 1, "0 1 0" if i % 2 == 0 else "0 0 1", 8 - i) for i in range(1, 8))

@@ -35,7 +35,8 @@ def add(commands: Commands) -> None:
         action="extend",
         default=[],
         metavar="JOINT=ANGLE",
-        help="angles [rad] of the pose (zero, or the first keyframe)",
+        help="angles [rad] of the pose, of joints at zero or as in the first keyframe (for the payload: the "
+        "pose of the grid at which the tip sinks most)",
     )
     sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
 
@@ -71,11 +72,14 @@ def run(args: argparse.Namespace) -> int:
     write_text(written, made.to_xml())
     grid, found = drawn.over_poses(model, axes, pose, args.payload, tip)
     drawn.draw_frequencies(pictures[0], axes, grid, found)
+    if not angles:
+        pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
     wound, error = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     facts = {
         "written": [str(path) for path in (written, *pictures)],
         "payload": args.payload,
         "tip": model.body(tip).name,
+        "pose": {axis.joint: float(pose[model.joint(axis.joint).qposadr[0]]) for axis in axes},
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
         "tip_error": error,
@@ -90,7 +94,8 @@ def _lines(facts: dict[str, Any]) -> Sequence[str]:
     return [
         *(f"wrote {path}" for path in facts["written"]),
         f"natural frequencies over the poses: {span['lowest']:.4g} to {span['highest']:.4g} Hz",
-        *(f"{name}: wind-up {1e3 * x:.4g} mrad with {payload:g} kg" for name, x in facts["wind_up"].items()),
+        f"with {payload:g} kg at " + ", ".join(f"{name} = {x:.4g} rad" for name, x in facts["pose"].items()),
+        *(f"{name}: wind-up {1e3 * x:.4g} mrad" for name, x in facts["wind_up"].items()),
         f"tip error at {facts['tip']}: {1e3 * facts['tip_error']:.4g} mm",
         *facts["notes"],
     ]

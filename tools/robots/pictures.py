@@ -50,6 +50,20 @@ def over_poses(
     return grid, found
 
 
+def lowest(
+    model: Any, axes: Sequence[Axis], pose: Array, grid: list[Array], payload: float, tip: int
+) -> Array:
+    """The pose of the grid at which the tip sinks most, to 1 nm, and of such poses the nearest to the given
+    one; the other joints stay."""
+    places = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
+    poses = []
+    for turned in np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid)):
+        poses.append(pose.copy())
+        poses[-1][places] = turned
+    poses.sort(key=lambda one: round(float(np.linalg.norm(one - pose)), 9))
+    return max(poses, key=lambda one: round(sag(model, axes, one, payload, tip)[1], 9))
+
+
 def draw_frequencies(path: Path, axes: Sequence[Axis], grid: list[Array], found: Array) -> None:
     """The lowest two frequencies over the grid."""
     names = [axis.joint for axis in swept(axes)]
