@@ -101,7 +101,7 @@ def single_drives():
             f"{1e3 * drive.motor_torque(SPEED, 0.0):.0f}",
         ]
         cells += [f"{back:.3g}", f"{found:.3g}", f"{guess:.3g}"]
-        if "efficiency" in n:
+        if n["efficiency"].kind == "catalogue":
             other = Item(item.name, {k: v for k, v in n.items() if k != "efficiency"})
             freed = file.with_values(parameters(other), "user", "without efficiency")
             free = file.with_values({"load_loss": 0.0}, "user", "guess")

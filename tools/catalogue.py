@@ -8,13 +8,15 @@ from typing import NamedTuple
 class Printed(NamedTuple):
     """A number [SI], where it comes from (one of parameters.ORIGINS), and the source.
 
-    bound : it is printed as an upper limit, not as a value
+    bound    : it is printed as an upper limit, not as a value
+    interval : of an estimate [SI], where it is known
     """
 
     value: float
     kind: str
     source: str
     bound: bool = False
+    interval: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

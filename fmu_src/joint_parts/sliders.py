@@ -1,6 +1,6 @@
 """The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
 
-from jointfmu.mechanics.jenkins import beyond, slide, trial
+from jointfmu.mechanics.jenkins import reaches, slide, trial
 from jointfmu.quantity import where
 
 from .graph import Graph, symbols
@@ -13,8 +13,8 @@ def add_sliders(g: Graph) -> None:
     """Along one direction, with a limit that changes and with one that stays; in a plane."""
     force, shift, before, after, stiffness, compliance = symbols("x", 6)
     tried = trial([force], 1.0, stiffness, [shift])
-    doc = "force, shift, limit, stiffness -> force if it sticks, how far that is beyond the limit"
-    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, beyond(tried, after)])
+    doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
+    g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, reaches(tried, after)])
     slid = slide([force], tried, after, after, stiffness, compliance)
     results = "force, tangent along and across, loss"
     doc = (
@@ -35,8 +35,10 @@ def _plane(g: Graph) -> None:
     before, after, stiffness, compliance = symbols("x", 4)
     tried = trial(force, keeps, carries, shift)
     x, doc = [*force, keeps, carries, *shift], "force, part kept, gain, shift"
-    y = [*tried, beyond(tried, after)]
-    g.add("stick_plane", f"{doc}, limit -> force if it sticks, how far beyond the limit", [*x, after], y)
+    y = [*tried, reaches(tried, after)]
+    g.add(
+        "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
+    )
     slid = slide(force, tried, before, after, stiffness, compliance)
     doc += ", limits before and after, stiffness, compliance -> force, tangent xx, xy, yy, loss, slip"
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]

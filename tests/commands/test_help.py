@@ -64,7 +64,7 @@ def shear() -> str:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """What examples read: parameters, a scan, loops of a drive and in shear, stiffness over preload."""
+    """What examples read: parameters, a scan, loops, a log, stiffness over preload."""
     curve = HarmonicDriveSpring.of(default("harmonic_drive").values).curve
     torque = 15.0 * np.sin(np.linspace(0.0, 2.5 * np.pi, 200))
     angle = np.sign(torque) * np.interp(np.abs(torque), curve.load, curve.displacement)
@@ -75,6 +75,8 @@ def folder(tmp_path: Path) -> Path:
     )
     shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", tmp_path / "my_joint.toml")
     shutil.copy(ROOT / "models/robots/six_axis.xml", tmp_path / "my_robot.xml")
+    speeds = "".join(f"{s * w},{s * (0.5 + 0.3 * w)}\n" for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
+    (tmp_path / "robot.csv").write_text("dq [rad/s],i [A]\n" + speeds)
     (tmp_path / "shear.csv").write_text("displacement [um],force [N]\n" + shear())
     assert cli.main([*shlex.split(EXAMPLES["surface synthesize"])[:-1], str(tmp_path / "scan.csv")]) == 0
     return tmp_path

@@ -37,7 +37,8 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     text = "; ".join(procedure.text for procedure in choices.values())
     sub = command(ways, first.name, partial(_fit, choices), f"fit {text}")
     if first.file:
-        sub.add_argument("file", type=Path, metavar="FILE", help="CSV; the heading names columns and units")
+        text = "CSV; the heading names columns and units"
+        sub.add_argument("file", type=Path, nargs="+" if first.many else None, metavar="FILE", help=text)
     sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
     sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
     written(sub)
@@ -51,6 +52,7 @@ def _option(sub: argparse.ArgumentParser, option: FitOption) -> None:
     metavar = "TEXT" if option.word else "VALUE"
     sub.add_argument(
         flag(option.name),
+        nargs="+" if option.many else None,
         type=str if option.word or option.unit else float,
         default=option.default,
         choices=option.choices or None,
@@ -133,7 +135,8 @@ def _finish(args: argparse.Namespace, outcome: "FitResult") -> int:
         shown = "spread unknown" if spread is None else percent(spread)
         shown = f"+- {shown}" if shown.endswith("%") else shown
         mark = "" if row["determined"] else "   not determined"
-        print(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{mark}")
+        ends = "  (95 %: {:.4g} to {:.4g})".format(*row["interval"]) if "interval" in row else ""
+        print(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
     for name, (value, unit, text) in outcome.facts.items():
         print(f"{name:24} {value:.4g} {unit}  {text}")
     for line in outcome.warnings():

@@ -25,7 +25,7 @@ def add(commands: Commands) -> None:
     study = command(
         commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"
     )
-    study.epilog = SYNTAX
+    study.epilog = f"{SYNTAX}; NAME=interval: between the ends that the source in the file states"
     study.add_argument(
         "joint", nargs="?", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
     )

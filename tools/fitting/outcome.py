@@ -17,6 +17,9 @@ from .least_squares import Array, Solution, Unknown
 WORST_AREA = 2.0
 """Factor between measured and fitted area of the widest loop beyond which a law is none of these data."""
 
+LEAST_GAIN = 0.95
+"""Residual of a held-out part over that of a constant [1] from which on a fit says nothing."""
+
 
 @dataclass(frozen=True, slots=True)
 class Picture:
@@ -44,6 +47,8 @@ class FitResult:
     facts : {name: (value, unit, meaning)} beside the parameters
     notes : what the user should know, one line each
     second_picture : drawn beside the first
+    more_pictures  : beside these
+    intervals : {name: ends of its 95 % interval}, where they are told
     """
 
     parameters: ParameterFile
@@ -52,6 +57,13 @@ class FitResult:
     picture: Picture
     notes: Sequence[str] = ()
     second_picture: Picture | None = None
+    more_pictures: Sequence[Picture] = ()
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def pictures(self) -> list[Picture]:
+        """All of them."""
+        return [self.picture, *filter(None, (self.second_picture,)), *self.more_pictures]
 
     def rows(self) -> list[dict[str, Any]]:
         """Every unknown with value, unit, relative standard deviation and whether it is determined."""
@@ -63,6 +75,7 @@ class FitResult:
                 "unit": u.unit,
                 "relative_deviation": _finite(deviations[u.name]),
                 "determined": u.name not in loose,
+                **({"interval": list(self.intervals[u.name])} if u.name in self.intervals else {}),
             }
             for u in self.solution.unknowns
         ]
@@ -81,6 +94,13 @@ class FitResult:
                 return (
                     f"the area of the widest loop is {measured:.3g} J, of the fitted law {law:.3g} J; "
                     f"allowed is a factor of {WORST_AREA:g}"
+                )
+        if "held_out" in self.facts:
+            law, constant = self.facts["held_out"][0], self.facts["held_out_constant"][0]
+            if law > LEAST_GAIN * constant:
+                return (
+                    f"it misses the held-out part by {law:.3g} N.m, a constant by {constant:.3g} N.m; "
+                    f"allowed is {LEAST_GAIN:g} of that"
                 )
         return None
 

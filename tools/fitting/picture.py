@@ -12,12 +12,12 @@ if TYPE_CHECKING:
 
 def size(outcome: FitResult) -> tuple[float, float]:
     """Of the figure [inch]."""
-    return (10.8 if outcome.second_picture else 7.2), 5.6
+    return 3.6 * (1 + len(outcome.pictures)), 5.6
 
 
 def draw(figure: "Figure", outcome: FitResult) -> None:
     """Data and law above, residuals below; pictures side by side."""
-    pictures = [outcome.picture, *filter(None, (outcome.second_picture,))]
+    pictures = outcome.pictures
     every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
     for (above, below), picture in zip(every.T, pictures, strict=True):
         x, y = picture.x, picture.y

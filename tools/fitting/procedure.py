@@ -24,6 +24,7 @@ class FitOption:
     required : it must be stated
     unit     : of a number that may be stated with a unit of its own
     unit_by  : the option that states the unit of numbers without one; it is not passed on
+    many     : it takes several words
     """
 
     name: str
@@ -34,6 +35,7 @@ class FitOption:
     required: bool = False
     unit: str = ""
     unit_by: str = ""
+    many: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,9 +45,10 @@ class Procedure:
     name    : what is fitted, with hyphens
     text    : what is fitted to which joint, in words
     file    : whether the data are a measured file
+    many    : whether they may be several, which `run` gets as a list
     column  : one that all its files have, and those of other joints' procedures of this name have not
     options : what it takes beside
-    run     : ([path of the file,] ParameterFile to start from or None, names to fit or None,
+    run     : ([path of the file, or paths,] ParameterFile to start from or None, names to fit or None,
               **options by name) -> Outcome; a module of the joint's is loaded only then.
               ValueError: bad input, RuntimeError: the fit finds no end
     """
@@ -53,6 +56,7 @@ class Procedure:
     name: str
     text: str
     file: bool
+    many: bool = False
     column: str = ""
     options: Sequence[FitOption] = ()
     run: "Callable[..., FitResult]"

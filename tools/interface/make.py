@@ -199,9 +199,18 @@ class Fit:
         return figure
 
 
+def _paths(procedure: str, many: bool, file: str | Path | Sequence[str | Path]) -> Path | list[Path]:
+    """What a procedure takes: one path, or a list of them."""
+    if isinstance(file, str | Path):
+        return [Path(file)] if many else Path(file)
+    if not many:
+        raise ValueError(f"procedure {procedure!r} takes one file")
+    return [Path(each) for each in file]
+
+
 def fit(
     procedure: str,
-    file: str | Path | None = None,
+    file: str | Path | Sequence[str | Path] | None = None,
     *,
     joint: str | None = None,
     start: Joint | None = None,
@@ -211,7 +220,8 @@ def fit(
     """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
 
     procedure : catalogue, torque-angle, table, loop, preload, ...
-    file      : measured data (CSV; the heading names columns and units), where the procedure has some
+    file      : measured data (CSV; the heading names columns and units), where the procedure has some;
+                several files where it takes them
     joint     : `bolted_joint`, ... where procedures of several joints have the name
     start     : joint to start from
     free      : names of the parameters to fit
@@ -244,6 +254,6 @@ def fit(
     if missing := [name for name, option in own.items() if option.required and name not in options]:
         raise ValueError(f"{', '.join(missing)} missing: {own[missing[0]].text}")
     taken = {name: options.get(name, option.default) for name, option in own.items()}
-    data = () if file is None else (Path(file),)
+    data = () if file is None else (_paths(procedure, chosen.many, file),)
     with _named_as_in_python():
         return Fit(chosen.run(*data, start and start.file, free, **taken))

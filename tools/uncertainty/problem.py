@@ -1,5 +1,6 @@
 """What a user wants to know, as a problem: parameters, distributions and a ramp of load, all checked."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +19,9 @@ from .study import samples_of, split
 
 Array = NDArray[np.float64]
 
+INTERVAL = "interval"
+"""Word for the interval that the parameter file states in a source."""
+_ENDS = re.compile(r"\binterval ([-+.\de]+) to ([-+.\de]+)")
 LOAD_END = "up to the end of the tabulated law"
 
 
@@ -65,6 +69,7 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     if unknown := [name for name in given if name not in known]:
         allowed = ", ".join(name for name in [*declared, curves.load.name] if name in known)
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {allowed}")
+    given = {n: _of_source(n, file) if value == INTERVAL else value for n, value in given.items()}
     load_text = given.get(curves.load.name)
     relative = isinstance(load_text, str) and is_relative(load_text)
     plain, uncertain = split(given, base | ({curves.load.name: 1.0} if relative else {}))
@@ -80,6 +85,19 @@ def pose(file: ParameterFile, given: Mapping[str, object], to: float | None, poi
     at = fixed if fixed is not None else None if load is None or relative else float(load.law.median())
     loads = _ramp(curves, stated.values, at, to, points, load)
     return Problem(file.joint, type(file.values), stated.flat, order, loads, relative if load else None)
+
+
+def _of_source(name: str, file: ParameterFile) -> str:
+    """The distribution between the ends that the source of a parameter states.
+
+    Raises ValueError if it states none.
+    """
+    source = file.sources.get(name, "")
+    if not (found := _ENDS.search(source)):
+        raise ValueError(
+            f"{name} = {INTERVAL}: its source states none: {source!r}; expected '... interval LOW to HIGH'"
+        )
+    return f"{found[1]}..{found[2]}"
 
 
 def _check(parameter: Uncertain, item: Any) -> None:

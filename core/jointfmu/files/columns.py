@@ -56,11 +56,16 @@ def heading(spec: Mapping[str, Sizes]) -> str:
 
 
 def read(
-    path: str | Path, spec: Mapping[str, Sizes], least: int, others: Mapping[str, Sequence[str]] | None = None
+    path: str | Path,
+    spec: Mapping[str, Sizes],
+    least: int,
+    others: Mapping[str, Sequence[str]] | None = None,
+    stated: Mapping[str, Head] | None = None,
 ) -> Columns:
     """Read the columns named in `spec` that a file has.
 
     others : {name in `spec`: other names in lower case}; the unit tells which of several is meant
+    stated : {name in `spec`: the heading that it has in this file, and its unit, or None for the heading's}
 
     Raises ValueError, one line with file, line and column: no file, no text, no heading, a column
     without or with a foreign unit or given twice, a row of another length, a value that is no finite
@@ -72,6 +77,7 @@ def read(
         raise ValueError(f"{path}: is empty; expected columns {heading(spec)}")
     mark = separator(lines[0][1])
     head = cells(lines[0][1], mark)
+    head = _renamed(path, head, stated or {})
     places = _places(path, head, spec, others or {})
     if len(lines) - 1 < least:
         raise ValueError(f"{path}: has {len(lines) - 1} points, at least {least} are needed")
@@ -140,6 +146,19 @@ def number(cell: str) -> float | None:
         return float(cell if "." in cell else cell.replace(",", ".", 1))
     except ValueError:
         return None
+
+
+def _renamed(path: Path, cells: Sequence[str], stated: Mapping[str, Head]) -> list[str]:
+    """The cells of a heading with the names and units that are stated of them."""
+    known = {head(cell)[0].lower(): place for place, cell in enumerate(cells)}
+    found = list(cells)
+    for name, (wanted, unit) in stated.items():
+        if wanted.lower() not in known:
+            raise ValueError(f"{path}: has no column {wanted!r} for {name}; it has {', '.join(known)}")
+        place = known[wanted.lower()]
+        unit = unit or head(cells[place])[1]
+        found[place] = name if unit is None else f"{name} [{unit}]"
+    return found
 
 
 def _places(

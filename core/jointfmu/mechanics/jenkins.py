@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 Vector = Sequence[Number]
 ROUND_OFF = 1e-14
 """By which a force that came back to its limit may be beyond it [1]: it sticks where nothing moves."""
+AT_LIMIT = 1e-12
+"""By which a force may be below its limit and count as at it [1]."""
 NOTHING = 1e-200
 """What divides in place of 0: square of a force, or force times force."""
 
@@ -33,6 +35,14 @@ def beyond(force: Vector, limit: Number) -> Number:
     return force[0] * force[0] + force[1] * force[1] - (1.0 + ROUND_OFF) * (limit * limit)
 
 
+def reaches(force: Vector, limit: Number) -> Number:
+    """Positive for a trial force at its limit or beyond: it slips, or would in a motion along it."""
+    least = (1.0 - AT_LIMIT) * limit
+    if len(force) == 1:
+        return np.abs(force[0]) - least
+    return force[0] * force[0] + force[1] * force[1] - least * least
+
+
 _Returned = tuple[Vector, Vector, Number, Number, Number]
 """Forces, tangent, slip; a trial force of this size, and its product with the force before."""
 
@@ -42,7 +52,8 @@ class Slid:
     """One slider, or many, after a straight path.
 
     force   : along the path's directions
-    tangent : derivative of the force in a further shift: along and across a single direction; xx, xy, yy
+    tangent : of a further motion: along and across a single direction; xx, xy, yy in a plane, where a slider
+              at its limit slips on along its force n, K (1 - n n), by whatever step it came there
     loss    : turned into heat on the way
     slip    : trial force beyond the limit, 0 of a slider that sticks
     """
@@ -76,9 +87,8 @@ def _along(force: Vector, tried: Vector, limit: Number, stiffness: Number) -> _R
     moved = np.minimum(np.maximum(tried[0], -limit), limit)
     slip = np.abs(tried[0] - moved)
     slips = slip > 0.0
-    part = where(slips, limit / where(slips, np.abs(tried[0]), 1.0), 1.0)
     before = where(tried[0] < 0.0, -force[0], force[0])
-    return [moved], [where(slips, 0.0, stiffness), part * stiffness], slip, 1.0, before
+    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, 1.0, before
 
 
 def _in_a_plane(force: Vector, tried: Vector, limit: Number, stiffness: Number) -> _Returned:
@@ -86,11 +96,11 @@ def _in_a_plane(force: Vector, tried: Vector, limit: Number, stiffness: Number) 
     slips = beyond(tried, limit) > 0.0
     square = np.maximum(np.maximum(limit * limit, x * x + y * y), NOTHING)
     size = np.sqrt(square)
-    per = limit / (size * square)
-    part, turned = where(slips, per * square, 1.0), where(slips, per * stiffness, 0.0)
-    turns = part * stiffness
-    tangent = [turns - turned * x * x, -turned * x * y, turns - turned * y * y]
-    return [part * x, part * y], tangent, size - limit, size, force[0] * x + force[1] * y
+    inverse = 1.0 / (size * square)
+    part = where(slips, limit * inverse * square, 1.0)
+    spent = where(reaches(tried, limit) > 0.0, stiffness * size * inverse, 0.0)
+    tangent = [stiffness - spent * x * x, -spent * x * y, stiffness - spent * y * y]
+    return [part * x, part * y], tangent, where(slips, size - limit, 0.0), size, force[0] * x + force[1] * y
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +109,7 @@ class Moved:
 
     force   : (..., n) of each along a single direction, (..., 2, n) in a plane
     loss    : (...) turned into heat on the way
-    tangent : (...) derivative of the sum of the forces in a further shift; (..., 3): xx, xy, yy in a plane
+    tangent : (...) of a further motion, see `Slid`; (..., 3): xx, xy, yy in a plane
     """
 
     force: Array

@@ -28,6 +28,9 @@ Array = NDArray[np.float64]
 SMALL = 1e-3
 """Change of the approach over the height of a slider [1] below which its mean stiffness is integrated by the
 derivatives at the ends (to the fourth order) and not by the difference of its limits, which cancels."""
+SHORT = 3e-2
+"""Fall of the load over an amplitude, by the stiffness, over the load [1]: below it a loop is taken from the
+derivatives of the curve, as its differences cancel."""
 LOBATTO = 0.1 * np.sqrt(5.0)
 """Distance of the two inner points of Lobatto's rule from the middle of a path [1]."""
 SPREAD = 1.0 / np.sqrt(12.0)
@@ -133,6 +136,11 @@ class Foundation:
         """Forces (*shape, 2, n) of sliders that have not moved."""
         return np.zeros((*shape, 2, self.sliders))
 
+    def stick(self, approach: ArrayLike) -> Array:
+        """Stiffness (...) [Pa/m] along the surface of all sliders that touch at approaches (...) [m]."""
+        here, first = (self.curve.derivatives(x, 1)[1] for x in (approach, self.height[..., 0]))
+        return np.asarray(self.ratio * np.maximum(here - first, 0.0))
+
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Traction (...) [Pa] from rest over shifts (...) >= 0 [m], at approaches (...) [m] that stay.
 
@@ -156,6 +164,21 @@ class Foundation:
         then = np.asarray(now - moved / (self.friction / self.ratio))
         load, left = (self.curve.derivatives(x, 0)[0] for x in (now, then))
         return load, left, self.curve.energy(now) - self.curve.energy(then)
+
+    def loop(self, approach: ArrayLike, size: ArrayLike) -> tuple[Array, Array]:
+        """Loss (...) [J/m2] of a cycle with an amplitude (...) [m], and the energy (...) at its end.
+
+        At approaches (...) [m], to full relative accuracy down to no amplitude.
+        """
+        now, a = np.asarray(approach, dtype=np.float64), np.asarray(size, dtype=np.float64)
+        law = self.friction, self.ratio, a
+        (load, *here), (_, *there) = (
+            self.curve.derivatives(x, 3) for x in (now, now - a / (self.friction / self.ratio))
+        )
+        far, near = loop(*law, *self.slipped(now, a)), short_loop(*law, here, there)
+        small = short(*law, load, here[0])
+        loss, stored = (np.where(small, *each) for each in zip(near, far, strict=True))
+        return loss, stored
 
     def _ranges(self) -> tuple[Array, Array]:
         """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
@@ -264,17 +287,40 @@ def slipping_work(friction: Number, ratio: Number, shift: Number, load: Number, 
     return friction * (load * shift - friction / ratio * energy)
 
 
+def _cycle(
+    friction: Number, ratio: Number, size: Number, fall: Number, excess: Number
+) -> tuple[Number, Number]:
+    """Loss and stored energy of `loop`, from what the load falls by over the reach, and the excess of the
+    trapezoid over the integral of the load there."""
+    return 8.0 * friction**2 / ratio * np.maximum(excess, 0.0), 0.5 * friction * fall * size
+
+
 def loop(
     friction: Number, ratio: Number, size: Number, load: Number, then: Number, energy: Number
 ) -> tuple[Number, Number]:
     """Loss [J/m2] of a cycle with the amplitude `size` [m], and the elastic energy at its end.
 
     Under constant load 8 (I - B a/2) and B a/2, B the backbone and I its integral over a; the rest is of
-    `Foundation.slipped`.
+    `Foundation.slipped`. It cancels where the amplitude is `short`, see `short_loop`.
     """
-    stored = 0.5 * friction * (load - then) * size
-    loss = 8.0 * (slipping_work(friction, ratio, size, load, energy) - stored)
-    return np.maximum(loss, 0.0), stored
+    reach = size * (ratio / friction)
+    return _cycle(friction, ratio, size, load - then, 0.5 * reach * (load + then) - energy)
+
+
+def short_loop(
+    friction: Number, ratio: Number, size: Number, now: Vector, then: Vector
+) -> tuple[Number, Number]:
+    """`loop` from three derivatives of the load at both ends of the reach, exact inside a segment of
+    the curve."""
+    reach, (stiffness, bend, twist), (first, bent, twisted) = size * (ratio / friction), now, then
+    fall = reach * (0.5 * (stiffness + first) - reach * (bend - bent) / 12.0)
+    excess = reach**3 * ((bend + bent) / 24.0 - reach * (twist - twisted) / 120.0)
+    return _cycle(friction, ratio, size, fall, excess)
+
+
+def short(friction: Number, ratio: Number, size: Number, load: Number, stiffness: Number) -> Number:
+    """Whether `short_loop` holds for an amplitude, at a load [Pa] and stiffness [Pa/m] of the curve."""
+    return size * (ratio / friction) * stiffness < SHORT * load
 
 
 def touching(

@@ -17,6 +17,7 @@ enum { /* places of the inputs */
 };
 _Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures");
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
+_Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 _Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
 
@@ -186,16 +187,59 @@ static inline void add_normal(double *x, const double *node, double p, double k,
     x[SUM_ABOUT_XY] += stiffness * px * py;
 }
 
-/* Add a shear traction and its derivatives xx, xy, yy in the shift. */
-static inline void add_shear(double *x, const double *point, const double *traction, const double *tangent)
+static inline void add_traction(double *x, const double *point, const double *traction)
 {
     const double share = point[SHARE], px = point[PLACE_X], py = point[PLACE_Y];
     x[SUM_TRACTION_X] += share * traction[0];
     x[SUM_TRACTION_Y] += share * traction[1];
     x[SUM_TORSION] += share * (px * traction[1] - py * traction[0]);
-    x[SUM_TANGENT_X] += share * tangent[0];
-    x[SUM_TANGENT_Y] += share * tangent[2];
-    x[SUM_TANGENT_Z] += share * (py * py * tangent[0] - 2.0 * px * py * tangent[1] + px * px * tangent[2]);
+}
+
+/* xx, xy, yy of a point for a shift along x, along y and a turn. */
+static inline void for_motions(const double *point, const double *tangent, double *motions)
+{
+    const double share = point[SHARE], px = point[PLACE_X], py = point[PLACE_Y];
+    motions[0] = share * tangent[0];
+    motions[1] = share * tangent[2];
+    motions[2] = share * (py * py * tangent[0] - 2.0 * px * py * tangent[1] + px * px * tangent[2]);
+}
+
+/* Add a shear traction and its derivatives xx, xy, yy in the shift. */
+static inline void add_shear(double *x, const double *point, const double *traction, const double *tangent)
+{
+    double motions[3];
+    add_traction(x, point, traction);
+    for_motions(point, tangent, motions);
+    for (int d = 0; d < 3; d++)
+        x[SUM_TANGENT_X + d] += motions[d];
+}
+
+/* Sums over the patches for `further_tangent` of the package: of all that stick, of what those at their limits miss,
+ * and this with the sign by which the traction goes along the motion. */
+typedef struct {
+    double stick[3], spent[3], along[3];
+} Further;
+
+static inline void add_further(Further *sum, const double *patch, double stick, const double *tangent,
+                               const double *traction)
+{
+    const double px = patch[PLACE_X], py = patch[PLACE_Y], t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0]};
+    const double all[3] = {stick, 0.0, stick}, less[3] = {stick - tangent[0], -tangent[1], stick - tangent[2]};
+    double sticks[3], spent[3];
+    for_motions(patch, all, sticks);
+    for_motions(patch, less, spent);
+    for (int d = 0; d < 3; d++) {
+        sum->stick[d] += sticks[d];
+        sum->spent[d] += spent[d];
+        sum->along[d] += t[d] < 0.0 ? -spent[d] : spent[d];
+    }
+}
+
+/* The tangents of a further motion, each in the direction in which more slips on; or rates of them. */
+static inline void tell_further(const Further *sum, const double *along, double *x)
+{
+    for (int d = 0; d < 3; d++)
+        x[SUM_TANGENT_X + d] = sum->stick[d] - 0.5 * (sum->spent[d] + (along[d] < 0.0 ? -sum->along[d] : sum->along[d]));
 }
 
 enum { LIFTED = 5, STIFFER, N_ELASTIC };              /* results of `elastic_shear`: traction, tangent, then these */
@@ -390,8 +434,21 @@ static inline double energy_near(const Joint *joint, double x, double *load)
     return energy_inside(&joint->kind.energy, curve, segment, t);
 }
 
-/* Arguments of `loop`, and of those that change a seed. */
-enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP };
+/* Arguments of `loop` and `short_loop`; those from the amplitude on change a seed. */
+enum { L_MU, L_RATIO, L_SIZE, L_LOAD, L_THEN, L_ENERGY, N_LOOP, L_NOW = L_LOAD, L_THERE = L_NOW + 3, N_SHORT = L_THERE + 3 };
+
+/* As `short` of the package. */
+static inline bool is_short(const Point *at, double reach)
+{
+    return reach * at->y[1] < SLIDER_SHORT * at->y[0];
+}
+
+/* Load with four derivatives at both ends of a reach. */
+static inline void both_ends(const Joint *joint, const Point *at, double reach, double now[5], double then[5])
+{
+    curve_at(&joint->curve, at->approach, 4, now);
+    curve_at(&joint->curve, at->approach - reach, 4, then);
+}
 
 /* Add the loops whose amplitude is the present shift, see `loop_sums`. */
 static void add_loops(const Joint *joint, const double *inputs, double *x)
@@ -401,10 +458,19 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
-        double then, y[2];
-        const double energy = at->energy - energy_near(joint, at->approach - size * per_reach, &then);
-        const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
-        loop(given, NULL, y);
+        const double reach = size * per_reach;
+        double y[2];
+        if (is_short(at, reach)) {
+            double now[5], then[5];
+            both_ends(joint, at, reach, now, then);
+            const double given[N_SHORT] = {mu, ratio, size, now[1], now[2], now[3], then[1], then[2], then[3]};
+            short_loop(given, NULL, y);
+        } else {
+            double then;
+            const double energy = at->energy - energy_near(joint, at->approach - reach, &then);
+            const double given[N_LOOP] = {mu, ratio, size, at->y[0], then, energy};
+            loop(given, NULL, y);
+        }
         works += data.patches[j][SHARE] * y[0];
         energies += data.patches[j][SHARE] * y[1];
     }
@@ -419,13 +485,31 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
     const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
     if (size == 0.0)
         return;
-    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio, *now = at->y;
+    const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio;
     const double grows = (u * rates[1] + v * rates[2]) / size, falls = rates[0] - grows / reach;
-    double then[2], y[2];
-    const double energy = at->energy - energy_at(joint, at->approach - size / reach, then);
-    const double x[2 * N_LOOP - L_SIZE] = {mu, ratio, size, now[0], then[0], energy, grows, now[1] * rates[0],
-                                           then[1] * falls, now[0] * rates[0] - then[0] * falls};
-    loop_seed(x, NULL, y);
+    double now[5], then[5], y[2], x[2 * N_SHORT - L_SIZE] = {mu, ratio, size};
+    both_ends(joint, at, size / reach, now, then);
+    if (is_short(at, size / reach)) {
+        double *rate = x + N_SHORT;
+        rate[0] = grows;
+        for (int d = 0; d < 3; d++) {
+            x[L_NOW + d] = now[1 + d];
+            x[L_THERE + d] = then[1 + d];
+            rate[1 + d] = now[2 + d] * rates[0];
+            rate[4 + d] = then[2 + d] * falls;
+        }
+        short_loop_seed(x, NULL, y);
+    } else {
+        double load[2];
+        const double energy = at->energy - energy_at(joint, at->approach - size / reach, load);
+        const double rate[N_LOOP - L_SIZE] = {grows, now[1] * rates[0], then[1] * falls,
+                                              now[0] * rates[0] - then[0] * falls};
+        x[L_LOAD] = now[0];
+        x[L_THEN] = then[0];
+        x[L_ENERGY] = energy;
+        memcpy(x + N_LOOP, rate, sizeof rate);
+        loop_seed(x, NULL, y);
+    }
     dx[SUM_LOOP_WORK] += patch[SHARE] * y[0];
     dx[SUM_LOOP_ENERGY] += patch[SHARE] * y[1];
 }
@@ -461,15 +545,22 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
 {
     Kind *kind = &joint->kind;
     double heat = 0.0;
+    Further sum = {.stick = {0.0}};
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
     add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
         const Shear shear = slide(joint, j, inputs, memory, after + AT_FORCE + 2 * j * SLIDERS);
-        add_shear(x, data.patches[j], shear.traction, shear.tangent);
+        add_traction(x, data.patches[j], shear.traction);
+        add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
+        memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
         heat += data.patches[j][SHARE] * shear.loss;
         after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
         after[AT_APPROACH + j] = kind->to[j].approach;
+    }
+    if (kind->memory) {
+        memcpy(kind->along, sum.along, sizeof sum.along);
+        tell_further(&sum, kind->along, x);
     }
     const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
@@ -575,28 +666,56 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
     return true;
 }
 
-static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *seed,
-                        const double *bolts, double *dx)
+/* Rates of a patch in a further motion from the place of the last evaluation, whose memory is `after`: the mean of
+ * both directions, of which sliders at their limits slip on in one and stick in the other. */
+static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[2])
+{
+    const double *force = after + AT_FORCE + j * 2 * SLIDERS;
+    const Foundation *f = &joint->kind.foundation[j];
+    const Point *at = &joint->kind.to[j];
+    PatchPath path = {.force = {force, force + SLIDERS}, .from = at, .to = at};
+    Shear mean, on;
+    foundation_rates(f, &path, ends, shift, &mean);
+    path.onward = true;
+    foundation_rates(f, &path, ends, shift, &on);
+    for (int d = 0; d < 2; d++)
+        mean.traction[d] = 0.5 * (mean.traction[d] + on.traction[d]);
+    for (int d = 0; d < 3; d++)
+        mean.tangent[d] = 0.5 * (mean.tangent[d] + on.tangent[d]);
+    mean.loss = 0.5 * (mean.loss + on.loss);
+    return mean;
+}
+
+static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *after,
+                        const double *seed, const double *bolts, double *dx)
 {
     const Kind *kind = &joint->kind;
+    Further sum = {.stick = {0.0}};
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j];
-        const PatchPath path = path_of(joint, j, inputs, memory);
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
-        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)};
-        const double ends[2] = {(int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate}, loop[3] = {rate, shift[0], shift[1]};
-        add_loop_rate(joint, patch, path.to, inputs, loop, dx);
+        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)}, loop[3] = {rate, shift[0], shift[1]};
+        const double ends[2] = {after || (int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate};
+        add_loop_rate(joint, patch, &kind->to[j], inputs, loop, dx);
         if (!kind->memory)
             continue;
         Shear shear;
-        foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
-        add_shear(dx, patch, shear.traction, shear.tangent);
+        if (after) {
+            shear = further_rates(joint, j, after, ends, shift);
+        } else {
+            const PatchPath path = path_of(joint, j, inputs, memory);
+            foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
+        }
+        add_traction(dx, patch, shear.traction);
+        add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }
+    if (kind->memory)
+        tell_further(&sum, kind->along, dx);
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
     const double at[4] = {inputs[PRELOAD], inputs[MOMENT], seed[PRELOAD], seed[MOMENT]};
     double x[2 * N_X] = {0.0}, *dx = x + N_X, bolts[4];
@@ -607,7 +726,7 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     bolt_pressures_seed(at, joint->c, bolts + 2);
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
         return;
-    patch_rates(joint, inputs, memory, seed, bolts, dx);
+    patch_rates(joint, inputs, memory, after, seed, bolts, dx);
     memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);

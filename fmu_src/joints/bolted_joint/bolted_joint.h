@@ -30,6 +30,7 @@ typedef struct {
     Point from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
     int moved;                       /* how it has moved up to the last evaluation */
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
+    double traction[MOST_PATCHES][2], along[3]; /* of the patches in it, and what `Further` has there */
     Work work; /* of the patch at hand */
 } Kind;
 

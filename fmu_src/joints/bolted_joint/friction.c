@@ -339,9 +339,14 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
     }
 }
 
+double foundation_stick(const Foundation *f, const Point *at)
+{
+    return f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
+}
+
 Shear foundation_at_rest(const Foundation *f, const Point *at)
 {
-    const double K = f->ratio * fmax(at->y[1] - f->stiffness[0], 0.0);
+    const double K = foundation_stick(f, at);
     return (Shear){.tangent = {K, 0.0, K}};
 }
 
@@ -366,6 +371,12 @@ typedef struct {
 } RangeOn;
 _Static_assert(sizeof(RangeOn) == (24 + 2 * 18) * sizeof(double), "arguments of both_on_way_seed");
 
+/* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
+static inline double least_limit(const PatchPath *path)
+{
+    return path->onward ? 1.0 - 2.0 * SLIDER_AT_LIMIT : 1.0;
+}
+
 /* Rates of the sliders of a range that is not all in contact. */
 static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *inner,
                        Shear *rate)
@@ -373,7 +384,7 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
     const Point *from = path->from, *to = path->to, *points[] = {from, to, &inner[0], &inner[1]};
     const double parts[] = {0.0, 1.0, lobatto[0], lobatto[1]}, change = to->approach - from->approach;
     const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
-    RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu};
+    RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu * least_limit(path)};
     double y[6];
     for (int k = 0; k < 4; k++) {
         const Point *p = points[k];
@@ -401,9 +412,9 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
 static void full_rates(const Foundation *f, int n, const PatchPath *path, const PathRate *rates, Shear *rate)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const double *u = path->shift, *du = rates->shift;
+    const double *u = path->shift, *du = rates->shift, least = least_limit(path);
     for (int k = 0; k < n; k++) {
-        const double K = f->K[k], before = f->limit[k] + K * from, after = f->limit[k] + K * to;
+        const double K = f->K[k], before = least * (f->limit[k] + K * from), after = least * (f->limit[k] + K * to);
         const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
                             0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
         const double trial[] = {x[0], x[1], 1.0, K, u[0], u[1], after};

@@ -42,6 +42,7 @@ typedef struct {
     const Point *from, *to;
     double shift[2];
     bool straight; /* no force and no shift along y */
+    bool onward;   /* for rates: sliders at their limits slip, as in a further motion */
 } PatchPath;
 
 /* Room for limits of sliders whose stiffness stays. */
@@ -51,7 +52,7 @@ typedef struct {
 
 /* What the sliders of a patch give together, per area; a rate is its derivative along a seed. */
 typedef struct {
-    double traction[2], tangent[3], loss;
+    double traction[2], tangent[3], loss; /* the tangent of a further motion */
 } Shear;
 
 /* Lay the heights around an approach; curve, energy, mu, ratio and offset are given. */
@@ -62,6 +63,8 @@ Point foundation_point(const Foundation *foundation, double approach, int near);
  * touch on it; along y they are left out where the path is straight and the load rests. */
 void foundation_move(const Foundation *foundation, const PatchPath *path, double *const moved[2], Work *work,
                      Shear *shear);
+/* Stiffness of all sliders that touch at a point. */
+double foundation_stick(const Foundation *foundation, const Point *at);
 /* What sliders without force give that do not move along the surface. */
 Shear foundation_at_rest(const Foundation *foundation, const Point *at);
 /* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */

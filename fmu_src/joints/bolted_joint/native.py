@@ -4,7 +4,7 @@ import casadi as ca
 
 from jointfmu.joints.bolted_joint import contact, law, outputs, spring
 from jointfmu.joints.model import Model
-from jointfmu.mechanics import sliders
+from jointfmu.mechanics import jenkins, sliders
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import ENERGY, Definitions, NativePart
@@ -46,9 +46,7 @@ def _shear(g: Graph) -> None:
     y = contact.elastic_shear(x[0], law.shear_ratio(g.joint), x[1:5], x[5], x[6])
     g.add_with_seed("elastic_shear", doc, x, y)
     add_sliders(g)
-    x = symbols("x", 6)
-    doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
-    g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
+    _loops(g)
     load, stiffness, bend, width, ratio, friction = symbols("x", 6)
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
@@ -65,6 +63,17 @@ def _shear(g: Graph) -> None:
     x = [across, *force, *moved, *shift, *ends, slip, *between]
     g.add("changing_loss", doc, x, [loss])
     _range(g)
+
+
+def _loops(g: Graph) -> None:
+    """Loss and energy of loops at constant load."""
+    x = symbols("x", 6)
+    doc = "mu, K_T/K_N, amplitude, loads now and where springs have slipped, energy between -> loss, energy"
+    g.add_with_seed("loop", doc, x, sliders.loop(*x), fixed=2)
+    (mu, ratio, size), now, then = symbols("x", 3), symbols("n", 3), symbols("t", 3)
+    doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
+    y = sliders.short_loop(mu, ratio, size, now, then)
+    g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, fixed=2)
 
 
 def _range(g: Graph) -> None:
@@ -107,8 +116,9 @@ def _range(g: Graph) -> None:
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
     counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
-    names = ("SMALL", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
+    names = ("SMALL", "SHORT", "SPREAD", "LOBATTO", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
+    numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
     counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
     return Definitions(counts, numbers)

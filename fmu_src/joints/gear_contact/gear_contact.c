@@ -64,9 +64,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     enum { N = 1 + N_FOUND };
     double pressure, rate, x[2 * N];
     const double at[2] = {inputs[0], seed[0]};

@@ -154,9 +154,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     double deflection, rate, at[2 * N_INPUTS], x[2 * N_GIVEN - 1], y[3];
     double *moved = &x[N_GIVEN]; /* of all but the closing */
     (void)memory;

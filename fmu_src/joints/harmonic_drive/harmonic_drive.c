@@ -188,9 +188,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     const Kind *kind = &joint->kind;
     double x[2 * N_GIVEN] = {0.0}, y[3], at[2 * (N_INPUTS + 1)], error[N_ERROR], rate;
     error_at(joint, inputs, error);

@@ -27,7 +27,7 @@ Status instance_derivative(Instance *m, const char *function, const uint32_t unk
             return refuse_derivative(m, function, knowns[i]);
         direction[knowns[i] - FIRST_INPUT] += seed[i];
     }
-    joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), direction, change);
+    joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), memory_after(m), direction, change);
     for (size_t i = 0; i < n_unknowns; i++) {
         result[i] = change[unknowns[i] - FIRST_OUTPUT];
         if (!isfinite(result[i]))
@@ -49,7 +49,7 @@ Status instance_adjoint(Instance *m, const char *function, const uint32_t unknow
     for (size_t j = 0; j < n_knowns; j++) {
         double direction[N_INPUTS + N_STATES] = {0.0}, change[N_OUTPUTS];
         direction[knowns[j] - FIRST_INPUT] = 1.0;
-        joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), direction, change);
+        joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), memory_after(m), direction, change);
         result[j] = 0.0;
         for (size_t i = 0; i < n_unknowns; i++)
             result[j] += seed[i] * change[unknowns[i] - FIRST_OUTPUT];

@@ -38,9 +38,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     double x[2 * N_KNOWNS];
     (void)memory;
     memcpy(x, inputs - FIRST_INPUT, N_KNOWNS * sizeof(double));

@@ -26,9 +26,10 @@ bool joint_tabulate(Joint *joint, const double *parameters, Text *why);
 bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *outputs,
                     Text *why);
 
-/* Exact derivative of the outputs along `seed` at the inputs and with the memory of the last joint_evaluate. */
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result);
+/* Exact derivative of the outputs along `seed` at the inputs and with the memory of the last joint_evaluate; where the
+ * inputs are accepted `after` is the memory that it gave, else NULL. */
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result);
 
 /* Ways in which the last evaluated state lies outside the tables, a bit each; 0 inside. */
 unsigned joint_outside(Joint *joint, const double *inputs, const double *outputs);

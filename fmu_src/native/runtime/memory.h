@@ -3,20 +3,33 @@
  * Inputs may be tried at will: outputs are functions of them and of the path up to the inputs that were
  * accepted last. Accepted are those at the end of initialization, of a step, of an integrator step, of an
  * event, and the path goes straight from one to the next. At accepted inputs the outputs stay those of the way
- * that led there, stiffness and derivatives too, until others are accepted. */
+ * that led there, until others are accepted; joint_derivative may go on from there. */
 #ifndef JOINTFMU_MEMORY_H
 #define JOINTFMU_MEMORY_H
 
 #include "instance.h"
 
-/* The memory from which the path goes on to the present inputs. */
-static inline const double *memory_of(const Instance *m)
+/* Whether the present inputs are the accepted ones. */
+static inline bool memory_rests(const Instance *m)
 {
     const Path *path = &m->now.path;
     bool rests = N_MEMORY && path->accepted;
     for (size_t i = 0; i < N_INPUTS && rests; i++)
         rests = m->now.values[FIRST_INPUT + i] == path->inputs[i];
-    return path->memory[rests ? 1u - path->last : path->last];
+    return rests;
+}
+
+/* The memory from which the path goes on to the present inputs. */
+static inline const double *memory_of(const Instance *m)
+{
+    const Path *path = &m->now.path;
+    return path->memory[memory_rests(m) ? 1u - path->last : path->last];
+}
+
+/* The memory at the present inputs, if they are accepted; else NULL. */
+static inline const double *memory_after(const Instance *m)
+{
+    return memory_rests(m) ? m->now.path.memory[m->now.path.last] : NULL;
 }
 
 /* Accept the inputs of the last evaluation. */

@@ -21,11 +21,11 @@ static inline SliderSum total(const Lanes *s)
                        .loss = sum_of(s->loss)};
 }
 
-/* The first pair of which one is beyond its limit. */
-static inline int first_beyond(const double *beyond, int n)
+/* The first pair of which one is at its limit or beyond. */
+static inline int first_at_limit(const double *reaches, int n)
 {
     int k = 0;
-    while (k < n && !((beyond[k] > beyond[k + 1] ? beyond[k] : beyond[k + 1]) > 0.0))
+    while (k < n && !((reaches[k] > reaches[k + 1] ? reaches[k] : reaches[k + 1]) > 0.0))
         k += 2;
     return k;
 }
@@ -100,21 +100,21 @@ double sliders_heat(int n, const Sliders *s, double shift)
     return sum_of(heat);
 }
 
-/* What sliders from the first beyond its limit on give. */
+/* What sliders from the first at its limit on give. */
 typedef struct {
-    double beyond[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+    double reaches[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
 } Each;
 
 static inline void stick_all(int n, const double *restrict K, const double *restrict limit,
                              const double *restrict force, double shift, double *restrict moved,
-                             double *restrict beyond)
+                             double *restrict reaches)
 {
     for (int k = 0; k < n; k++) {
         const double x[] = {force[k], shift, limit[k], K[k]};
         double y[2];
         stick_line(x, NULL, y);
         moved[k] = y[0];
-        beyond[k] = y[1];
+        reaches[k] = y[1];
     }
 }
 
@@ -127,8 +127,6 @@ static inline void slide_all(int first, int n, const double *restrict K, const d
         double y[N_LINE];
         slide_steady(x, NULL, y);
         moved[k] = y[L_FORCE];
-        each->xx[k] = y[L_ALONG];
-        each->yy[k] = y[L_ACROSS];
         each->loss[k] = y[L_LOSS];
     }
 }
@@ -137,16 +135,16 @@ int sliders_sticking(int n, const Sliders *s, double shift, double *moved, Slide
 {
     Each each;
     Lanes lanes = {.x = {0.0}};
-    stick_all(n, s->K, s->after, s->force[0], shift, moved, each.beyond);
-    const int first = first_beyond(each.beyond, n);
+    stick_all(n, s->K, s->after, s->force[0], shift, moved, each.reaches);
+    const int first = first_at_limit(each.reaches, n);
     slide_all(first, n, s->K, s->per_K, s->after, s->force[0], shift, moved, &each);
     for (int k = 0; k < n; k += 2)
         for (int l = 0; l < 2; l++)
             lanes.x[l] += moved[k + l];
     for (int k = first; k < n; k += 2)
         for (int l = 0; l < 2; l++) {
-            lanes.xx[l] += each.xx[k + l];
-            lanes.yy[l] += each.yy[k + l];
+            lanes.xx[l] += each.reaches[k + l] > 0.0 ? 0.0 : s->K[k + l];
+            lanes.yy[l] += s->K[k + l];
             lanes.loss[l] += each.loss[k + l];
         }
     *sum = total(&lanes);
@@ -174,7 +172,7 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
                                    const double *restrict q_x, const double *restrict q_y, double u, double v,
-                                   double *restrict x, double *restrict y, double *restrict beyond)
+                                   double *restrict x, double *restrict y, double *restrict reaches)
 {
     for (int k = 0; k < n; k++) {
         const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, limit[k]};
@@ -182,7 +180,7 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
         stick_plane(a, NULL, b);
         x[k] = b[0];
         y[k] = b[1];
-        beyond[k] = b[2];
+        reaches[k] = b[2];
     }
 }
 
@@ -222,8 +220,8 @@ int sliders_plane(int n, const Sliders *s, const double shift[2], double *const 
 {
     Each each;
     Lanes lanes = {.x = {0.0}};
-    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], each.beyond);
-    const int first = first_beyond(each.beyond, n);
+    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], each.reaches);
+    const int first = first_at_limit(each.reaches, n);
     slide_plane_all(first, n, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1],
                     moved[0], moved[1], &each);
     add_forces(n, moved[0], moved[1], &lanes);

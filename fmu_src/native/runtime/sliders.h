@@ -15,7 +15,7 @@ typedef struct {
     const double *force[2]; /* in a plane; along one direction the first */
 } Sliders;
 
-/* What they give together: forces, derivatives xx, xy, yy of them in a further shift, heat. Along one direction the
+/* What they give together: forces, tangents xx, xy, yy of a further motion, heat. Along one direction the
  * tangents are along and, as yy, across it. */
 typedef struct {
     double force[2], tangent[3], loss;

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.bolted_joint.law import shear_ratio
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import default
@@ -139,6 +139,22 @@ def test_masing(spring):
     assert lost == pytest.approx(area, rel=1e-3)  # trapezoids
     eta = out[-1]["eta_loop"]
     assert lost == pytest.approx(np.pi * eta * first[-1] * amplitude, rel=0.02)  # error of the sliders
+
+
+def test_the_loss_factor_falls_with_the_amplitude_down_to_none(spring):
+    """eta_loop = 2/(3 pi) kappa u sum(k')/(mu sum(k)), of the patches: no spike through zero.
+
+    Of second order is some half of the amplitude over that of gross slip, 1e-6 m.
+    """
+    approach = spring.curve.inverse(pressures(JOINT, spring.patches, 9e3, 0.0))
+    _, k, bend = (spring.patches.share @ each for each in spring.curve.derivatives(approach, 2))
+    slope = 2.0 / (3.0 * np.pi) * shear_ratio(JOINT) * bend / (JOINT.mu * k)
+    for u in (1e-9, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18, -1e-16):
+        out = rest(spring, u * np.eye(6)[0])
+        assert out["eta_loop"] == pytest.approx(slope * abs(u), rel=2e-3)
+        assert out["C_loop"] / out["C_xx"] == pytest.approx(out["eta_loop"] / out["eta_t"], rel=1e-12)
+    before, after = (rest(spring, u * np.eye(6)[0])["eta_loop"] for u in (2.99e-8, 3.01e-8))
+    assert after / before == pytest.approx(3.01 / 2.99, rel=1e-3)
 
 
 def test_separated_joint_forgets(spring):

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from conftest import Fmu
 from joint_cases import SAME, STATE, TABLE, parameters, random_inputs
+from natives import SAME as SAME_FLAVOURS
+from natives import jacobian
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
@@ -93,3 +95,16 @@ def test_the_preload_ramp_agrees_with_scipy(fmus: Path) -> None:
     pulled = ramp.run(path, "s_rel_z", 5e-6, 1e-8, {"preload": 9e3}).columns
     force = -cumulative_simpson(pulled["K_zz"], x=pulled["s_rel_z"], initial=0.0)
     assert relative(pulled["f_z"], force) < 1e-6  # Simpson's rule at 500 steps
+
+
+def test_loops_are_the_packages_down_to_no_amplitude(fmu: Host, host: Host, version: str) -> None:
+    """In all flavours, though differences of energies would cancel; so are their derivatives."""
+    python, native = fmu("BoltedJoint").start(), host("BoltedJoint", version).start()
+    for size in (1e-17, 1e-14, 1e-12, 1e-10, 1e-8, 2e-8, 5e-8, 1e-7):
+        state = {"preload": 9e3, "moment": 300.0, "s_rel_x": 0.6 * size, "s_rel_y": -0.8 * size}
+        found, other, J = native.at(state), python.at(state), jacobian(native)
+        h = 1e-3 * size  # truncation h^2
+        up, down = (native.at(state | {"s_rel_x": state["s_rel_x"] + d * h}) for d in (1.0, -1.0))
+        for name in ("eta_loop", "C_loop"):
+            assert found[name] == pytest.approx(other[name], rel=SAME_FLAVOURS, abs=0.0)
+            assert J[name, "s_rel_x"] == pytest.approx((up[name] - down[name]) / (2.0 * h), rel=1e-4)

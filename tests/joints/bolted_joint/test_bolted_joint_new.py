@@ -9,7 +9,7 @@ from conftest import Fmu, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
-from jointfmu_tools.joints.bolted_joint.new import layout
+from jointfmu_tools.joints.bolted_joint.new import layout, whole
 
 from jointfmu.contact.roughness import FACTOR, GAMMA
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
@@ -20,6 +20,12 @@ STEEL = ["--material", "steel"]
 FACES = [*STEEL, "--Ra", "0.8"]
 LOAD = ["--preload", "30e3"]
 STILL = (0.0, 0.0, 0.0)
+
+
+@pytest.fixture(autouse=True)
+def interface_alone(monkeypatch):
+    """The finite elements of the whole joint take seconds; test_whole_bolted_joint.py looks at them."""
+    monkeypatch.setattr(whole, "facts", lambda *arguments: ({}, []))
 
 
 def made(capsys, *words, path=None):

@@ -4,6 +4,7 @@ import csv
 import math
 from importlib.resources import files
 
+import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
@@ -28,6 +29,10 @@ OTHER = list(csv.DictReader(TEXT.read_text(encoding="utf-8").splitlines()))
 """Drives of another maker, in sizes and ratios of these."""
 
 
+def is_printed(item, column):
+    return item.numbers[column].kind == "catalogue"
+
+
 def made(name, **options):
     return NEW.run(dict.fromkeys(o.name for o in NEW.options) | {"catalogue": name} | options).file
 
@@ -38,7 +43,7 @@ def made(name, **options):
 @pytest.mark.slow
 @pytest.mark.parametrize("size", sorted({item.name.rsplit("-", 1)[0] for item in DRIVES}))
 def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
-    """A prediction of stiffness and rated torque alone; with hysteresis at its limit the loop opens by it.
+    """A prediction of stiffness and rated torque alone; hysteresis at its limit takes up to 15 % of it.
 
     No row needs a play of its own. The largest is 0.89 of the limit, so that a first line softer by 11 %,
     or a limit at 5 % of rated torque, would break it.
@@ -55,7 +60,22 @@ def test_lost_motion_of_every_drive_is_below_the_published_limit(size):
         most = item.numbers["hysteresis_loss"].value
         open_ = HarmonicDriveSpring.of(file.with_values({"hysteresis_loss": most}, "user", "limit").values)
         assert hysteresis_loss(open_) == pytest.approx(most, rel=1e-9)
-        assert 0.0 < lost_motion(open_) < lost_motion(plain)
+        assert 0.85 * lost_motion(plain) < lost_motion(open_) <= (1.0 + 1e-9) * lost_motion(plain)
+
+
+def test_lost_motion_is_midway_in_the_loop_through_rated_torque():
+    """The mean of both angles at 4 % of rated torque less that at -4 %, read off the loop itself."""
+    spring = HarmonicDriveSpring.of(made("CSG-17-100", hysteresis="1").values)
+    rated = spring.joint.rated_torque
+    steps = rated * np.concatenate([np.linspace(1.0, -1.0, 51), np.linspace(-0.96, 1.0, 50)])
+    memory, angles = spring.loaded(rated, spring.rest())[1], []
+    for torque in steps:
+        out, memory = spring.loaded(torque, memory)
+        angles.append(float(out["phi_rel"]))
+    passed = list(zip(angles, steps / rated, strict=True))
+    at = {sign: [angle for angle, part in passed if np.isclose(part, 0.04 * sign)] for sign in (1, -1)}
+    assert [len(both) for both in at.values()] == [2, 2]
+    assert lost_motion(spring) == pytest.approx(np.mean(at[1]) - np.mean(at[-1]), rel=1e-9)
 
 
 def test_lost_motion_counts_play_and_a_loop_is_what_it_was_made_for():
@@ -93,7 +113,7 @@ def test_a_printed_drive_has_its_friction(item):
     assert drive.starting_torque() == pytest.approx(start, rel=1e-9)
     assert drive.motor_torque(SPEED, 0.0) == pytest.approx(printed["running_torque"].value, rel=1e-9)
     found = drive.back_driving_torque(10.0 * back)
-    if "efficiency" in printed:
+    if is_printed(item, "efficiency"):
         rated = printed["rated_torque"].value
         assert drive.efficiency(SPEED, rated) == pytest.approx(printed["efficiency"].value, rel=1e-9)
         assert efficiency(file.values) == pytest.approx(printed["efficiency"].value, rel=1e-12)
@@ -103,11 +123,11 @@ def test_a_printed_drive_has_its_friction(item):
         assert found == pytest.approx(back, rel=0.05)
     kinds = {name: file.origins[name] for name in ("friction_coulomb", "friction_viscous", "load_loss")}
     assert kinds["friction_coulomb"] == "catalogue"
-    assert kinds["friction_viscous"] == ("derived" if "efficiency" in printed else "estimate")
-    assert kinds["load_loss"] == "derived"
+    loss = "derived" if is_printed(item, "efficiency") else "estimate"
+    assert kinds["friction_viscous"] == kinds["load_loss"] == loss
 
 
-@pytest.mark.parametrize("name", [name for name, item in PRINTED.items() if "efficiency" in item.numbers])
+@pytest.mark.parametrize("name", [n for n, item in PRINTED.items() if is_printed(item, "efficiency")])
 def test_efficiency_at_rated_torque_is_predicted_without_it(name):
     """From starting, running and back-driving torque alone: 1.5 to 5.2 points above the published one.
 
@@ -157,15 +177,13 @@ def test_what_is_stated_makes_the_friction(tmp_path):
     assert efficiency(both) == pytest.approx(0.7)
 
 
-def test_estimates_of_friction_stay_off():
-    drive = made("CSG-17-100")
-    assert (drive.values.friction_coulomb, drive.origins["friction_coulomb"]) == (0.0, "user")
-
-
 @pytest.mark.parametrize(
     ("words", "text"),
     [
-        (["--efficiency", "0.7"], "--efficiency needs --starting-torque"),
+        (["--motor-drag", "-1"], "--motor-drag = '-1' is outside [0, inf) N.m"),
+        (["--motor-drag", "1 N"], "unit 'N.m' does not measure what 'N' does"),
+        (["--temperature", "318"], "is 591.15 K, outside [-80, 200] degC; kelvin are stated as 318.15K"),
+        (["--temperature", "warm"], "is no temperature; expected 45, 45degC or 318.15K"),
         (["--efficiency", "1.5"], "--efficiency = '1.5' is outside (0, 1)"),
         (["--starting-torque", "0.03", "--efficiency", "70"], "--efficiency = '70' is outside (0, 1)"),
         (["--starting-torque", "0.03N"], "unit 'N.m' does not measure what 'N' does"),

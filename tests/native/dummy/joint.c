@@ -44,9 +44,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     (void)memory;
     result[0] = joint->k * (1.0 + 3.0 * inputs[1] * inputs[1]) * seed[1] + seed[0];
     result[1] = 2.0 * inputs[0] * seed[0];

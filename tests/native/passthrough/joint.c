@@ -27,9 +27,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     (void)memory, (void)inputs;
     for (int i = 0; i < N_OUTPUTS; i++)
         result[i] = joint->gain * seed[i % N_INPUTS];

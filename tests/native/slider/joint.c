@@ -44,9 +44,10 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
-void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *seed,
-                      double *result)
+void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
+                      const double *seed, double *result)
 {
+    (void)after;
     double force, loss;
     const double stiffness = move(joint, inputs[0], memory, &force, &loss);
     result[0] = stiffness * seed[0] + seed[1];

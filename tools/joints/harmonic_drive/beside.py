@@ -50,9 +50,9 @@ def _rows(model: Model, file: ParameterFile, item: Item) -> Iterator[Beside]:
     bench = spring_bench(model, file) if known else None
     for column in known:
         assert bench is not None
-        number, (parameter, beginning) = printed[column], SET_BY[column]
-        source = file.sources.get(parameter, "")
-        role = SET if source.startswith(beginning) and number.source in source else PREDICTED
+        number, (parameter, text) = printed[column], SET_BY[column]
+        own = file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
+        role = SET if own else PREDICTED
         value = _turned(bench, column, printed)
         yield Beside(column, _UNITS[column], number.value, number.bound, value, role, number.source)
 

@@ -3,7 +3,7 @@
 A row of stiffness holds for the series that it names, and from ratio 80 on for all ratios. Torques are
 printed for some series and ratios; where a series lacks them, those of the same size and ratio in another
 one are an estimate. Limits of hysteresis and lost motion are printed for actuators with the same stiffness,
-starting and back-driving torque for single drives.
+starting and back-driving torque for single drives, from which those of the others are scaled.
 """
 
 import csv
@@ -17,6 +17,7 @@ from typing import TypeAlias
 from jointfmu.quantity.units import factor
 
 from ...catalogue import Catalogue, Column, Item, Printed
+from .named_friction import known, with_friction
 
 COLUMNS = (
     Column("ratio", "1", "speed ratio", "1"),
@@ -28,7 +29,7 @@ COLUMNS = (
     Column("rated_torque", "N.m", "rated torque", "N.m"),
     Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
     Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),
-    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque", "arcmin"),
+    Column("lost_motion", "rad", "angle between +4 % and -4 % of rated torque, midway in the loop", "arcmin"),
     Column("starting_torque", "N.m", "at the wave generator, no load", "N.m"),
     Column("running_torque", "N.m", "at the wave generator, no load, 2000 rev/min", "N.m"),
     Column("back_driving_torque", "N.m", "at the output, no motor", "N.m"),
@@ -72,12 +73,10 @@ def items() -> tuple[Item, ...]:
     """All drives with a row of stiffness, and those that share one with them."""
     torques = {(row["series"], row["size"], row["ratio"]): row for row in _table("torque")}
     found = {item.name: item for row in _table("stiffness") for item in _of_row(row, torques)}
-    single = {}
     for row in _table("friction"):
         found[row["drive"]] = _single(row, found[row["like"]])
-        if row["running_mNm"]:
-            single[row["like"].split("-", 1)[1]] = found[row["drive"]]
-    return tuple(_estimated(item, single) for item in found.values())
+    drives = known(found.values())
+    return tuple(with_friction(item, drives) for item in found.values())
 
 
 def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
@@ -87,7 +86,7 @@ def _of_row(row: Mapping[str, str], torques: Torques) -> Iterator[Item]:
     if row["ratio"].endswith("+"):
         ratios = [r for r in RATIOS if any((s, row["size"], r) in torques for s in ALIKE)]
     what = f"{group}, size {row['size']}, ratio {row['ratio']}"
-    source = f"{what} of the Harmonic Drive catalogue ({row['source']})"
+    source = f"{what}: {row['source']}"
     printed = {name: row[column] for name, column in _STIFFNESS.items()}
     lines = {name: Printed(float(text), "catalogue", source) for name, text in printed.items() if text}
     if "K3" not in lines:
@@ -143,7 +142,7 @@ def _torque(torques: Torques, series: str, size: str, ratio: str) -> dict[str, P
             name = f"{other}-{size}-{ratio}"
             if other == series:
                 kind, part = "catalogue", 1.0
-                text = f"{name} of the Harmonic Drive catalogue ({row['source']})"
+                text = f"{name}: {row['source']}"
             elif other in STRONG and series not in STRONG:
                 kind, part = "estimate", 1.0 / STRONGER
                 text = f"that of {name} over {STRONGER:g}: the catalogue gives the CSG 30 % more than the CSF"
@@ -184,29 +183,6 @@ def _single(row: Mapping[str, str], like: Item) -> Item:
         if row[head] and (name != like.name or column not in ("ratio", "K1", "K3")):
             numbers[column] = Printed(unit * float(row[head]), "catalogue", source)
     return Item(name, numbers)
-
-
-def _estimated(item: Item, single: Mapping[str, Item]) -> Item:
-    """The drive with estimates of the friction that is not printed of it.
-
-    single : {size-ratio: drive whose starting and running torque are printed}
-
-    All of it is that of such a drive; the running torque alone is above the starting torque by as much as at
-    that size.
-    """
-    size, _, ratio = item.name.split("-", 1)[1].partition("-")
-    own, start = dict(item.numbers), item.numbers.get("starting_torque")
-    if start is None and (other := single.get(f"{size}-{ratio}")):
-        text = f"that of {other.name}, of the same size, ratio and stiffness; "
-        for column in ("starting_torque", "running_torque", "back_driving_torque"):
-            number = other.numbers[column]
-            own[column] = Printed(number.value, "estimate", text + number.source)
-    elif start is not None and "running_torque" not in own:
-        other = next(drive for key, drive in single.items() if key.startswith(f"{size}-"))
-        rise = other.numbers["running_torque"].value - other.numbers["starting_torque"].value
-        text = f"starting torque, and the rise to running torque of {other.name}, of the same size"
-        own["running_torque"] = Printed(start.value + rise, "estimate", text)
-    return Item(item.name, own)
 
 
 def _table(name: str) -> list[dict[str, str]]:

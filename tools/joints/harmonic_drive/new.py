@@ -4,10 +4,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.quantity.units import KELVIN_AT_ZERO
+
 from ...catalogue import Printed
 from ...drawing.part import Drawing, Given, NewJoint, Option
-from ...drawing.reading import flag, number
-from .quoted_friction import QUOTED, efficiency, friction
+from ...drawing.reading import flag, number, temperature
+from .quoted_friction import QUOTED, SPEED, efficiency, friction, interval_text
 
 if TYPE_CHECKING:
     from .fit.row import Row
@@ -53,7 +56,25 @@ def _drive(given: Given) -> NewJoint:
         corner = number("corner", given["corner"], "1", "1", None)
         printed["corner"] = Printed(corner, "user", "stated" if corner else "stated: the lines, with kinks")
     made = (_of_pair if given["law"] == "hu2023" else _of_lines)(printed, brakes, source)
-    return replace(made, facts={"ratio": (printed["ratio"].value, "1", held), **made.facts})
+    made = replace(made, facts={"ratio": (printed["ratio"].value, "1", held), **made.facts})
+    return made if given["temperature"] is None else _at(made, given["temperature"])
+
+
+def _at(made: NewJoint, text: str) -> NewJoint:
+    """The joint with a temperature of its lubricant at the start; its friction there as a fact."""
+    kelvin, drive = temperature("temperature", text), made.file.values
+    file = replace(
+        made.file,
+        inputs={**made.file.inputs, "temperature": kelvin},
+        origins={**made.file.origins, "inputs.temperature": "user"},
+        sources={**made.file.sources, "inputs.temperature": f"stated: {text}"},
+    )
+    dry = float(limits(drive, 0.0, 0.0, kelvin)[0])
+    text = f"{kelvin - KELVIN_AT_ZERO:g} degrees C"
+    facts = {"starting_torque": (dry, "N.m", f"at the wave generator, at {text}")}
+    wet = float(limits(drive, SPEED, 0.0, kelvin)[0] + viscous(drive, SPEED, kelvin))
+    facts["running_torque"] = (wet, "N.m", f"the same at 2000 rev/min, at {text}")
+    return replace(made, file=file, facts={**made.facts, **facts})
 
 
 def _held(given: Given, ratio: Printed) -> tuple[Printed, str]:
@@ -86,17 +107,34 @@ def _brakes(given: Given, printed: Mapping[str, Printed]) -> dict[str, Printed]:
                 f"{flag(stated[0])} is of the wave generator, which stands with --fixed wave-generator"
             )
         return {}
-    start = printed.get("starting_torque")
-    if start is None or start.kind == "estimate":
-        if stated:
-            raise ValueError(
-                f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts"
-            )
-        return {}
+    if "starting_torque" not in printed and stated:
+        raise ValueError(f"{flag(stated[0])} needs {flag('starting_torque')}: without it no friction acts")
     dropped: set[str] = set()
-    if stated:
+    if "starting_torque" in stated:  # what is scaled belongs to another one
         dropped = {name for name in QUOTED if name in printed and printed[name].kind == "estimate"}
-    return friction({name: number for name, number in printed.items() if name not in dropped})
+    return _with_drag(
+        friction({name: number for name, number in printed.items() if name not in dropped}),
+        given["motor_drag"],
+    )
+
+
+def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Printed]:
+    """The dry friction with that of the motor's bearings and seals."""
+    if stated is None:
+        return brakes
+    drag = number("motor_drag", stated, "N.m", "N.m", None)
+    if drag < 0.0:
+        raise ValueError(f"--motor-drag = {stated!r} is outside [0, inf) N.m")
+    text = f"motor drag {drag:g} N.m, stated"
+    own = brakes.get("friction_coulomb")
+    if own is None:
+        return {**brakes, "friction_coulomb": Printed(drag, "user", text)}
+    source, interval = own.source, own.interval
+    if interval is not None:
+        interval = interval[0] + drag, interval[1] + drag
+        source = f"{source.rpartition('; ')[0]}; {interval_text(interval)}"
+    total = Printed(own.value + drag, own.kind, f"{source}; with {text}", interval=interval)
+    return {**brakes, "friction_coulomb": total}
 
 
 def _bought(name: str) -> dict[str, Printed]:
@@ -142,7 +180,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     spring = HarmonicDriveSpring.of(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
-    text = f"of this drive, between +-{LOST_MOTION:g} times the rated torque"
+    text = f"of this drive, midway in its loop between +-{LOST_MOTION:g} times the rated torque"
     text += f"; below {play.value:.4g} rad: {_short(play)}" if play else ""
     facts["lost_motion"] = (lost_motion(spring), "rad", text)
     if brakes:
@@ -215,7 +253,7 @@ NEW = Drawing(
         ),
         Option(
             name="starting_torque",
-            text="at the wave generator without load [N.m] (the catalogue's, else no friction)",
+            text="at the wave generator without load [N.m] (of a named drive: printed or scaled; else none)",
             metavar="T",
         ),
         Option(
@@ -229,6 +267,16 @@ NEW = Drawing(
             metavar="T",
         ),
         Option(name="efficiency", text="at rated torque and 2000 rev/min [1]", metavar="E"),
+        Option(
+            name="motor_drag",
+            text="dry friction of the motor's bearings and seals, beside the drive's [N.m] (none)",
+            metavar="T",
+        ),
+        Option(
+            name="temperature",
+            text="of the lubricant, at the start [degC, or with K behind it] (20)",
+            metavar="T",
+        ),
         Option(name="source", text="where the row is printed", metavar="TEXT"),
         Option(
             name="corner",

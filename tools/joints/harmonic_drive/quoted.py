@@ -14,9 +14,16 @@ def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
 
 
 def lost_motion(spring: HarmonicDriveSpring) -> float:
-    """Angle [rad] between the ends of a loop of LOST_MOTION times the rated torque."""
-    least = LOST_MOTION * float(spring.joint.rated_torque)
-    return _wind_up(spring, (least, -least, least)) - _wind_up(spring, (least, -least))
+    """Angle [rad] between LOST_MOTION times rated torque and its negative, midway between the branches of
+    the loop through rated torque.
+    """
+    rated = float(spring.joint.rated_torque)
+    ends = (
+        0.5 * sum(_wind_up(spring, (rated, side * rated, sign * LOST_MOTION * rated)) for side in (1.0, -1.0))
+        for sign in (1.0, -1.0)
+    )
+    there, back = ends
+    return there - back
 
 
 def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.footprint.shape import PressureShape
-from ...mechanics.sliders import Foundation, loop
+from ...mechanics.sliders import Foundation
 from ...quantity import Number, where
 
 Array = NDArray[np.float64]
@@ -67,6 +67,27 @@ def shear_sums(shape: PressureShape, traction: Array, tangent: Array) -> dict[st
     }
 
 
+def further_tangent(shape: PressureShape, stick: Array, tangent: Array, traction: Array) -> dict[str, Number]:
+    """Sums of the stiffness against a further shift along x, along y and a further turn.
+
+    Each is that of the direction in which more slips on: sliders at their limits do where the traction of
+    their patch goes along the motion, and stick elsewhere.
+
+    stick    : (n) [Pa/m] of all sliders
+    tangent  : (n, 3) [Pa/m] with all sliders at their limits slipping on, xx, xy, yy
+    traction : (n, 2) [Pa] against the shift
+    """
+    less = stick[:, None] * np.array([1.0, 0.0, 1.0]) - tangent
+    torsion, one = along(shape, np.array([0.0, 0.0, 1.0])), np.ones_like(stick)
+    motions = (one, 0.0 * one), (0.0 * one, one), (torsion[:, 0], torsion[:, 1])
+    found = {}
+    for name, (u, v) in zip(("tangent_x", "tangent_y", "tangent_z"), motions, strict=True):
+        spent = shape.share * (less[:, 0] * u**2 + 2.0 * less[:, 1] * u * v + less[:, 2] * v**2)
+        with_it = np.where(traction[:, 0] * u + traction[:, 1] * v < 0.0, -spent, spent)
+        found[name] = shape.share @ (stick * (u**2 + v**2)) - 0.5 * (np.sum(spent) + abs(np.sum(with_it)))
+    return found
+
+
 def normal_sums(
     shape: PressureShape, lifted: Array, stiffer: Array, derivatives: list[Array]
 ) -> dict[str, Number]:
@@ -118,7 +139,6 @@ def elastic_shear(
 
 
 def loop_sums(foundation: Foundation, share: Array, approach: Array, size: Array) -> dict[str, Number]:
-    """Sums of `loop` over amplitudes (n) [m] at approaches (n) [m]."""
-    slipped = foundation.slipped(approach, size)
-    loss, stored = loop(foundation.friction, foundation.ratio, size, *slipped)
+    """Sums of `Foundation.loop` over amplitudes (n) [m] at approaches (n) [m]."""
+    loss, stored = foundation.loop(approach, size)
     return {"loop_work": share @ loss, "loop_energy": share @ stored}

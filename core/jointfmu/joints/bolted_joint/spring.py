@@ -20,6 +20,7 @@ from .contact import (
     Place,
     along,
     elastic_shear,
+    further_tangent,
     loop_sums,
     normal_sums,
     over_plane,
@@ -227,7 +228,9 @@ class BoltedJointSpring:
                 "force": moved.force,
             }
         )
-        return shear_sums(patches, moved.traction, moved.tangent) | {"loss": loss / area}, after
+        stick = self.foundation(reference).stick(approach)
+        further = further_tangent(patches, stick, moved.tangent, moved.traction)
+        return shear_sums(patches, moved.traction, moved.tangent) | further | {"loss": loss / area}, after
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).

@@ -5,8 +5,9 @@ The teeth never let go, so play is soft, not empty: beside the wind-up of the la
     phi_p(T) = lost_motion/2 tanh(T/T_p),   T_p = WIDTH rated_torque,
 
 smooth, odd and in series, so that the torque over the wind-up stays a curve with one stiffness everywhere.
-Catalogues state as lost motion the angle between +4 % and -4 % of rated torque, halfway between the branches
-of the loop. Of that, 2 phi(0.04 rated_torque) is the wind-up of the law; `lost_motion` is what is left.
+Catalogues state as lost motion the angle between +4 % and -4 % of rated torque, midway between the branches
+of the loop through rated torque. Of that, 2 phi(0.04 rated_torque) is the wind-up of the law; `lost_motion`
+is what is left.
 """
 
 import numpy as np

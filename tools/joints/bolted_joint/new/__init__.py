@@ -52,6 +52,13 @@ NEW = Drawing(
             text="pressure by the cones of the bolts, or computed by finite elements (default: cones)",
             choices=("cones", "computed"),
         ),
+        Option(
+            name="attached",
+            text="what moves with the bodies that the joint connects, for the printed stiffness of the "
+            "whole: outer faces, edges (side 1 at -x, side 2 at +x), or what lies under the heads "
+            "(default: faces)",
+            choices=("faces", "edge", "heads"),
+        ),
         Option(name="law", text="of the interface (default: roughness)", choices=("roughness", "zhao2018")),
         *OPTIONS,
     ),

@@ -1,58 +1,114 @@
-"""The plates of a drawing by finite elements."""
+"""The plates of a drawing by finite elements: the pressure between them, and the stiffness of the whole."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.mechanics.curve import approach_curve
+from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 
 from ....drawing.vdi2230 import ClampedPart
 
+if TYPE_CHECKING:
+    from ....fem.geometry import Assembly
+    from ....fem.whole_joint import Compliance, WholeJoint
 
-def with_computed_field(
-    file: ParameterFile,
-    plate: BoltedPlate,
-    layers: Sequence[ClampedPart],
-    bearing: float,
-    density: Sequence[float],
-    preload: float,
-) -> ParameterFile:
+Array = NDArray[np.float64]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Plates:
+    """Two plates with their bolts: layers and density [kg/m3] of side 1 and 2, bearing [m] the diameter under
+    head and nut, preload [N] of each bolt."""
+
+    plate: BoltedPlate
+    layers: tuple[ClampedPart, ...]
+    bearing: float
+    density: tuple[float, ...]
+    preload: float
+
+    def assembly(self, file: ParameterFile) -> "Assembly":
+        """The bodies. Raises ValueError for heads that overlap or leave the plate."""
+        from ....fem.bolts import BoltList
+        from ....fem.geometry import Assembly, Plate
+
+        sides = [
+            Plate(
+                length=self.plate.length,
+                width=self.plate.width,
+                thickness=layer.thickness,
+                E=layer.E,
+                nu=file.flat[f"side{i + 1}.nu"],
+                density=self.density[i],
+            )
+            for i, layer in enumerate(self.layers)
+        ]
+        at = self.plate
+        bolts = BoltList(x=at.x, y=at.y, hole_diameter=at.hole_diameter, head_diameter=self.bearing)
+        return Assembly(file.name, sides[0], sides[1], bolts)
+
+
+def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts.
-
-    layers : of side 1 and 2; bearing : [m] diameter under head and nut; density : [kg/m3] of the sides
-    preload : [N] of each bolt
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
-    try:
+
+    def solved() -> ParameterFile:
         from ....fem.bolted_contact import BoltedContact
-        from ....fem.bolts import BoltList
-        from ....fem.geometry import Assembly, Plate
         from ....fem.joint_file import with_solution
-    except ImportError as error:
-        raise _missing(error) from None
-    sides = [
-        Plate(
-            length=plate.length,
-            width=plate.width,
-            thickness=layer.thickness,
-            E=layer.E,
-            nu=file.flat[f"side{i + 1}.nu"],
-            density=density[i],
-        )
-        for i, layer in enumerate(layers)
-    ]
-    bolts = BoltList(x=plate.x, y=plate.y, hole_diameter=plate.hole_diameter, head_diameter=bearing)
-    assembly = Assembly(file.name, sides[0], sides[1], bolts)
+
+        solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.preload)
+        return with_solution(file, solution, plates.preload)
+
+    return _with_packages("--field computed", solved)
+
+
+def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> "dict[str, Compliance]":
+    """Compliances of the whole joint at its preload by direction: the plates move at their attachments.
+
+    Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
+    """
+
+    def solved() -> "dict[str, Compliance]":
+        from ....fem.whole_joint import WholeJoint
+
+        joint = WholeJoint.of(plates.assembly(file), attached)
+        return joint.compliances(_springs(file, plates.preload, joint), file.values.bolt_stiffness)
+
+    return _with_packages("the whole joint", solved)
+
+
+def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
+    """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
+
+    That of the nearest point of the joint's own contact, together as stiff as that.
+    """
+    from scipy.spatial import cKDTree
+
+    values, shape, at = file.values, pressure_shape(file.values.pattern), joint.interface
+    curve = approach_curve(values)
+    normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
+    centred = at.position - at.area @ at.position / at.area.sum()
+    here = normal[cKDTree(shape.position).query(centred)[1]]
+    here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
+    ratio = float(shear_ratio(values))
+    return np.stack([ratio * here, ratio * here, here], axis=1)
+
+
+def _with_packages(what: str, run: Callable[[], T]) -> T:
+    """Run; ValueError, one line, where a package or library of the finite elements is missing."""
     try:
-        solution = BoltedContact.of(assembly).solve(approach_curve(file.values), preload)
+        return run()
     except (ImportError, OSError) as error:
-        raise _missing(error) from None
-    return with_solution(file, solution, preload)
-
-
-def _missing(error: Exception) -> ValueError:
-    return ValueError(
-        f"--field computed needs what is missing here ({error}); install it with: "
-        "pip install 'jointfmu[fem]', and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
-    )
+        raise ValueError(
+            f"{what} needs what is missing here ({error}); install it with: "
+            "pip install 'jointfmu[fem]', and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
+        ) from None

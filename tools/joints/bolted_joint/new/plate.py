@@ -16,7 +16,8 @@ from ....drawing.reading import number, numbers
 from ....drawing.sheet import Sheet
 from ....drawing.tables import Thread, classes, thread_source
 from ....pressure import overload
-from . import layout
+from . import layout, whole
+from .computed import Plates, with_computed_field
 
 Array = NDArray[np.float64]
 REST = (0.0, 0.0, 0.0)
@@ -79,13 +80,15 @@ def joint(given: Given) -> NewJoint:
         sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     name = f"plate {given['plate']} with {given['bolts']}"
     file = sheet.file(name, None if law == "roughness" else heights.stated)
+    density = tuple(material.numbers["density"].value for material in faces.materials(given))
+    plates = Plates(plate, one.layers, one.bearing, density, preload)
     if given["field"] == "computed":
-        from .computed import with_computed_field
-
-        density = [material.numbers["density"].value for material in faces.materials(given)]
-        file = with_computed_field(file, plate, one.layers, one.bearing, density, preload)
+        file = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
-    return NewJoint(file, facts, warnings)
+    if given["tapped"]:
+        return NewJoint(file, facts, warnings)
+    beside, heard = whole.facts(file, plates, given["attached"] or "faces")
+    return NewJoint(file, facts | beside, [*warnings, *heard])
 
 
 def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""What fits the harmonic drive: a measured torque-angle curve, its loops, a catalogue row."""
+"""What fits the harmonic drive: a measured torque-angle curve, its loops, a robot's log, a catalogue row."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,6 +30,20 @@ def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float |
     from . import hysteresis
 
     return hysteresis.fit(path, start, free, inertia)
+
+
+def _log(
+    paths: Sequence[Path],
+    start: ParameterFile | None,
+    free: Names,
+    columns: Names,
+    torque_constant: float | None,
+    ratio: float | None,
+    motor_inertia: float | None,
+) -> "FitResult":
+    from . import log
+
+    return log.fit(paths, start, free, columns, torque_constant, ratio, motor_inertia)
 
 
 def _catalogue(
@@ -82,6 +96,25 @@ FITS = (
             FitOption(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
         ),
         run=_loop,
+    ),
+    Procedure(
+        name="log",
+        text="a robot's logs to the friction of the harmonic drive",
+        file=True,
+        many=True,
+        options=(
+            FitOption(
+                name="columns",
+                text="headings of time, q, dq, i, tau, gravity, temperature with other names: q=HEADING "
+                "or 'q=HEADING [UNIT]'",
+                word=True,
+                many=True,
+            ),
+            FitOption(name="torque_constant", text="torque of the motor over its current [N.m/A]"),
+            FitOption(name="ratio", text="speed ratio (default: that of the start)"),
+            FitOption(name="motor_inertia", text="of the rotor [kg.m2], which the teeth do not carry (0)"),
+        ),
+        run=_log,
     ),
     Procedure(
         name="catalogue",

@@ -1,0 +1,120 @@
+"""Friction of drives by name: how well it is scaled, and beside the base joint of a measured robot.
+
+    python benchmarks/drive_friction.py
+
+The tables of docs/harmonic_drive.md. Left out: a drive's friction from that of all others. What is decided of
+the robot's joints, and from where, is told there.
+"""
+
+import csv
+from importlib.resources import files
+
+import numpy as np
+from jointfmu_tools.joints.harmonic_drive import catalogue
+from jointfmu_tools.joints.harmonic_drive.named_friction import known
+from jointfmu_tools.joints.harmonic_drive.new import NEW
+from jointfmu_tools.joints.harmonic_drive.scaling import scaled
+from scipy.optimize import minimize_scalar
+
+from jointfmu.joints.harmonic_drive.friction import dry_factor, limits, viscous
+
+DRIVES = {name: each for name, (each, _) in known(catalogue.items()).items()}
+
+
+def table(head, rows):
+    """Print a table in Markdown."""
+    print(f"\n| {' | '.join(head)} |\n|{'---|' * len(head)}")
+    for row in rows:
+        print(f"| {' | '.join(map(str, row))} |")
+
+
+def left_out():
+    """Yields (drive, quantity, printed, Scaled from the others [N.m or 1])."""
+    for name, drive in DRIVES.items():
+        law = scaled(drive.size, drive.ratio, [other for other in DRIVES.values() if other is not drive])
+        yield name, "starting torque", drive.starting, law.starting
+        if drive.running is not None:
+            yield name, "rise to running torque", drive.running - drive.starting, law.rise
+        if drive.load_loss is not None:
+            yield name, "`load_loss`", drive.load_loss, law.load_loss
+        if drive.load_loss_back is not None:
+            yield name, "`load_loss_back`", drive.load_loss_back, law.load_loss_back
+
+
+def scaling():
+    """Every printed number from those of the other drives."""
+    rows = []
+    for name, quantity, printed, found in left_out():
+        unit, digits = ("[mN m]", 0) if "torque" in quantity else ("[1]", 3)
+        size = 1e3 if digits == 0 else 1.0
+        numbers = [f"{size * x:.{digits}f}" for x in (printed, found.value, found.low, found.high)]
+        mark = "" if found.low <= printed <= found.high else ", outside"
+        rows.append((name, f"{quantity} {unit}", *numbers[:2], f"{numbers[2]} to {numbers[3]}{mark}"))
+    table(("drive", "of it", "printed", "from the others", "95 % interval"), rows)
+
+
+WARM = 318.15
+"""[K] of the robot's joints."""
+SPEEDS = (0.0, 0.5, 1.5, 3.2)
+"""[rad/s] of the joint; 0: at rest."""
+JOINTS = {"CSG-25-100": ("0.019", 150.0), "CSG-14-100": ("0.006", 28.0)}
+"""{drive: motor drag at 20 degrees C [N.m], torque of the joint by the robot's data sheet [N.m]}."""
+
+
+def joint(name, drag):
+    """Parameters of a drive of the robot by name, its flexspline fixed."""
+    options = dict.fromkeys(option.name for option in NEW.options)
+    options |= {"catalogue": name, "fixed": "flexspline", "temperature": f"{WARM}K", "motor_drag": drag}
+    return NEW.run(options).file.values
+
+
+def friction(drive):
+    """Friction [N.m] at the motor at SPEEDS, without load."""
+    speed = abs(drive.ratio) * np.array(SPEEDS)
+    return limits(drive, speed, 0.0, WARM)[0] + viscous(drive, speed, WARM)
+
+
+def measured():
+    """Friction [N.m] at the motor of the base joint at SPEEDS: the mean of both senses."""
+    text = (files("jointfmu_models") / "reference" / "ur5e_base_joint_friction.csv").read_text(
+        encoding="utf-8"
+    )
+    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
+    torque = {}
+    for row in rows:
+        speed = abs(float(row["joint_speed_rad_per_s"]))
+        torque.setdefault(speed if speed >= 0.5 else 0.0, []).append(abs(float(row["motor_torque_Nm"])))
+    return np.array([np.mean(torque[speed]) for speed in SPEEDS])
+
+
+def drag(name="CSG-25-100"):
+    """Drag [N.m] at 20 degrees C that fits the base joint best: least squares in logarithms."""
+    drive, base = joint(name, "0"), measured()
+    bare, part = friction(drive), float(dry_factor(drive, WARM))
+
+    def cost(more):
+        return np.sum(np.log((bare + more * part) / base) ** 2)
+
+    return minimize_scalar(cost, bounds=(0.0, 0.1), method="bounded").x
+
+
+def robot():
+    """The base joint beside its drive by name, and what is predicted of the robot's other joints."""
+    base, rows = measured(), []
+    print(f"\nDrag that fits the base joint best: {drag():.4f} N m at 20 degrees C.")
+    rows.append(("base joint, measured", *(f"{1e3 * x:.0f}" for x in base)))
+    for name, (given, torque) in JOINTS.items():
+        for what, text in ((f"{name}, without drag", "0"), (f"{name}, drag {given} N m: prediction", given)):
+            rows.append((what, *(f"{1e3 * x:.0f}" for x in friction(joint(name, text)))))
+        if name == "CSG-25-100":
+            part = friction(joint(name, given)) / base - 1.0
+            rows.append(("its miss of the base joint", *(f"{100.0 * x:+.0f} %" for x in part)))
+        guess = base * torque / 150.0
+        rows.append((f"guess: base joint by {torque:g}/150 N m", *(f"{1e3 * x:.0f}" for x in guess)))
+    head = ("friction at the motor [mN m], 45 degrees C", "at rest")
+    table((*head, *(f"{speed:g} rad/s" for speed in SPEEDS[1:])), rows)
+
+
+if __name__ == "__main__":
+    scaling()
+    robot()

@@ -1,0 +1,65 @@
+"""The whole bolted joint between its attachments: members, interface and bolts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.whole_joint import ATTACHED, DIRECTIONS, WholeJoint
+
+
+def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0):
+    plate = Plate(length=length, width=width, thickness=thickness, E=206e9, nu=nu, density=7850.0)
+    bolts = BoltList(x=(0.0,), y=(0.0,), hole_diameter=2e-3, head_diameter=4e-3)
+    return Assembly("lap", plate, plate, bolts)
+
+
+def even(joint, tangential, normal):
+    """Springs [N/m3] that are the same everywhere."""
+    return np.tile([tangential, tangential, normal], (joint.interface.area.size, 1))
+
+
+@pytest.mark.parametrize("reach", [0.5, 2.0, 6.0])
+def test_a_lap_has_the_compliance_of_shear_lag(reach):
+    """d'' = beta^2 d with beta^2 = 2 k/(E t): the displacement at an end against the other one is
+    F/(E t w) (1/(beta tanh(beta L/2)) + L/2). The closed form leaves out shear through the thickness, which
+    is (beta t)^2/6 of d, 2.4e-3 here at most, and the small hole."""
+    assembly = lap()
+    joint = WholeJoint.of(assembly, "edge")
+    plate, beta = assembly.side1, reach / assembly.side1.length
+    # no bending: both plates stay in their planes
+    flat = [np.arange(2, body.size, 3) for body in joint.bodies]
+    joint = replace(joint, held=tuple(np.union1d(a, b) for a, b in zip(joint.held, flat, strict=True)))
+    springs = even(joint, 0.5 * beta**2 * plate.E * plate.thickness, 1e12)
+    found = joint.compliances(springs, 0.0)["x"].whole
+    per = plate.E * plate.thickness * plate.width
+    expected = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
+    assert found == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.parametrize("attached", ATTACHED)
+def test_bodies_without_compliance_leave_the_interface(attached):
+    """Plates 1e6 times as stiff: what is left of them is 1e-6 of the compliance that they had, which is up to
+    1e4 times that of the interface at the edges."""
+    assembly = lap(thickness=0.02, width=0.1)
+    stiff = replace(assembly.side1, E=206e15)
+    joint = WholeJoint.of(replace(assembly, side1=stiff, side2=stiff), attached)
+    for one in joint.compliances(even(joint, 1e12, 1e12), 0.0).values():
+        assert one.whole == pytest.approx(one.rigid, rel=0.02)
+        assert one.interface == pytest.approx(one.rigid, rel=0.02)
+
+
+def test_each_stiffer_part_makes_a_stiffer_joint():
+    joint = WholeJoint.of(lap(thickness=0.02, width=0.1, nu=0.3), "heads")
+    springs = even(joint, 1e12, 1e12)
+    base, bolted, rough = (
+        joint.compliances(springs * s, bolt) for s, bolt in ((1.0, 0.0), (1.0, 1e9), (0.5, 0.0))
+    )
+    for name in DIRECTIONS:
+        assert bolted[name].whole < base[name].whole * (1.0 + 1e-9)
+        assert rough[name].whole > base[name].whole
+    # in equilibrium bolts and members share the load as their stiffness under the heads does
+    bolt, members = 1e9, 1.0 / base["z"].whole
+    assert bolted["z"].bolt_force.sum() == pytest.approx(bolt / (bolt + members), rel=1e-9)
+    assert 1.0 / bolted["z"].whole == pytest.approx(bolt + members, rel=1e-9)

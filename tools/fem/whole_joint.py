@@ -1,0 +1,151 @@
+"""Stiffness of a whole bolted joint between two rigid attachments: members, interface and bolts together.
+
+Linear, about the tightened state: both bodies by finite elements, the interface as springs between them, each
+bolt a spring between its bearing areas. An attachment is a part of a body that moves as one: it has the
+motion of what the joint is screwed to.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from .bolted_contact import elastic_body
+from .contact import Interface, trace
+from .elasticity import ElasticBody
+from .geometry import Assembly
+from .mesh import contact_cells, contact_mesh, plan_of
+from .sparse import Cholesky
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+AXES = (0, 1, 2)
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
+"""Motions of side 2 against side 1: along the axes, and small turns about them through the joint's centre."""
+SLACK = 1e-6
+"""Distance from a face over the body's size [1] at which a node lies on it."""
+
+
+def _faces(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+    return _at(np.abs(body.nodes[2]), float(np.abs(body.nodes[2]).max()))
+
+
+def _edge(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+    x = body.nodes[0] if side == 2 else -body.nodes[0]
+    return _at(x, float(x.max()))
+
+
+def _heads(body: ElasticBody, side: int) -> NDArray[np.bool_]:
+    held = np.zeros(body.nodes.shape[1], dtype=bool)
+    for name, facets in body.mesh.boundaries.items():
+        if name.startswith("head"):
+            held[body.basis.get_dofs(facets).flatten()] = True
+    return held
+
+
+def _at(place: Array, end: float) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(place - end) < SLACK * abs(end))
+
+
+ATTACHED: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
+    "faces": _faces,
+    "edge": _edge,
+    "heads": _heads,
+}
+"""Nodes that move as one: of the outer face, of the edge (side 1 at -x, side 2 at +x), or under the heads."""
+
+
+@dataclass(frozen=True)
+class Compliance:
+    """Compliance of a joint under a unit force along, or moment about, an axis, by what stretches.
+
+    interface, members, bolts : [m/N, rad/(N.m)] twice the energy stored in them; their sum is the whole
+    rigid     : of the interface alone between rigid sides, without bolts
+    bolt_force : (bolts) [N per N, N per N.m] what each bolt gets of it
+    """
+
+    interface: float
+    members: float
+    bolts: float
+    rigid: float
+    bolt_force: Array
+
+    @property
+    def whole(self) -> float:
+        """Of the joint."""
+        return self.interface + self.members + self.bolts
+
+
+@dataclass(frozen=True)
+class WholeJoint:
+    """Two meshed bodies between their attachments.
+
+    bodies    : side 1 and 2
+    held      : unknowns of each that the attachment moves
+    interface : points of the contact
+    heads     : for each body, mean displacement (n, bolts) along z of what a bolt presses on
+    """
+
+    bodies: tuple[ElasticBody, ElasticBody]
+    held: tuple[Index, Index]
+    interface: Interface
+    heads: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
+        """Mesh an assembly; attached is one of ATTACHED, refinement [1] divides the sizes of all elements."""
+        plan = plan_of(assembly, refinement)
+        first, second = (elastic_body(plan, assembly, side, refinement) for side in (1, 2))
+        held, heads = [], []
+        for side, body in enumerate((first, second), start=1):
+            nodes = np.flatnonzero(ATTACHED[attached](body, side))
+            held.append((3 * nodes[:, None] + np.arange(3)).ravel())
+            marked, count = body.mesh.boundaries, len(assembly.bolts.positions)
+            heads.append(np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
+        interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
+        return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]))
+
+    def apart(self, axis: int) -> sp.csr_matrix:
+        """Displacement (points, n) of side 2 against side 1 along an axis."""
+        return sp.hstack(
+            [s * trace(b, self.interface, axis) for s, b in zip((-1.0, 1.0), self.bodies, strict=True)]
+        ).tocsr()
+
+    def compliances(self, springs: Array, bolt: float) -> dict[str, Compliance]:
+        """Of the whole joint in its DIRECTIONS, springs (points, 3) [N/m3] of the interface along x, y, z,
+        bolt [N/m] the stiffness of each.
+
+        Raises RuntimeError if a body can move freely.
+        """
+        bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
+        opening = [self.apart(axis) for axis in AXES]
+        weights = [sp.diags(self.interface.area * springs[:, axis]) for axis in AXES]
+        contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
+        stretch = np.concatenate([-self.heads[0], self.heads[1]])
+        shanks = bolt * sp.csr_matrix(stretch) @ sp.csr_matrix(stretch.T)
+        moved, rigid = self._solved(bodies + contact + shanks)
+        forces = moved.T @ ((bodies + contact + shanks) @ moved)
+        shapes = moved @ np.linalg.inv(forces)
+        alone = np.linalg.inv(rigid.T @ (contact @ rigid))
+        result = {}
+        for i, name in enumerate(DIRECTIONS):
+            u = shapes[:, i]
+            inside, members, bolts = (float(u @ (part @ u)) for part in (contact, bodies, shanks))
+            force = bolt * (stretch.T @ u)
+            result[name] = Compliance(inside, members, bolts, float(alone[i, i]), force)
+        return result
+
+    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array]:
+        """Displacements (n, 6) under unit motions of side 2's attachment, and those of rigid sides."""
+        first, second = self.bodies
+        rigid = np.concatenate([np.zeros((first.size, 6)), second.rigid_motions()])
+        held = np.concatenate([self.held[0], first.size + self.held[1]])
+        free = np.setdiff1d(np.arange(rigid.shape[0]), held)
+        moved = np.zeros_like(rigid)
+        moved[held] = rigid[held]
+        factor = Cholesky(stiffness[free][:, free])
+        moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
+        return moved, rigid

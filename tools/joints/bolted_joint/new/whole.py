@@ -1,0 +1,68 @@
+"""What stands in a bolted joint beside its interface: members and bolts, printed side by side with it."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from jointfmu.parameters import ParameterFile
+
+from .computed import Plates, whole_joint
+
+if TYPE_CHECKING:
+    from ....fem.whole_joint import Compliance
+
+Facts = dict[str, tuple[float, str, str]]
+ATTACHED = {
+    "faces": "the outer faces",
+    "edge": "the edges at -x (side 1) and +x (side 2)",
+    "heads": "the faces under heads and nuts",
+}
+"""What moves as one with the bodies that the joint connects."""
+_TURNS = ("rx", "ry", "rz")
+
+
+def facts(file: ParameterFile, plates: Plates, attached: str) -> tuple[Facts, list[str]]:
+    """The whole joint beside the interface, or a line that says why it cannot be computed."""
+    try:
+        found = whole_joint(file, plates, attached)
+    except ValueError as error:
+        return {}, [f"members and bolts are not computed: {error}"]
+    rows = {f"whole_K_{_named(name)}": _row(one, name, attached) for name, one in found.items()}
+    return rows | _load(found["z"], plates.preload, attached) | _share(found), []
+
+
+def _named(direction: str) -> str:
+    return direction if direction in _TURNS else 2 * direction
+
+
+def _row(one: "Compliance", direction: str, attached: str) -> tuple[float, str, str]:
+    unit = "N.m/rad" if direction in _TURNS else "N/m"
+    parts = ((one.interface, "interface"), (one.members, "members"), (one.bolts, "bolts"))
+    shares = ", ".join(f"{part / one.whole:.0%} {name}" for part, name in parts)
+    text = f"of the whole joint between {ATTACHED[attached]}; of its energy {shares}"
+    return 1.0 / one.whole, unit, f"{text}; the interface alone is {one.whole / one.rigid:.3g} times as stiff"
+
+
+def _share(found: "Mapping[str, Compliance]") -> Facts:
+    """Whether the interface matters for the whole, and that it is all that the FMU has."""
+    along, *rest = (found[name].interface / found[name].whole for name in ("z", "x", "y", *_TURNS))
+    text = (
+        f"part of the interface in the whole's compliance along z, at most {max(rest):.3g} in others; "
+        "the FMU is the interface alone, members and bolts belong beside it (docs/new.md)"
+    )
+    return {"interface_share": (along, "1", text)}
+
+
+def _load(one: "Compliance", preload: float, attached: str) -> Facts:
+    """What an outer force along the axis does, without an eccentric one's bending."""
+    each, most = one.bolt_force.mean(), one.bolt_force.max()
+    force = preload / (1.0 / len(one.bolt_force) - each)
+    where = f"a force along z at {ATTACHED[attached]}"
+    return {
+        "whole_load_factor": (
+            float(one.bolt_force.sum()),
+            "1",
+            f"n Phi_K: part that the bolts take of {where}",
+        ),
+        "whole_bolt_share": (float(most), "1", f"part that one bolt takes at most of {where}"),
+        "opening_load": (float(force), "N", f"{where} that takes all pressure from the interface, linear"),
+    }
