@@ -187,6 +187,13 @@ def test_refusals(words, line, tmp_path, capsys):
     assert re.search(line, refused_line(capsys, "robot", ROBOT, *words, "--out", tmp_path))
 
 
+def test_an_older_mujoco_is_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(mujoco, "MjModel", object)
+    for words in (["robot", ROBOT, "--drive", "joint1=CSG-14-100"], ["export", "mjcf", "CSG-14-100"]):
+        line = refused_line(capsys, *words, "--out", tmp_path / "out")
+        assert "has no springs that yield; expected 4.0 or newer" in line
+
+
 def test_a_file_that_is_no_robot_is_refused(tmp_path, capsys):
     (tmp_path / "no.xml").write_text("<nothing/>")
     line = refused_line(capsys, "robot", tmp_path / "no.xml", "--drive", "a=CSG-14-100", "--out", tmp_path)

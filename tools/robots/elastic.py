@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .fitted import Fitted, fit
+from .mjcf import check_version
 from .transmission import Transmission
 
 Array = NDArray[np.float64]
@@ -48,6 +49,7 @@ def read(path: str | Path) -> Any:
     """The robot of a file, MJCF or URDF, as MuJoCo's MjSpec. ValueError if it cannot be read."""
     import mujoco
 
+    check_version()
     try:
         spec = mujoco.MjSpec.from_file(str(path))
         spec.compile()

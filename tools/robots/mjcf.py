@@ -129,6 +129,14 @@ def measured(drive: Transmission, fitted: Fitted) -> Miss:
     return Miss(float(reached / x[RAMP] - 1.0), others / own - 1.0 if fitted.sliders else None)
 
 
+def check_version() -> None:
+    """Raise ValueError for a MuJoCo without springs that yield, ImportError without any."""
+    import mujoco
+
+    if not hasattr(mujoco.MjModel, "tendon_springyield"):
+        raise ValueError(f"mujoco {mujoco.__version__} has no springs that yield; expected 4.0 or newer")
+
+
 def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
     """The file of a drive fitted up to a torque [N.m], and what running it showed.
 
@@ -136,8 +144,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
     """
     import mujoco
 
-    if not hasattr(mujoco.MjModel, "tendon_springyield"):
-        raise ValueError(f"mujoco {mujoco.__version__} has no springs that yield; expected 4.0 or newer")
+    check_version()
     fitted = fit(drive, torque)
     miss = measured(drive, fitted)
     stiffness = fitted.linear + sum(k for k, _ in fitted.sliders)
