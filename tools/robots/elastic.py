@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .fitted import Fitted, fit
+from .fitted import FittedTendons, fit
 from .mjcf import check_version
 from .transmission import Transmission
 
@@ -21,7 +21,7 @@ _LIGHT = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class ElasticAxis:
     """A joint of the robot with its drive.
 
     rotor : inertia at the output [kg.m2], that of the motor times the square of the ratio
@@ -30,7 +30,7 @@ class Axis:
 
     joint: str
     drive: Transmission
-    fitted: Fitted
+    fitted: FittedTendons
     rotor: float
     noted: str = ""
 
@@ -59,7 +59,7 @@ def read(path: str | Path) -> Any:
     return spec
 
 
-def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[Axis]:
+def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
     """The joints that get a drive, in the robot's order.
 
     Raises ValueError for a name that is no hinge.
@@ -84,7 +84,7 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[Axis]:
             if own <= 0.0:
                 rotor = float(matrix[dof, dof])
                 noted = f"{joint.name}: no armature; the rotor is taken as large as what the axis turns"
-            found.append(Axis(joint.name, drive, fit(drive, drive.rated_torque), rotor, noted))
+            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, noted))
     return found
 
 
@@ -103,7 +103,7 @@ def mass_matrix(model: Any, pose: Array) -> Array:
     return np.array(columns)
 
 
-def with_drives(spec: Any, chosen: list[Axis]) -> Any:
+def with_drives(spec: Any, chosen: list[ElasticAxis]) -> Any:
     """A copy of the robot with motors, drives as `mjcf` writes them, and the actuators at the motors.
 
     Keyframes are left out, whose positions are of fewer joints.
@@ -122,7 +122,7 @@ def with_drives(spec: Any, chosen: list[Axis]) -> Any:
     return made
 
 
-def _springs(axis: Axis) -> Iterator[tuple[str, list[float], list[float], float]]:
+def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float], float]]:
     """Name, stiffness, damping and yield of each tendon."""
     fitted, none = axis.fitted, [0.0, 0.0, 0.0]
     name = f"{axis.joint}_drive"
@@ -131,7 +131,7 @@ def _springs(axis: Axis) -> Iterator[tuple[str, list[float], list[float], float]
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
 
 
-def _add_motor(spec: Any, model: Any, axis: Axis) -> None:
+def _add_motor(spec: Any, model: Any, axis: ElasticAxis) -> None:
     """The rotor beside the link, about a parallel axis, and the joint's actuators at it."""
     import mujoco
 
@@ -180,7 +180,7 @@ def posed(model: Any, angles: Mapping[str, str]) -> Array:
     return pose
 
 
-def body(model: Any, name: str | None, chosen: list[Axis]) -> int:
+def body(model: Any, name: str | None, chosen: list[ElasticAxis]) -> int:
     """The body of a name; without one that at the end of what the last axis carries."""
     known = [model.body(i).name for i in range(model.nbody)]
     if name is not None:

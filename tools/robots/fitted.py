@@ -18,7 +18,7 @@ LOSSLESS = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class Fitted:
+class FittedTendons:
     """Torque [N.m] over wind-up x [rad] from rest: linear x + cubic x^3, and springs in parallel that yield.
 
     linear, cubic : [N.m/rad], [N.m/rad^3], neither negative: the torque grows with the wind-up everywhere
@@ -47,7 +47,7 @@ def slider(wind_up: Array, limit: float) -> Array:
     return np.array(forces)
 
 
-def fit(drive: Transmission, torque: float) -> Fitted:
+def fit(drive: Transmission, torque: float) -> FittedTendons:
     """The least squares of the torque along a ramp to a torque [N.m] and a loop from there, none negative."""
     torques, x = drive.loop(torque)
     largest = float(np.max(np.abs(x)))
@@ -57,4 +57,4 @@ def fit(drive: Transmission, torque: float) -> Fitted:
     columns = np.stack([scaled, scaled**3, *(slider(x, y) / largest for y in limits)], axis=1)
     found = nnls(columns, torques)[0] / largest
     sliders = tuple((k, y) for k, y in zip(found[2:].tolist(), limits, strict=True) if k > 0.0)
-    return Fitted(float(found[0]), float(found[1]) / largest**2, sliders, torque)
+    return FittedTendons(float(found[0]), float(found[1]) / largest**2, sliders, torque)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from jointfmu import __version__
 
-from .fitted import Fitted, fit
+from .fitted import FittedTendons, fit
 from .transmission import RAMP, Transmission, area
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ def _verdict(what: str, miss: float, most: float) -> str:
     return f"{what}: {100.0 * miss:+.2f} % of the FMU's, {kept} {100.0 * most:g} %"
 
 
-def tendons(drive: Transmission, fitted: Fitted, name: str, motor: str, link: str) -> str:
+def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, link: str) -> str:
     """The tendons between two hinges, children of `<tendon>`."""
     joints = (
         f'<joint joint={quoteattr(link)} coef="1"/>'
@@ -71,7 +71,7 @@ def tendons(drive: Transmission, fitted: Fitted, name: str, motor: str, link: st
     )
 
 
-def _model(drive: Transmission, fitted: Fitted, motor_inertia: float, link_inertia: float) -> str:
+def _model(drive: Transmission, fitted: FittedTendons, motor_inertia: float, link_inertia: float) -> str:
     torque = drive.max_torque / abs(drive.ratio)
     small = '<inertial pos="0 0 0" mass="0.001" diaginertia="1e-9 1e-9 1e-9"/>'
     return f"""<mujoco model={quoteattr(drive.name)}>
@@ -97,7 +97,7 @@ actuatorfrclimited="true" actuatorfrcrange="{-torque:.9g} {torque:.9g}"/>
 """
 
 
-def led(drive: Transmission, fitted: Fitted, wind_up: Array) -> Array:
+def led(drive: Transmission, fitted: FittedTendons, wind_up: Array) -> Array:
     """MuJoCo's torques (n) [N.m] of the drive while the link is led along wind-ups (n) [rad] from rest.
 
     Raises ImportError without mujoco, ValueError where it has no springs that yield.
@@ -119,7 +119,7 @@ def led(drive: Transmission, fitted: Fitted, wind_up: Array) -> Array:
     return np.array(torques)
 
 
-def measured(drive: Transmission, fitted: Fitted) -> Miss:
+def measured(drive: Transmission, fitted: FittedTendons) -> Miss:
     """MuJoCo beside the FMU's spring on the way from rest to the torque of the fit and once round."""
     torques, x = drive.loop(fitted.torque)
     found = led(drive, fitted, x)

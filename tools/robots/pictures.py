@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from jointfmu import plots
 
-from .elastic import Axis
+from .elastic import ElasticAxis
 from .poses import frequencies, sag
 
 Array = NDArray[np.float64]
@@ -20,14 +20,14 @@ SIZE = (9.0, 3.8)
 """[inch]."""
 
 
-def swept(axes: Sequence[Axis]) -> Sequence[Axis]:
+def swept(axes: Sequence[ElasticAxis]) -> Sequence[ElasticAxis]:
     """The axes of the grid: the second and the third of an arm, whose weight and inertia turn most with them;
     of fewer the last ones.
     """
     return axes[1:3] if len(axes) > 2 else axes[-2:]
 
 
-def angles(model: Any, axis: Axis) -> Array:
+def angles(model: Any, axis: ElasticAxis) -> Array:
     """Angles (POINTS) [rad] over the range of an axis, a whole turn without limits."""
     joint = model.joint(axis.joint)
     low, high = model.jnt_range[joint.id] if model.jnt_limited[joint.id] else (-np.pi, np.pi)
@@ -35,7 +35,7 @@ def angles(model: Any, axis: Axis) -> Array:
 
 
 def over_poses(
-    model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int
+    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the swept axes, and all frequencies (..., n) [Hz] over their grid; the others stay."""
     chosen = swept(axes)
@@ -51,7 +51,7 @@ def over_poses(
 
 
 def lowest(
-    model: Any, axes: Sequence[Axis], pose: Array, grid: list[Array], payload: float, tip: int
+    model: Any, axes: Sequence[ElasticAxis], pose: Array, grid: list[Array], payload: float, tip: int
 ) -> Array:
     """The pose of the grid at which the tip sinks most, to 1 nm, and of such poses the nearest to the given
     one; the other joints stay."""
@@ -64,7 +64,7 @@ def lowest(
     return max(poses, key=lambda one: round(sag(model, axes, one, payload, tip)[1], 9))
 
 
-def draw_frequencies(path: Path, axes: Sequence[Axis], grid: list[Array], found: Array) -> None:
+def draw_frequencies(path: Path, axes: Sequence[ElasticAxis], grid: list[Array], found: Array) -> None:
     """The lowest two frequencies over the grid."""
     names = [axis.joint for axis in swept(axes)]
     with plots.drawing(path, SIZE) as figure:
@@ -80,7 +80,7 @@ def draw_frequencies(path: Path, axes: Sequence[Axis], grid: list[Array], found:
 
 
 def draw_payload(
-    path: Path, model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int
+    path: Path, model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, float]:
     """Wind-ups and tip error up to a payload; what they are there, [rad] (n) and [m]."""
     loads = np.linspace(0.0, payload, LOADS)

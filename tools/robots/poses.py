@@ -6,17 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .elastic import Axis, mass_matrix
+from .elastic import ElasticAxis, mass_matrix
 
 Array = NDArray[np.float64]
 
 
-def dofs(model: Any, axes: Sequence[Axis]) -> list[int]:
+def dofs(model: Any, axes: Sequence[ElasticAxis]) -> list[int]:
     """The degrees of freedom of the axes in the rigid robot."""
     return [int(model.joint(axis.joint).dofadr[0]) for axis in axes]
 
 
-def torques(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> tuple[Array, Array]:
+def torques(
+    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+) -> tuple[Array, Array]:
     """What weight asks of the drives (n) [N.m] with a payload [kg] at the origin of a body, and the rows of
     the body's Jacobian (3, n) [m/rad].
     """
@@ -32,7 +34,7 @@ def torques(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: 
     return weight[own], jacobian[:, own]
 
 
-def frequencies(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> Array:
+def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
     """Natural frequencies (n) [Hz], ascending, about a pose under weight: motors and other joints held.
 
     (K - omega^2 M) x = 0 with the drives' tangents K and the links' masses M, without rotors; the payload
@@ -47,7 +49,9 @@ def frequencies(model: Any, axes: Sequence[Axis], pose: Array, payload: float, t
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
 
 
-def sag(model: Any, axes: Sequence[Axis], pose: Array, payload: float, tip: int) -> tuple[Array, float]:
+def sag(
+    model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
+) -> tuple[Array, float]:
     """Wind-ups (n) [rad] under weight at a pose, motors held, and how far the tip sinks by them [m]."""
     load, jacobian = torques(model, axes, pose, payload, tip)
     x = np.array([axis.wind_up(t) for axis, t in zip(axes, load.tolist(), strict=True)])

@@ -8,7 +8,7 @@ from .transmission import transmission
 
 
 @dataclass(frozen=True, slots=True)
-class Written:
+class RobotFile:
     """A file's text, the drive's name, what is worth saying about it, and the same as numbers (SI)."""
 
     text: str
@@ -17,7 +17,7 @@ class Written:
     facts: dict[str, object]
 
 
-def written(form: str, source: str, torque: float | None) -> Written:
+def written(form: str, source: str, torque: float | None) -> RobotFile:
     """A drive by its file or name in a format of robots, fitted up to a torque [N.m], rated unless stated.
 
     Raises ValueError for what is no drive or a torque outside its table, ImportError without mujoco.
@@ -30,7 +30,7 @@ def written(form: str, source: str, torque: float | None) -> Written:
         )
     text, miss = WRITERS[form](drive, reached)
     lines = (*miss.lines(reached), *(f"not carried: {line}" for line in drive.lacks))
-    return Written(
+    return RobotFile(
         text,
         drive.name,
         lines,

@@ -6,7 +6,7 @@ from drive_friction import DRIVES, JOINTS, drag, friction, joint, left_out, meas
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.scaling import Known, scaled
+from jointfmu_tools.joints.harmonic_drive.scaling import PrintedFriction, scaled
 from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.joints.harmonic_drive.friction import dry_factor
@@ -37,9 +37,10 @@ def test_printed_numbers_from_those_of_the_other_drives():
 def test_the_law_is_the_stated_one():
     """Drives that follow it exactly give it back, with no interval."""
     drives = [
-        Known(D, R, 2e-6 * D**2.5 * 100.0 / R, None, 0.1, 0.05) for D, R in ((14, 50), (20, 100), (25, 80))
+        PrintedFriction(D, R, 2e-6 * D**2.5 * 100.0 / R, None, 0.1, 0.05)
+        for D, R in ((14, 50), (20, 100), (25, 80))
     ]
-    drives += [Known(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
+    drives += [PrintedFriction(D, 100.0, 2e-6 * D**2.5, 1.5e-5 * D**3, 0.1, 0.05) for D in (17.0, 32.0)]
     law = scaled(40.0, 50.0, drives)
     assert law.starting.value == pytest.approx(2.0 * 2e-6 * 40.0**2.5, rel=1e-9)
     assert law.rise.value == pytest.approx(1.5e-5 * 40.0**3 - 2e-6 * 40.0**2.5, rel=1e-9)

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Mapping
 
 from ...catalogue import Item, Printed
 from .quoted_friction import friction
-from .scaling import Known, Scaled, scaled
+from .scaling import PrintedFriction, Scaled, scaled
 
 
-def known(items: Iterable[Item]) -> dict[str, tuple[Known, str]]:
+def known(items: Iterable[Item]) -> dict[str, tuple[PrintedFriction, str]]:
     """{drive: what is printed of its friction, and by whom} of those whose starting torque is printed."""
     found = {}
     for item in items:
@@ -19,11 +19,11 @@ def known(items: Iterable[Item]) -> dict[str, tuple[Known, str]]:
     return found
 
 
-def _known(name: str, ratio: float, printed: Mapping[str, Printed]) -> Known:
+def _known(name: str, ratio: float, printed: Mapping[str, Printed]) -> PrintedFriction:
     """The losses are those that `friction` makes of the columns."""
     losses = friction({"ratio": Printed(ratio, "catalogue", ""), **printed})
     running = printed.get("running_torque")
-    return Known(
+    return PrintedFriction(
         size(name),
         ratio,
         printed["starting_torque"].value,
@@ -40,7 +40,7 @@ def size(name: str) -> float:
     return float(match[1])
 
 
-def with_friction(item: Item, drives: Mapping[str, tuple[Known, str]]) -> Item:
+def with_friction(item: Item, drives: Mapping[str, tuple[PrintedFriction, str]]) -> Item:
     """The drive with estimates of the friction that is not printed of it.
 
     drives : as `known` gives them

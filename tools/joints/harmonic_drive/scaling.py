@@ -30,7 +30,7 @@ POWER = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class PrintedFriction:
     """What is printed of a drive: torques [N.m], losses over the torque transmitted [1]; None: it is not."""
 
     size: float
@@ -51,7 +51,7 @@ class Scaled:
 
 
 @dataclass(frozen=True, slots=True)
-class Friction:
+class ScaledFriction:
     """Of one drive: starting torque and what a speed of 2000 rev/min adds [N.m], losses [1]."""
 
     starting: Scaled
@@ -60,7 +60,7 @@ class Friction:
     load_loss_back: Scaled
 
 
-def scaled(size: float, ratio: float, drives: Collection[Known]) -> Friction:
+def scaled(size: float, ratio: float, drives: Collection[PrintedFriction]) -> ScaledFriction:
     """The friction of a drive of a size and ratio [1] from those that are known, four or more."""
     dry = np.array([(np.log(k.size / SIZE), np.log(k.starting * k.ratio / RATIO)) for k in drives])
     wet = [np.log(k.running / (k.size / SIZE) ** POWER) for k in drives if k.running is not None]
@@ -71,7 +71,7 @@ def scaled(size: float, ratio: float, drives: Collection[Known]) -> Friction:
     part = RATIO / ratio
     starting = Scaled(usual.value * part, usual.low * part, usual.high * part)
     losses = (_mean([getattr(k, name) for k in drives]) for name in ("load_loss", "load_loss_back"))
-    return Friction(starting, Scaled(*rise), *losses)
+    return ScaledFriction(starting, Scaled(*rise), *losses)
 
 
 def _torque(design: Array, logarithms: Array, at: Array, factor: float) -> Scaled:

@@ -42,7 +42,7 @@ LEVEL = 0.95
 
 
 @dataclass(frozen=True, slots=True)
-class Fitted:
+class FittedLog:
     """A fit to samples: the drive, the solution, and what is linear."""
 
     drive: Drive
@@ -125,7 +125,7 @@ def fit(
 
 
 def _link(
-    file: ParameterFile, log: Samples, whole: Fitted, free: Sequence[str] | None
+    file: ParameterFile, log: Samples, whole: FittedLog, free: Sequence[str] | None
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
     """Stiffness and hysteresis of a log with the motor's angle, or why they are not found."""
     own = (*log_link.LINES, LOOP)
@@ -223,7 +223,7 @@ def _straight(samples: Samples, drive: Drive) -> tuple[Linear, Array]:
     return beside, np.linalg.lstsq(whole, samples.torque - beside.known)[0]
 
 
-def _fitted(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float) -> Fitted:
+def _fitted(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor: float) -> FittedLog:
     """The fit of some parameters to samples."""
     ratio = abs(file.values.ratio)
     beside, linear = _straight(samples, file.values)
@@ -245,7 +245,7 @@ def _fitted(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor:
         solution = solve(unknowns(changed, wanted, least), residuals, nuisances=len(beside.names))
         linear = beside.found(rest(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
-    return Fitted(changed.values, solution, linear, rotor)
+    return FittedLog(changed.values, solution, linear, rotor)
 
 
 def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:
@@ -270,7 +270,7 @@ def _intervals(solution: Solution) -> dict[str, tuple[float, float]]:
 
 
 def _facts(
-    file: ParameterFile, samples: Samples, whole: Fitted, wanted: Sequence[str], rotor: float
+    file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str], rotor: float
 ) -> dict[str, tuple[float, str, str]]:
     """Residual, what was found beside, and the held-out part beside a constant."""
     ratio = abs(whole.drive.ratio)
