@@ -66,9 +66,9 @@ def test_the_python_flavour_has_the_same_variables_and_numbers(
 @pytest.mark.parametrize("name", NAMES)
 def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built: Path, name: str) -> None:
     state = CASES[name].numbers.state
-    instance, expected = host(name, "fmi3", built).start(state), law(name, file_of(name).values)
+    instance, expected = host(name, "fmi3", built).start(), law(name, file_of(name).values).after()
     references = {n: v.valueReference for n, v in instance.variables.items()}
-    outputs = list(expected(state))
+    outputs = list(instance.at(state))  # a trial: once accepted, sliders at their limits have two slopes
     for moved, value in state.items():
         column = instance.fmu.getDirectionalDerivative(
             [references[n] for n in outputs], [references[moved]], [1.0], len(outputs)
@@ -80,9 +80,7 @@ def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built
             slope = (ends[1][output] - ends[0][output]) / (2.0 * h)
             size = max(abs(slope), SLOPE * abs(now) / h)
             rough = 1e-3 if output in CASES[name].numbers.jumps else 1e-4
-            if (
-                output in CASES[name].numbers.kinks
-            ):  # before the first step the differences lay the sliders anew
+            if output in CASES[name].numbers.kinks:  # of single sliders
                 rough = 1e-2
             assert found[output] == pytest.approx(slope, abs=rough * size), (output, moved)
 

@@ -72,6 +72,8 @@ def folder(tmp_path_factory, native):
         shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
     field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
     (place / "my_field.csv").write_text(csvfile.text(field))
+    (place / "models/robots").mkdir()
+    shutil.copy(ROOT / "models/robots/six_axis.xml", place / "models/robots")
     speeds = (s * w for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
     rows = "".join(f"{w},{math.copysign(0.5, w) + 0.3 * w}\n" for w in speeds)
     (place / "robot.csv").write_text(f"dq [rad/s],i [A]\n{rows}")
