@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Commands, command, flag, tell
+from jointfmu.commands.common import Commands, command, flag, tell, without_package
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
@@ -134,10 +134,7 @@ def _robots(args: argparse.Namespace) -> int:
     try:
         found = written(args.form, args.what, args.torque)
     except ImportError as error:
-        raise ValueError(
-            f"the package {error.name or error} is missing, needed to measure the file; "
-            "install it with: pip install 'jointfmu[mujoco]'"
-        ) from None
+        raise without_package(error, "measure the file", "mujoco") from None
     write_text(args.out, found.text)
     if args.json:
         print(json.dumps({"written": str(args.out), "format": args.form, **found.facts}))

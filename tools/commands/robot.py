@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu import plots
-from jointfmu.commands.common import Commands, command
+from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files.writing import check_folder, write_text
 
 MOST = 1e4
@@ -51,11 +51,8 @@ def run(args: argparse.Namespace) -> int:
     plots.check(pictures[0])
     try:
         import mujoco  # noqa: F401
-    except ImportError:
-        raise ValueError(
-            "the package mujoco is missing, needed to read robots; "
-            "install it with: pip install 'jointfmu[mujoco]'"
-        ) from None
+    except ImportError as error:
+        raise without_package(error, "read robots", "mujoco") from None
     from ..interface import load
     from ..robots import elastic
     from ..robots import pictures as drawn
@@ -74,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
     drawn.draw_frequencies(pictures[0], axes, grid, found)
     if not angles:
         pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
-    wound, error = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
+    wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     facts = {
         "written": [str(path) for path in (written, *pictures)],
         "payload": args.payload,
@@ -82,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
         "pose": {axis.joint: float(pose[model.joint(axis.joint).qposadr[0]]) for axis in axes},
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
-        "tip_error": error,
+        "tip_error": sunk,
         "notes": [axis.noted for axis in axes if axis.noted],
     }
     print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))

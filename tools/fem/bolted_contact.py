@@ -38,10 +38,8 @@ class BoltedContact:
         bodies, heads = [], []
         for side in sides:
             body = elastic_body(plan, assembly, side, refinement)
-            marked = body.mesh.boundaries
-            count = len(assembly.bolts.positions)
             bodies.append(body)
-            heads.append(np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
+            heads.append(head_loads(body, assembly))
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         return cls(assembly, plan, tuple(bodies), interface, tuple(heads))
 
@@ -63,6 +61,12 @@ def elastic_body(plan: Plan, assembly: Assembly, side: int, refinement: float = 
     """One body of an assembly on a plan."""
     body: Body = assembly.side1 if side == 1 else assembly.side2
     return ElasticBody(body_mesh(plan, assembly, side, refinement), body.E, body.nu, body.density)
+
+
+def head_loads(body: ElasticBody, assembly: Assembly) -> Array:
+    """Load (n, bolts) [N per N] of each bolt along +z on a body of an assembly."""
+    marked, count = body.mesh.boundaries, len(assembly.bolts.positions)
+    return np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from .bolted_contact import elastic_body
+from .bolted_contact import elastic_body, head_loads
 from .contact import Interface, trace
 from .elasticity import ElasticBody
 from .geometry import Assembly
@@ -103,8 +103,7 @@ class WholeJoint:
         for side, body in enumerate((first, second), start=1):
             nodes = np.flatnonzero(ATTACHED[attached](body, side))
             held.append((3 * nodes[:, None] + np.arange(3)).ravel())
-            marked, count = body.mesh.boundaries, len(assembly.bolts.positions)
-            heads.append(np.stack([body.uniform_load(marked[f"head{i + 1}"]) for i in range(count)], axis=1))
+            heads.append(head_loads(body, assembly))
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
         return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]))
 

@@ -38,16 +38,19 @@ def over_poses(
     model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[list[Array], Array]:
     """Angles [rad] of the swept axes, and all frequencies (..., n) [Hz] over their grid; the others stay."""
-    chosen = swept(axes)
-    places = [int(model.joint(axis.joint).qposadr[0]) for axis in chosen]
-    grid = [angles(model, axis) for axis in chosen]
-    mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1)
-    found = np.empty((*mesh.shape[:-1], len(axes)))
-    for index in np.ndindex(mesh.shape[:-1]):
-        turned = pose.copy()
-        turned[places] = mesh[index]
-        found[index] = frequencies(model, axes, turned, payload, tip)
-    return grid, found
+    grid = [angles(model, axis) for axis in swept(axes)]
+    poses = turned(model, axes, pose, grid)
+    found = [frequencies(model, axes, one, payload, tip) for one in poses]
+    return grid, np.reshape(found, (*map(len, grid), len(axes)))
+
+
+def turned(model: Any, axes: Sequence[ElasticAxis], pose: Array, grid: list[Array]) -> Array:
+    """Poses (k, n) of the whole grid of the swept axes, the last one fastest; the other joints stay."""
+    places = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
+    mesh = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid))
+    poses = np.tile(pose, (len(mesh), 1))
+    poses[:, places] = mesh
+    return poses
 
 
 def lowest(
@@ -55,12 +58,9 @@ def lowest(
 ) -> Array:
     """The pose of the grid at which the tip sinks most, to 1 nm, and of such poses the nearest to the given
     one; the other joints stay."""
-    places = [int(model.joint(axis.joint).qposadr[0]) for axis in swept(axes)]
-    poses = []
-    for turned in np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, len(grid)):
-        poses.append(pose.copy())
-        poses[-1][places] = turned
-    poses.sort(key=lambda one: round(float(np.linalg.norm(one - pose)), 9))
+    poses = sorted(
+        turned(model, axes, pose, grid), key=lambda one: round(float(np.linalg.norm(one - pose)), 9)
+    )
     return max(poses, key=lambda one: round(sag(model, axes, one, payload, tip)[1], 9))
 
 

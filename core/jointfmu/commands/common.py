@@ -89,11 +89,11 @@ def written(sub: argparse.ArgumentParser, text: str = "write the parameter file 
     sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
 
 
-def without_package(error: ImportError, purpose: str) -> ValueError:
+def without_package(error: ImportError, purpose: str, extra: str = "build") -> ValueError:
     """The refusal of a command whose package is missing, with the extra that brings it."""
     return ValueError(
         f"the package {error.name or error} is missing, needed to {purpose}; "
-        "install it with: pip install 'jointfmu[build]'"
+        f"install it with: pip install 'jointfmu[{extra}]'"
     )
 
 

@@ -10,6 +10,13 @@ def _plate(given: Given) -> NewJoint:
     return plate.joint(given)
 
 
+ATTACHED = {
+    "faces": "the outer faces",
+    "edge": "the edges at -x (side 1) and +x (side 2)",
+    "heads": "the faces under heads and nuts",
+}
+"""What moves as one with the bodies that the joint connects."""
+
 NEW = Drawing(
     text="a bolted joint of two plates",
     example="--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --material steel --finish ground "
@@ -57,7 +64,7 @@ NEW = Drawing(
             text="what moves with the bodies that the joint connects, for the printed stiffness of the "
             "whole: outer faces, edges (side 1 at -x, side 2 at +x), or what lies under the heads "
             "(default: faces)",
-            choices=("faces", "edge", "heads"),
+            choices=tuple(ATTACHED),
         ),
         Option(name="law", text="of the interface (default: roughness)", choices=("roughness", "zhao2018")),
         *OPTIONS,

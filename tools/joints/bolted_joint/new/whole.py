@@ -5,18 +5,13 @@ from typing import TYPE_CHECKING
 
 from jointfmu.parameters import ParameterFile
 
+from . import ATTACHED
 from .computed import Plates, whole_joint
 
 if TYPE_CHECKING:
     from ....fem.whole_joint import Compliance
 
 Facts = dict[str, tuple[float, str, str]]
-ATTACHED = {
-    "faces": "the outer faces",
-    "edge": "the edges at -x (side 1) and +x (side 2)",
-    "heads": "the faces under heads and nuts",
-}
-"""What moves as one with the bodies that the joint connects."""
 _TURNS = ("rx", "ry", "rz")
 
 
