@@ -87,12 +87,14 @@ class WholeJoint:
     held      : unknowns of each that the attachment moves
     interface : points of the contact
     heads     : for each body, mean displacement (n, bolts) along z of what a bolt presses on
+    bolts     : (bolts, 2) [m] their places
     """
 
     bodies: tuple[ElasticBody, ElasticBody]
     held: tuple[Index, Index]
     interface: Interface
     heads: tuple[Array, Array]
+    bolts: Array
 
     @classmethod
     def of(cls, assembly: Assembly, attached: str, refinement: float = 1.0) -> "WholeJoint":
@@ -105,7 +107,8 @@ class WholeJoint:
             held.append((3 * nodes[:, None] + np.arange(3)).ravel())
             heads.append(head_loads(body, assembly))
         interface = Interface.of(contact_mesh(plan, contact_cells(plan, assembly)))
-        return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]))
+        bolts = assembly.bolts.positions
+        return cls((first, second), (held[0], held[1]), interface, (heads[0], heads[1]), bolts)
 
     def apart(self, axis: int) -> sp.csr_matrix:
         """Displacement (points, n) of side 2 against side 1 along an axis."""
@@ -119,23 +122,21 @@ class WholeJoint:
 
         Raises RuntimeError if a body can move freely.
         """
+        return self.linear(springs, bolt).compliances()
+
+    @property
+    def stretch(self) -> Array:
+        """Of each bolt (n, bolts) by the displacement of both bodies."""
+        return np.concatenate([-self.heads[0], self.heads[1]])
+
+    def linear(self, springs: Array, bolt: float) -> "Linear":
+        """The joint with springs in place of its interface, see `compliances`."""
         bodies = sp.block_diag([body.stiffness for body in self.bodies], format="csr")
         opening = [self.apart(axis) for axis in AXES]
         weights = [sp.diags(self.interface.area * springs[:, axis]) for axis in AXES]
         contact = sum(b.T @ w @ b for b, w in zip(opening, weights, strict=True))
-        stretch = np.concatenate([-self.heads[0], self.heads[1]])
-        shanks = bolt * sp.csr_matrix(stretch) @ sp.csr_matrix(stretch.T)
-        moved, rigid = self._solved(bodies + contact + shanks)
-        forces = moved.T @ ((bodies + contact + shanks) @ moved)
-        shapes = moved @ np.linalg.inv(forces)
-        alone = np.linalg.inv(rigid.T @ (contact @ rigid))
-        result = {}
-        for i, name in enumerate(DIRECTIONS):
-            u = shapes[:, i]
-            inside, members, bolts = (float(u @ (part @ u)) for part in (contact, bodies, shanks))
-            force = bolt * (stretch.T @ u)
-            result[name] = Compliance(inside, members, bolts, float(alone[i, i]), force)
-        return result
+        shanks = bolt * sp.csr_matrix(self.stretch) @ sp.csr_matrix(self.stretch.T)
+        return Linear(self, bodies, contact, shanks, bolt, *self._solved(bodies + contact + shanks))
 
     def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array]:
         """Displacements (n, 6) under unit motions of side 2's attachment, and those of rigid sides."""
@@ -148,3 +149,35 @@ class WholeJoint:
         factor = Cholesky(stiffness[free][:, free])
         moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
         return moved, rigid
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A joint whose interface is springs: stiffness matrices (n, n) [N/m] of bodies, contact and bolts.
+
+    bolt         : [N/m] stiffness of each bolt
+    moved, rigid : (n, 6) displacement under unit motions of side 2's attachment, and without deformation
+    """
+
+    joint: WholeJoint
+    bodies: sp.csr_matrix
+    contact: sp.csr_matrix
+    shanks: sp.csr_matrix
+    bolt: float
+    moved: Array
+    rigid: Array
+
+    def compliances(self) -> dict[str, Compliance]:
+        """In all DIRECTIONS."""
+        forces = self.moved.T @ ((self.bodies + self.contact + self.shanks) @ self.moved)
+        shapes = self.moved @ np.linalg.inv(forces)
+        alone = np.linalg.inv(self.rigid.T @ (self.contact @ self.rigid))
+        result = {}
+        for i, name in enumerate(DIRECTIONS):
+            u = shapes[:, i]
+            inside, members, bolts = (
+                float(u @ (part @ u)) for part in (self.contact, self.bodies, self.shanks)
+            )
+            force = self.bolt * (self.joint.stretch.T @ u)
+            result[name] = Compliance(inside, members, bolts, float(alone[i, i]), force)
+        return result

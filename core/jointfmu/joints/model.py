@@ -117,6 +117,7 @@ class Model:
     evolve   : (spring, inputs, memory) -> outputs and memory after the straight path to the inputs; the
         memory given stays as it is
     loop     : that shows its memory
+    variant  : (model, parameter set) -> the model where a parameter set gives it further outputs
     alias    : the name that a user gave it; "" for its own
     """
 
@@ -139,6 +140,7 @@ class Model:
     rest: Callable[..., Memory] | None = None
     evolve: Callable[..., tuple[Outputs, Memory]] | None = None
     loop: Loop | None = None
+    variant: "Callable[[Model, object], Model] | None" = None
     alias: str = ""
 
     def __post_init__(self) -> None:
@@ -162,13 +164,14 @@ class Model:
         }
 
     def of(self, joint: str, parameters: object) -> "Model":
-        """The model with the parameters of a parameter file, whose interface law may be another.
+        """The model with the parameters and outputs of a parameter file, whose interface law may be another.
 
         Raises ValueError if the file is of another joint than this FMU's.
         """
         if joint != self.joint:
             raise ValueError(f"{self.name}: the parameter file is of a {joint!r}, expected a {self.joint!r}")
-        return replace(self, parameters=type(parameters))
+        own = replace(self, parameters=type(parameters))
+        return self.variant(own, parameters) if self.variant else own
 
     def warnings(self, spring: Spring, values: Values) -> dict[int, str]:
         """Warnings about a state of inputs and outputs outside the tables, by number."""

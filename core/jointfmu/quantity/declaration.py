@@ -51,9 +51,12 @@ def choice(*allowed: str | bool, doc: str) -> Any:
 def group(doc: str, **alternatives: type[Any]) -> Any:
     """Declare a nested group of quantities (`surface`, `side1`, ...).
 
-    alternatives : names and classes of which a parameter set has one, instead of the field's own
+    alternatives : names and classes of which a parameter set has one, instead of the field's own; the first is
+        the default if it has no fields
     """
-    return field(metadata={"group": True, "doc": doc, "alternatives": alternatives})
+    first = next(iter(alternatives.values()), None)
+    default = MISSING if first is None or fields(first) else first
+    return field(metadata={"group": True, "doc": doc, "alternatives": alternatives}, default_factory=default)
 
 
 def label(item: Field[Any]) -> str:

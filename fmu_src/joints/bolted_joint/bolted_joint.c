@@ -1,6 +1,6 @@
 /* Repeats `BoltedJointSpring.evolve` of the package: the sums over nodes and patches; the laws in it are
  * generated. */
-#include "bolted_joint.h"
+#include "whole.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,10 @@ _Static_assert((int)MOMENT == (int)PRELOAD + 1, "the arguments of bolt_pressures
 _Static_assert(SUM_NORMAL_X == SUM_NORMAL + 1 && SUM_NORMAL_Y == SUM_NORMAL + 2, "as Kind.sums");
 _Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGENT_X + 2, "in this order");
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
-_Static_assert((int)N_MEMORY == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
+_Static_assert((int)AT_APART == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
+_Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
+                   (int)N_MEMORY == (int)AT_TANGENT + 3 * MOST_PATCHES,
+               "as the key of Kind");
 
 static inline int n_nodes(void)
 {
@@ -48,7 +51,7 @@ static void lay(Kind *kind, int j, double reference)
 bool kind_tabulate(Joint *joint, Text *why)
 {
     Kind *kind = &joint->kind;
-    double head[4];
+    double head[6];
     kind->tight = false;
     if (!spots_begin(&kind->spots, joint->c, why) || !refined(joint, tabulate, APPROACH_STEPS, why))
         return false;
@@ -57,6 +60,14 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->mu = head[1];
     kind->ratio = head[2];
     kind->area = head[3];
+    kind->bolt = head[4];
+    kind->follows = false;
+    if (data.n_modes > 0 && (!kind->memory || head[5] != 0.0)) {
+        text_add(why, kind->memory ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
+                                   : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
+        return false;
+    }
+    whole_begin(kind);
     energy_tabulate(&kind->energy, &joint->curve);
     for (int i = 0; i < n_nodes(); i++) {
         const double share = data.nodes[i][SHARE], x = data.nodes[i][PLACE_X], y = data.nodes[i][PLACE_Y];
@@ -278,7 +289,8 @@ static inline bool look_up(const Joint *joint, const double *inputs, int first, 
     double approach[BATCH], at[BATCH];
     int segment[BATCH];
     for (int i = 0; i < n; i++) {
-        const double x = joint->kind.start[first + i] - apart_at(data.nodes[first + i], inputs);
+        const double x = joint->kind.start[first + i] -
+                         (apart_at(data.nodes[first + i], inputs) + joint->kind.opened[first + i]);
         approach[i] = x;
         const double inside = x < begin ? begin : (x < end ? x : begin);
         segment[i] = curve_segment(curve, inside);
@@ -311,6 +323,8 @@ static bool sum_nodes(Joint *joint, const double *inputs, Text *why)
             return false;
         for (int i = 0; i < n; i++) {
             const double *weight = kind->weight[first + i], p = batch.p[i];
+            kind->p[first + i] = p;
+            kind->k[first + i] = batch.k[i];
             for (int d = 0; d < 3; d++)
                 force[d] += weight[d] * p;
             for (int d = 0; d < 6; d++)
@@ -339,7 +353,7 @@ static bool press(Joint *joint, const double *inputs, Text *why)
 {
     Kind *kind = &joint->kind;
     const double apart[3] = {inputs[S_REL + 2], inputs[THETA], inputs[THETA + 1]};
-    if (kind->pressed && memcmp(kind->apart, apart, sizeof apart) == 0)
+    if (kind->pressed && data.n_modes == 0 && memcmp(kind->apart, apart, sizeof apart) == 0)
         return true;
     kind->pressed = false;
     if (!sum_nodes(joint, inputs, why))
@@ -380,7 +394,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
     const bool begun = (int)memory[AT_STATE] != UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
-        const double end = kind->patch_start[j] - apart_at(data.patches[j], inputs);
+        const double end = kind->patch_start[j] - (apart_at(data.patches[j], inputs) + kind->patch_opened[j]);
         const double start = begun ? memory[AT_APPROACH + j] : end;
         const double reference = (int)memory[AT_STATE] < ALONG ? start : memory[AT_REFERENCE + j];
         if (kind->moved != RESTING && kind->foundation[j].reference != reference)
@@ -399,8 +413,9 @@ static inline PatchPath path_of(const Joint *joint, int j, const double *inputs,
     const double *patch = data.patches[j];
     const double *force = spread ? joint->kind.spread[j][0] : memory + AT_FORCE + j * 2 * SLIDERS;
     const double turn = inputs[THETA + 2] - memory[AT_RIGID + 2];
-    const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y];
-    const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X];
+    const double *bent = joint->kind.bent[j], *before = joint->kind.bent_before[j];
+    const double u = inputs[S_REL] - memory[AT_RIGID] - turn * patch[PLACE_Y] + (bent[0] - before[0]);
+    const double v = inputs[S_REL + 1] - memory[AT_RIGID + 1] + turn * patch[PLACE_X] + (bent[1] - before[1]);
     return (PatchPath){.force = {force, force + SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
@@ -460,7 +475,8 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     double works = 0.0, energies = 0.0;
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
-        const double u = along_x(data.patches[j], inputs), v = along_y(data.patches[j], inputs), size = sqrt(u * u + v * v);
+        const double u = along_x(data.patches[j], inputs) + joint->kind.bent[j][0];
+        const double v = along_y(data.patches[j], inputs) + joint->kind.bent[j][1], size = sqrt(u * u + v * v);
         const double reach = size * per_reach;
         double y[2];
         if (is_short(at, reach)) {
@@ -482,10 +498,11 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
 }
 
 /* Add the rate of the loop of a patch, whose approach, shift x and y have these rates. */
-static void add_loop_rate(const Joint *joint, const double *patch, const Point *at, const double *inputs,
-                          const double *rates, double *dx)
+static void add_loop_rate(const Joint *joint, int j, const double *inputs, const double *rates, double *dx)
 {
-    const double u = along_x(patch, inputs), v = along_y(patch, inputs), size = sqrt(u * u + v * v);
+    const double *patch = data.patches[j], *bent = joint->kind.bent[j];
+    const Point *at = &joint->kind.to[j];
+    const double u = along_x(patch, inputs) + bent[0], v = along_y(patch, inputs) + bent[1], size = sqrt(u * u + v * v);
     if (size == 0.0)
         return;
     const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio;
@@ -520,7 +537,7 @@ static void add_loop_rate(const Joint *joint, const double *patch, const Point *
 /* How it has moved after the way to inputs, where it is no longer at rest. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    bool straight = (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
+    bool straight = data.n_modes == 0 && (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
                     inputs[THETA + 2] == memory[AT_RIGID + 2];
     for (int j = 0; j < n_patches() && straight; j++)
         straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0;
@@ -602,7 +619,6 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         kind->moved = RESTING;
         find_points(joint, inputs, memory);
     }
-    add_loops(joint, inputs, x);
     for (int j = 0; j < n_patches() && kind->memory; j++) {
         double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
         const Shear shear = kind->moved == RESTING ? shears[j] : slide(joint, j, inputs, memory, moved);
@@ -611,6 +627,7 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         add_traction(x, data.patches[j], shear.traction);
         add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
+        memcpy(kind->tangent[j], shear.tangent, sizeof shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
         after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
         after[AT_APPROACH + j] = kind->to[j].approach;
@@ -649,7 +666,13 @@ static bool as_tightened(const Kind *kind, const double *inputs)
     return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
 }
 
-static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
+bool joint_press(Joint *joint, const double *inputs, Text *why)
+{
+    tighten(joint, inputs);
+    return press(joint, inputs, why);
+}
+
+bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
 {
     Kind *kind = &joint->kind;
     tighten(joint, inputs);
@@ -665,6 +688,23 @@ static bool sum_up(Joint *joint, const double *inputs, const double *memory, dou
         x[SUM_PRESSURE] = kind->sums[0];
     }
     slide_all(joint, inputs, memory, after, x);
+    return true;
+}
+
+static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
+{
+    if (data.n_modes > 0) {
+        tighten(joint, inputs);
+        if (!whole_evaluate(joint, inputs, memory, after, x, why))
+            return false;
+    } else {
+        if (!joint_try(joint, inputs, memory, after, x, why))
+            return false;
+        memset(after + AT_APART, 0, (N_MEMORY - AT_APART) * sizeof *after);
+    }
+    add_loops(joint, inputs, x);
+    if (data.n_modes > 0)
+        whole_sums(joint, inputs, x);
     fill(joint, inputs, x);
     return true;
 }
@@ -677,22 +717,24 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     if (!sum_up(joint, inputs, memory, after, x, why))
         return false;
     outputs(x, joint->c, out);
+    if (data.n_modes > 0)
+        whole_bolts(joint, inputs, out + N_INTERFACE_OUTPUTS);
     return true;
 }
 
 /* Derivatives */
 
 /* Rates of the sums over the nodes; of the patches' come from the sliders with memory. */
-static bool node_rates(const Joint *joint, const double *inputs, const double *seed, const double *bolts, double *dx,
+static bool node_rates(Joint *joint, const double *inputs, const double *seed, const double *bolts, double *dx,
                        Text *why)
 {
-    const Kind *kind = &joint->kind;
+    Kind *kind = &joint->kind;
     double y[5], works[N_LAW_STATE], slopes[N_LAW_STATE], at[2 * N_E], e[N_ELASTIC] = {0.0}, largest = -1.0;
     for (int i = 0; i < n_nodes(); i++) {
         const double *node = data.nodes[i];
-        const double approach = kind->start[i] - apart_at(node, inputs);
+        const double approach = kind->start[i] - (apart_at(node, inputs) + kind->opened[i]);
         const double tightening = tightening_rate(joint, node, bolts, kind->start[i]);
-        const double rate = tightening - apart_at(node, seed);
+        const double rate = tightening - (apart_at(node, seed) + kind->opened_rate[i]);
         double carried[2] = {0.0, 0.0};
         if (tightening != 0.0)
             curve_at(&joint->curve, kind->start[i], 1, carried);
@@ -709,6 +751,8 @@ static bool node_rates(const Joint *joint, const double *inputs, const double *s
             add_shear(dx, node, e, e + 2);
         }
         add_normal(dx, node, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
+        kind->pressing[i] = y[1] * rate - carried[1] * tightening;
+        kind->stiffening[i] = y[2] * rate;
         for (int q = 0; q < N_LAW_STATE; q++)
             dx[SUM_PLASTIC + q] += node[SHARE] * slopes[q] * rate;
         const double force = node[SHARE] * carried[1] * tightening;
@@ -743,37 +787,64 @@ static Shear further_rates(const Joint *joint, int j, const double *after, const
     return mean;
 }
 
-static void patch_rates(const Joint *joint, const double *inputs, const double *memory, const double *after,
-                        const double *seed, const double *bolts, double *dx)
+Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
+                 double rate, const double shift[2])
 {
     const Kind *kind = &joint->kind;
+    const Foundation *f = &kind->foundation[j];
+    const double ends[2] = {after || (int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate};
+    const PatchPath path = path_of(joint, j, inputs, memory);
+    Shear shear;
+    if (kind->moved == RESTING) {
+        const PatchPath here = {.from = path.to, .to = path.to};
+        double before[2];
+        resting_traction(after ? after : memory, j, before);
+        foundation_rest_rates(f, after ? &here : &path, before, ends, shift, &shear);
+    } else if (after) {
+        shear = further_rates(joint, j, after, ends, shift);
+    } else {
+        foundation_rates(f, &path, ends, shift, &shear);
+    }
+    return shear;
+}
+
+static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
+                        const double *seed, const double *bolts, double *dx)
+{
+    Kind *kind = &joint->kind;
     Further sum = {.stick = {0.0}};
     for (int j = 0; j < n_patches(); j++) {
         const double *patch = data.patches[j];
-        const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed);
-        const double shift[2] = {along_x(patch, seed), along_y(patch, seed)}, loop[3] = {rate, shift[0], shift[1]};
-        const double ends[2] = {after || (int)memory[AT_STATE] != UNKNOWN ? 0.0 : rate, rate};
-        add_loop_rate(joint, patch, &kind->to[j], inputs, loop, dx);
+        const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) -
+                            (apart_at(patch, seed) + kind->patch_opened_rate[j]);
+        const double shift[2] = {along_x(patch, seed) + kind->bent_rate[j][0], along_y(patch, seed) + kind->bent_rate[j][1]};
+        const double loop[3] = {rate, shift[0], shift[1]};
+        add_loop_rate(joint, j, inputs, loop, dx);
         if (!kind->memory)
             continue;
-        Shear shear;
-        const PatchPath path = path_of(joint, j, inputs, memory);
-        if (kind->moved == RESTING) {
-            const PatchPath here = {.from = path.to, .to = path.to};
-            double before[2];
-            resting_traction(after ? after : memory, j, before);
-            foundation_rest_rates(&kind->foundation[j], after ? &here : &path, before, ends, shift, &shear);
-        } else if (after) {
-            shear = further_rates(joint, j, after, ends, shift);
-        } else {
-            foundation_rates(&kind->foundation[j], &path, ends, shift, &shear);
-        }
+        const Shear shear = kind->shears[j] = patch_rate(joint, j, inputs, memory, after, rate, shift);
         add_traction(dx, patch, shear.traction);
         add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }
     if (kind->memory)
         tell_further(&sum, kind->along, dx);
+}
+
+/* How the amplitudes of elastic sides follow a seed. */
+static bool amplitude_rates(Joint *joint, const double *inputs, const double *memory, const double *after,
+                            const double *seed, const double *bolts, Text *why)
+{
+    Kind *kind = &joint->kind;
+    double unused[N_X] = {0.0};
+    memset(kind->opened_rate, 0, sizeof kind->opened_rate);
+    memset(kind->patch_opened_rate, 0, sizeof kind->patch_opened_rate);
+    memset(kind->bent_rate, 0, sizeof kind->bent_rate);
+    if (!node_rates(joint, inputs, seed, bolts, unused, why))
+        return false;
+    patch_rates(joint, inputs, memory, after, seed, bolts, unused);
+    whole_rates(joint, inputs, memory, after, seed);
+    return true;
 }
 
 void joint_derivative(Joint *joint, const double *inputs, const double *memory, const double *after,
@@ -786,12 +857,18 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(x, joint->kind.known, sizeof joint->kind.known);
     bolt_pressures(at, joint->c, bolts);
     bolt_pressures_seed(at, joint->c, bolts + 2);
+    if (data.n_modes > 0 && !amplitude_rates(joint, inputs, memory, after, seed, bolts, &ignored))
+        return;
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
         return;
     patch_rates(joint, inputs, memory, after, seed, bolts, dx);
+    if (data.n_modes > 0)
+        whole_sum_rates(joint, inputs, seed, dx);
     memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);
     memcpy(dx + X_RATES + 3, seed + OMEGA, 3 * sizeof *dx);
     outputs_seed(x, joint->c, result);
+    if (data.n_modes > 0)
+        whole_bolt_rates(joint, seed, result + N_INTERFACE_OUTPUTS);
 }

@@ -11,6 +11,9 @@
 /* Arguments of `outputs`. */
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 
+/* Preload, moment, shift along the surface, and the end of the memory. */
+enum { FOLLOW_KEY = 5 + 3 + MODES + 3 * MOST_PATCHES };
+
 typedef struct {
     Spots spots;
     Approach approach;
@@ -33,6 +36,22 @@ typedef struct {
     double traction[MOST_PATCHES][2], along[3]; /* of the patches in it, and what `Further` has there */
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work; /* of the patch at hand */
+
+    /* Elastic sides: what modes move, at points, patches (along x, y and apart) and bolts. */
+    double bolt, opening[MOST_OPENING][MODES], patch[3][MOST_PATCH_X][MODES], stretch[MOST_STRETCH][MODES];
+    /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
+    double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][2];
+    double bent_before[MOST_PATCHES][2];
+    double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][3]; /* pressures, and the tangents of a further motion */
+    bool follows; /* the values below are those of the key */
+    double key[FOLLOW_KEY], follow[6][MODES], whole[6]; /* amplitudes per motion, and the stiffness of the whole */
+    /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
+    double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][2];
+    double pressing[MOST_NODES], stiffening[MOST_NODES];
+    Shear shears[MOST_PATCHES];
+    /* Room: derivatives by all motions, and by amplitudes with its factors; large frames need more on Windows. */
+    double slope[6 + MODES][6 + MODES], factors[MODES][MODES];
+    int pivots[MODES];
 } Kind;
 
 #endif

@@ -1,11 +1,13 @@
 """The bolted joint's points as data: whatever gives the pressure, its C has a field of points."""
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 from jointfmu.joints.bolted_joint import spring
+from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PressureShape
 from jointfmu.mechanics.sliders import offsets
@@ -13,7 +15,7 @@ from jointfmu.quantity import flatten
 
 from ...joint_parts.data import DataPart, DataTable
 
-_SECTIONS = ("pattern.", "plate.", "field.")
+_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
 _ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
 """A field of one point."""
 
@@ -22,7 +24,16 @@ def _stands(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
     spread = dict(zip(BOLT_MEANS, joint.pattern.bolt_means, strict=True))
-    return own | {f"field.{name}": value for name, value in (_ONE | spread).items()}
+    field = {f"field.{name}": value for name, value in (_ONE | spread).items()}
+    return own | field | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
+
+
+def _one_mode(bolts: int) -> Mapping[str, object]:
+    """Bodies of one mode, one patch and so many bolts."""
+    zero, each = (0.0,), (0.0,) * bolts
+    values = {item.name: zero for item in fields(ElasticBodies)} | {"stiffness": (1.0,)}
+    values |= dict.fromkeys(("stretch", "bolt_x", "bolt_y", "lever"), each)
+    return {f"bodies.{name}": value for name, value in values.items()}
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
@@ -31,7 +42,33 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
         "patches": DataTable(_rows(patches), spring.PATCHES),
         "offsets": DataTable(offsets(patches.equal)[:, None], spring.PATCHES),
+        **_bodies(joint),
     }
+
+
+def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
+    """Modes in rows of all of them, as whole numbers: their bytes are mostly zero, and packed small.
+
+    A joint with rigid sides has room for one row.
+    """
+    modes, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), (1, 1, 1, 1)
+    if joint.elastic:
+        places = spring.patches(joint.pattern).position
+        modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
+        most = MODES, spring.POINTS, spring.PATCHES, len(modes.bolts)
+    x, y, z = modes.patch
+    moved = {"opening": modes.opening, "patch_x": x, "patch_y": y, "patch_z": z, "stretch": modes.stretch}
+    room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
+    return {
+        "modes": DataTable(modes.stiffness[:, None], most[0]),
+        "bolts": DataTable(np.column_stack([modes.bolts, modes.lever]), most[3]),
+        **{name: DataTable(_padded(rows), room[name]) for name, rows in moved.items()},
+    }
+
+
+def _padded(rows: Any) -> Any:
+    """Of all MODES, in units of the last digit."""
+    return np.pad(np.round(rows * 10.0**DIGITS), ((0, 0), (0, MODES - rows.shape[1])))
 
 
 def _rows(shape: PressureShape) -> Any:

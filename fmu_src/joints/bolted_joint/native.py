@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import contact, law, outputs, spring
+from jointfmu.joints.bolted_joint import bodies, contact, law, outputs, spring, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 
@@ -17,8 +17,8 @@ def _functions(g: Graph, model: Model) -> None:
         g, joint, ("normal",), lambda s, u: [s.total("plastic_work", u), s.total("elastic_work", u)]
     )
     add_closing(g)
-    head = [joint.memory, joint.mu, law.shear_ratio(joint), joint.A_0]
-    g.add("joint_head", "-> memory, mu, K_T/K_N, A_0", [], head)
+    head = [joint.memory, joint.mu, law.shear_ratio(joint), joint.A_0, joint.bolt_stiffness, joint.damping]
+    g.add("joint_head", "-> memory, mu, K_T/K_N, A_0, stiffness of a bolt, damping", [], head)
     _tightening(g)
     _shear(g)
     sums = dict(zip(outputs.SUMS, symbols("sum", len(outputs.SUMS)), strict=True))
@@ -26,7 +26,7 @@ def _functions(g: Graph, model: Model) -> None:
     p_max = ca.SX.sym("p_max")
     out = outputs.outputs(joint, sums, shift, turn, rates, p_max)
     doc = f"sums ({', '.join(sums)}), s_rel, theta, v_rel, omega, largest pressure -> outputs"
-    y = [out[o.name] for o in model.outputs]
+    y = [out[o.name] for o in model.outputs if o.name in out]  # forces of bolts come from the modes
     g.add_with_seed("outputs", doc, [*sums.values(), *shift, *turn, *rates, p_max], y)
 
 
@@ -129,6 +129,10 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
     counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
+    counts |= {"MODES": bodies.MODES, "NEWTON_STEPS": whole.STEPS, "NEWTON_PARTS": whole.PARTS}
+    counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
+    numbers["MODE_DIGITS"] = 10.0**bodies.DIGITS
+    numbers |= {f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")}
     return Definitions(counts, numbers)
 
 

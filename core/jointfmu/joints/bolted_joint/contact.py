@@ -20,6 +20,17 @@ class Place:
     shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    @classmethod
+    def of(cls, six: Array) -> "Place":
+        """From shift and turn (6)."""
+        x, y, z, about_x, about_y, about_z = map(float, six)
+        return cls((x, y, z), (about_x, about_y, about_z))
+
+    @property
+    def six(self) -> Array:
+        """Shift and turn (6)."""
+        return np.array([*self.shift, *self.turn])
+
     def apart(self, shape: PressureShape) -> Array:
         """How far the sides of the nodes are apart (n) [m]."""
         x, y = shape.position.T

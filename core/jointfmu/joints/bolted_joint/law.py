@@ -13,8 +13,15 @@ from ...mechanics.footprint.bolts import BoltPattern, PressureSource
 from ...mechanics.footprint.plate import BoltedPlate
 from ...mechanics.footprint.shape import MergedShape, NodalField, PressureShape
 from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity
+from .bodies import ElasticBodies, RigidBodies
 
 Array = NDArray[np.float64]
+
+
+ELASTIC_NEEDS = {
+    "memory": "elastic sides go with friction that remembers",
+    "damping": "the dashpots stand between rigid sides",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +38,14 @@ class Bolts:
         True, False, doc="friction with partial slip and memory; without it an elastic joint"
     )
     damping: bool = choice(False, True, doc="the dashpots C_xx, C_yy, C_zz of Zhao 2018 act")
+    sides: str = choice(
+        "rigid",
+        "elastic",
+        doc="rigid: the interface alone; elastic: the whole joint between its attachments, with [bodies]",
+    )
+    bodies: RigidBodies | ElasticBodies = group(
+        "how the members give way between their attachments", rigid=RigidBodies, bodies=ElasticBodies
+    )
     pattern: PressureSource = group(
         "what gives the pressure: the decay around each bolt of a frame, the cones of the bolts of a plate, "
         "or the points of a field",
@@ -42,11 +57,29 @@ class Bolts:
     def __post_init__(self) -> None:
         check(self)
         check_limits(self, self.limits())
+        if self.elastic:
+            self._check_elastic()
 
+    @property
+    def elastic(self) -> bool:
+        """Whether the whole joint is meant, not its interface alone."""
+        return self.sides == "elastic"
+
+    def _check_elastic(self) -> None:
+        if isinstance(self.bodies, RigidBodies):
+            raise ValueError("sides = elastic without [bodies]: expected what `new bolted-joint` writes there")
+        for name, wrong in (("memory", False), ("damping", True)):
+            if getattr(self, name) is wrong:
+                why = ELASTIC_NEEDS[name]
+                raise ValueError(f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower())
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
         why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"
-        return [Limit("row_bolts", Interval.of(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why)]
+        rows = Limit("row_bolts", Interval.of(ge=1.0, le=np.maximum(0.5 * self.n_bolts, 1.0)), why)
+        if not isinstance(self.bodies, ElasticBodies) or not self.elastic:
+            return [rows]
+        seats = float(len(self.bodies.bolt_x))
+        return [Limit("n_bolts", Interval.of(ge=seats, le=seats), "the bolts that [bodies] has"), rows]
 
 
 @dataclass(frozen=True, kw_only=True)

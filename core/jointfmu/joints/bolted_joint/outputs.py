@@ -17,6 +17,7 @@ SUMS = (
     "traction_x", "traction_y", "torsion",
     "tangent_x", "tangent_y", "tangent_z",
     "loss", "loop_work", "loop_energy",
+    "stretch", "stretch_x", "stretch_y",
 )  # fmt: skip
 """Sums over the contact, times shares of the area.
 
@@ -29,7 +30,17 @@ traction_x, _y, torsion    : [Pa] shear traction against the shift, and its mome
 tangent_x, _y, _z          : [Pa/m] derivatives of these in the shift along x, along y and the turn
 loss                       : [J/m2] turned into heat by friction so far
 loop_work, loop_energy     : [J/m2] loss of a cycle at the present amplitude, and elastic energy at its end
+stretch                    : [m] of all bolts by the modes of elastic sides; _x, _y: times x and y
+
+With elastic sides normal_stiffness, normal_about_* and tangent_* are those of the whole joint, less what the
+bolts have between rigid sides.
 """
+STRETCHES = SUMS[-3:]
+
+
+def bolt_force(bolt: int) -> str:
+    """Name of the force of a bolt, counted from 0."""
+    return f"F_bolt[{bolt + 1}]"
 
 
 def outputs(
@@ -55,14 +66,15 @@ def outputs(
     C_t = mindlin.viscous_equivalent(eta_t, joint.mass, rho * K_n)
     viscous = [where(joint.damping, part, 0.0 * part) for part in _viscous(area, sums, C_t, C_n, rates)]
     tension = _tension(bolts, joint.pattern.bolt_means, shift[2], turn)
+    pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
     return {
         "f_x": f_x + viscous[0],
         "f_y": f_y + viscous[1],
-        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2],
-        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3],
-        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4],
+        "f_z": area * (sums["normal"] - sums["tightened"]) + tension[0] + viscous[2] - pulled[0],
+        "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3] - pulled[2],
+        "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4] + pulled[1],
         "m_z": m_z + viscous[5],
         "K_xx": area * sums["tangent_x"],
         "K_yy": area * sums["tangent_y"],

@@ -17,6 +17,7 @@ from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
+from .bodies import MODES, Modes, RigidBodies
 from .contact import (
     Place,
     along,
@@ -28,7 +29,8 @@ from .contact import (
     shear_sums,
 )
 from .law import Bolted, pressures, shear_ratio
-from .outputs import outputs
+from .outputs import STRETCHES, bolt_force, outputs
+from .whole import Whole
 
 Array = NDArray[np.float64]
 
@@ -37,6 +39,8 @@ POINTS = 120
 PATCHES = 22
 """Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
+DIFFERENCE = 1e-7
+"""Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
 UNKNOWN, RESTING, ALONG, FREE = range(4)
 """How friction has moved so far, see `memory_of`."""
 
@@ -52,6 +56,9 @@ def memory_of(patches: int) -> Layout:
     reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
     approach  : (m) [m] of the patches
     force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all
+    apart     : (3) shift along z [m] and turns about x and y [rad]; this and the rest of elastic sides
+    amplitude : (MODES) [m] of the modes
+    tangent   : (m, 3) [Pa/m] of the patches, xx, xy, yy
     """
     one = (patches,)
     return Layout(
@@ -62,6 +69,9 @@ def memory_of(patches: int) -> Layout:
             "reference": one,
             "approach": one,
             "force": (*one, 2, SLIDERS),
+            "apart": (3,),
+            "amplitude": (MODES,),
+            "tangent": (*one, 3),
         }
     )
 
@@ -78,6 +88,59 @@ def patches(pattern: PressureSource) -> PressureShape:
     return friction_patches(pressure_shape(pattern), PATCHES)
 
 
+Memory = Mapping[str, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How the patches came to where they are: state, reference and approach (m) [m] as in `memory_of`.
+
+    stick : (m) [Pa/m] of all sliders
+    """
+
+    state: int
+    reference: Array
+    approach: Array
+    moved: Moved
+    stick: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A joint with amplitudes of its modes.
+
+    derivatives : of the pressure (n) [Pa] over the approach of the points
+    approach    : (m) [m] of the patches
+    way         : of the patches, None without memory
+    """
+
+    derivatives: list[Array]
+    approach: Array
+    way: Way | None
+
+    @property
+    def pressure(self) -> Array:
+        """(n) [Pa]."""
+        return self.derivatives[0]
+
+    @property
+    def stiffness(self) -> Array:
+        """(n) [Pa/m]."""
+        return self.derivatives[1]
+
+    @property
+    def traction(self) -> Array:
+        """(m, 2) [Pa] against the shift."""
+        assert self.way
+        return self.way.moved.traction
+
+    @property
+    def tangent(self) -> Array:
+        """(m, 3) [Pa/m] xx, xy, yy."""
+        assert self.way
+        return self.way.moved.tangent
+
+
 @dataclass(frozen=True)
 class BoltedJointSpring:
     """The exported joint: relative motion of its two sides in, forces and moments out.
@@ -90,27 +153,36 @@ class BoltedJointSpring:
 
     shape   : the points that carry the normal force
     patches : the points that carry the friction
+    modes   : of the bodies between their attachments, none of rigid sides
     """
 
     joint: Bolted
     curve: Curve
     shape: PressureShape
     patches: PressureShape
+    modes: Modes
 
     @classmethod
     def of(cls, joint: Bolted) -> "BoltedJointSpring":
-        """Tabulate a joint, on as few points as its FMU has."""
-        return cls(joint, approach_curve(joint), points(joint.pattern), patches(joint.pattern))
+        """Tabulate a joint, on as few points as its FMU has.
+
+        Raises ValueError for bodies that were computed for another contact.
+        """
+        shape, few = points(joint.pattern), patches(joint.pattern)
+        bodies = joint.bodies if joint.elastic else RigidBodies()
+        modes = Modes.of(bodies, shape.share.size, few.position)
+        return cls(joint, approach_curve(joint), shape, few, modes)
 
     @classmethod
     def of_nodes(cls, joint: Bolted, nodes: PressureShape | None = None) -> "BoltedJointSpring":
-        """On all nodes of its pattern, or on given ones."""
+        """The interface alone, on all nodes of its pattern or on given ones."""
         shape = pressure_shape(joint.pattern) if nodes is None else nodes
-        return cls(joint, approach_curve(joint), shape, shape)
+        return cls(joint, approach_curve(joint), shape, shape, Modes.none(shape.share.size, shape.share.size))
 
     def on(self, nodes: PressureShape) -> "BoltedJointSpring":
-        """The same interface on other nodes."""
-        return replace(self, shape=nodes, patches=nodes)
+        """The same interface alone on other nodes."""
+        count = nodes.share.size
+        return replace(self, shape=nodes, patches=nodes, modes=Modes.none(count, count))
 
     @cached_property
     def _foundations(self) -> Callable[[bytes], Foundation]:
@@ -183,65 +255,92 @@ class BoltedJointSpring:
     def evolve(
         self, preload: float, moment: float, place: Place, rates: tuple[float, ...], memory: Array
     ) -> tuple[dict[str, Number], Array]:
-        """Outputs at a place with rates (v_rel, omega), and the memory after the straight path there."""
+        """Outputs at a place with rates (v_rel, omega), and the memory after the straight path there.
+
+        Raises ValueError if elastic sides find no equilibrium.
+        """
         joint, shape = self.joint, self.shape
-        start, tight, approach = self._tightened(float(preload), float(moment))
-        derivatives = self.curve.derivatives(start - place.apart(shape), 3)
-        approach = approach - place.apart(self.patches)
-        if joint.memory:
-            shear, after = self._friction(approach, place, memory)
+        start, tight, first = self._tightened(float(preload), float(moment))
+        before = self.memory.split(memory)
+
+        trials = _Trials(self, (start, first), place, before, _told(preload, moment, place))
+        amplitude = np.zeros(0)
+        if joint.elastic:
+            begin = before["amplitude"][: len(self.modes.stiffness)]
+            amplitude, at = self.whole.solve(trials, tight, begin, self._followed(trials, begin))
+        else:
+            at = trials.at(place, amplitude)
+        if at.way is not None:
+            shear, after = self._friction(at.way, amplitude, place, before)
             lifted = stiffer = np.zeros_like(tight)
         else:
             limit, rho = joint.mu * tight, shear_ratio(joint)
-            *parts, lifted, stiffer = elastic_shear(limit, rho, derivatives, *place.along(shape).T)
+            *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *place.along(shape).T)
             traction, tangent = np.stack(parts[:2], axis=-1), np.stack(parts[2:], axis=-1)
             shear, after = shear_sums(shape, traction, tangent) | {"loss": 0.0}, memory
-        plastic, elastic = self.works(derivatives[0])
+        plastic, elastic = self.works(at.derivatives[0])
+        size = np.hypot(*(place.along(self.patches) + self._shift(amplitude)).T)
         sums: dict[str, Number] = {
             **over_plane(shape, "tightened", tight),
-            **normal_sums(shape, lifted, stiffer, derivatives),
+            **normal_sums(shape, lifted, stiffer, at.derivatives),
             "plastic": shape.share @ plastic,
             "elastic": shape.share @ elastic,
             **shear,
-            **loop_sums(
-                self.foundation(), self.patches.share, approach, np.hypot(*place.along(self.patches).T)
-            ),
+            **loop_sums(self.foundation(), self.patches.share, at.approach, size),
+            **dict.fromkeys(STRETCHES, 0.0),
         }
-        p_max = np.max(derivatives[0])
-        return outputs(joint, sums, place.shift, place.turn, rates, p_max), after
+        if joint.elastic:
+            sums |= self._whole_sums(at, place, amplitude, sums["loop_energy"])
+        out = outputs(joint, sums, place.shift, place.turn, rates, np.max(at.derivatives[0]))
+        return out | self._bolt_forces(preload, moment, place, amplitude), after
 
-    def _friction(self, approach: Array, place: Place, memory: Array) -> tuple[dict[str, Number], Array]:
-        """Sums of the shear at approaches (m) [m] of the patches, and the memory after the straight path."""
-        patches, area, before = self.patches, self.joint.A_0, self.memory.split(memory)
-        rigid = np.array([*place.shift[:2], place.turn[2]])
-        shift = along(patches, rigid - before["rigid"])
+    @cached_property
+    def whole(self) -> Whole:
+        """The contact with what gives way around it."""
+        joint = self.joint
+        return Whole.of(self.modes, self.shape, self.patches, joint.A_0, joint.bolt_stiffness)
+
+    def _shift(self, amplitude: Array) -> Array:
+        """Shift (m, 2) [m] of the patches by amplitudes (k) [m] of the modes."""
+        return np.stack([self.modes.patch[axis] @ amplitude for axis in range(2)], axis=-1)
+
+    def _way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
+        """How the patches move on a straight path to approaches (m) [m] by shifts (m, 2) [m]."""
         first = approach if before["state"] == UNKNOWN else before["approach"]
         stick = self.foundation().stick(approach)
         moved = self._at_rest(before, first, approach, shift, stick) if before["state"] < ALONG else None
-        state, reference = RESTING, approach
-        if moved is None:
-            state = _moved_on(before, rigid)
-            reference = before["reference"] if before["state"] >= ALONG else first
-            foundation, force = self.foundation(reference), before["force"]
-            if before["state"] < ALONG:
-                force = foundation.spread(force[..., 0], first)
-            moved = foundation.moved(force, first, approach, shift)
+        if moved is not None:
+            return Way(RESTING, approach, approach, moved, stick)
+        state = FREE if self.joint.elastic else _moved_on(before, rigid)
+        reference = before["reference"] if before["state"] >= ALONG else first
+        foundation, force = self.foundation(reference), before["force"]
+        if before["state"] < ALONG:
+            force = foundation.spread(force[..., 0], first)
+        return Way(state, reference, approach, foundation.moved(force, first, approach, shift), stick)
+
+    def _friction(self, way: "Way", amplitude: Array, place: Place, before: Memory) -> tuple[dict[str, Number], Array]:
+        """Sums of the shear, and the memory after a way of the patches."""
+        patches, area, moved = self.patches, self.joint.A_0, way.moved
         loss = float(before["loss"]) + area * float(patches.share @ moved.loss)
+        elastic = self.joint.elastic
         after = self.memory.joined(
             {
-                "state": state,
+                "state": way.state,
                 "loss": loss,
-                "rigid": rigid,
-                "reference": reference,
-                "approach": approach,
+                "rigid": [*place.shift[:2], place.turn[2]],
+                "reference": way.reference,
+                "approach": way.approach,
                 "force": moved.force,
+                "apart": [place.shift[2], *place.turn[:2]] if elastic else 0.0,
+                "amplitude": np.pad(amplitude, (0, MODES - amplitude.size)),
+                "tangent": moved.tangent if elastic else 0.0,
             }
         )
-        further = further_tangent(patches, stick, moved.tangent, moved.traction)
+        further = further_tangent(patches, way.stick, moved.tangent, moved.traction)
         return shear_sums(patches, moved.traction, moved.tangent) | further | {"loss": loss / area}, after
 
     def _at_rest(
-        self, before: Mapping[str, Array], first: Array, approach: Array, shift: Array, stick: Array
+        self, before: Memory, first: Array, approach: Array, shift: Array, stick: Array
     ) -> Moved | None:
         """The patches after a straight path on which all sliders stick; None if one moves more than hardly.
 
@@ -253,6 +352,42 @@ class BoltedJointSpring:
         force = np.zeros_like(before["force"])
         force[..., 0] = traction
         return Moved(force, np.zeros_like(stick), stick[:, None] * np.array([1.0, 0.0, 1.0]))
+
+    def _followed(self, trials: "_Trials", amplitude: Array) -> Array:
+        """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning."""
+        whole, before, there = self.whole, trials.before, trials.place(0.0)
+        points, patches = trials.approaches(there, amplitude)
+        tangent = before["tangent"]
+        if before["state"] == UNKNOWN:
+            tangent = self.foundation().stick(patches)[:, None] * np.array([1.0, 0.0, 1.0])
+        H = whole.slope(self.curve.derivatives(points, 1)[1], tangent)
+        motion = trials.end.six - there.six
+        return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion))
+
+    def _whole_sums(self, at: "Trial", place: Place, amplitude: Array, loop_energy: Number) -> dict[str, Number]:
+        """Sums of elastic sides: stiffnesses are those of the whole without the bolts' own part, see `outputs`."""
+        joint, area, modes = self.joint, self.joint.A_0, self.modes
+        bolts, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
+        K = np.diag(self.whole.condensed(self.whole.slope(at.stiffness, at.tangent)))
+        stretch, whole = modes.stretch @ amplitude, self.whole.stretch(place, amplitude)
+        energy = 0.5 * (modes.stiffness @ amplitude**2 + joint.bolt_stiffness * (whole @ whole))
+        values = [np.sum(stretch), *(stretch @ modes.bolts)]
+        return {
+            **dict(zip(STRETCHES, values, strict=True)),
+            "tangent_x": K[0] / area,
+            "tangent_y": K[1] / area,
+            "normal_stiffness": (K[2] - bolts) / area,
+            "normal_about_x": (K[3] - bolts * y2) / area,
+            "normal_about_y": (K[4] - bolts * x2) / area,
+            "tangent_z": K[5] / area,
+            "loop_energy": loop_energy + energy / area,
+        }
+
+    def _bolt_forces(self, preload: float, moment: float, place: Place, amplitude: Array) -> dict[str, Number]:
+        """Working force [N] of each bolt of elastic sides."""
+        given = preload + moment * self.modes.lever
+        forces = given + self.joint.bolt_stiffness * self.whole.stretch(place, amplitude)
+        return {bolt_force(j): force for j, force in enumerate(forces)}
 
     def works(self, p: Array) -> tuple[Array, Array]:
         """Plastic and elastic work [J] of the whole area at pressures (...) (Zhao 2018, Eqs. 16, 18).
@@ -268,3 +403,63 @@ def _moved_on(before: Mapping[str, Array], rigid: Array) -> int:
     """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
     free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
     return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
+
+
+@dataclass(frozen=True, slots=True)
+class _Trials:
+    """The joint on its way from a memory to a place, see `whole.Trials`.
+
+    starts : approaches [m] of points (n) and patches (m) at tightening
+    """
+
+    spring: BoltedJointSpring
+    starts: tuple[Array, Array]
+    end: Place
+    before: Memory
+    told: str
+
+    def place(self, part: float) -> Place:
+        """Where it is after a part [1] of the way."""
+        if part == 1.0:
+            return self.end
+        before = self.before
+        first = np.array([*before["rigid"][:2], *before["apart"], before["rigid"][2]])
+        return Place.of(first + part * (self.end.six - first))
+
+    def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
+        """Approaches [m] of points (n) and patches (m)."""
+        spring, (points, patches) = self.spring, self.starts
+        return (
+            points - (place.apart(spring.shape) + spring.modes.opening @ amplitude),
+            patches - (place.apart(spring.patches) + spring.modes.patch[2] @ amplitude),
+        )
+
+    def at(self, place: Place, amplitude: Array) -> Trial:
+        """At a place with amplitudes (k) [m]."""
+        points, patches = self.approaches(place, amplitude)
+        way = self._way(place, amplitude, patches, np.zeros(2)) if self.spring.joint.memory else None
+        return Trial(self.spring.curve.derivatives(points, 3), patches, way)
+
+    def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
+        spring, before = self.spring, self.before
+        rigid = np.array([*place.shift[:2], place.turn[2]])
+        bent = spring._shift(amplitude - before["amplitude"][: amplitude.size])
+        shift = along(spring.patches, rigid - before["rigid"]) + bent + further
+        return spring._way(before, approach, shift, rigid)
+
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
+        approach = self.approaches(place, amplitude)[1]
+        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
+
+        def traction(moved: Array) -> Array:
+            return self._way(place, amplitude, approach - moved[2], moved[:2]).moved.traction
+
+        return np.stack([traction(d) - traction(-d) for d in step * np.eye(3)], axis=-1) / (2.0 * step)
+
+
+def _told(preload: float, moment: float, place: Place) -> str:
+    """Inputs that are not zero, as text."""
+    names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+    values = dict(zip(names, (preload, moment, *place.six), strict=True))
+    return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)

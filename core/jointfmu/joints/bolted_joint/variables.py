@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from ...quantity import Number, where
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .contact import Place
-from .law import BoltedJoint
+from .law import Bolted, BoltedJoint
+from .outputs import bolt_force
 from .spring import BoltedJointSpring
 
 LINEAR = 0.5**0.5
@@ -33,6 +35,22 @@ def _evaluate(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
 def _row_moment(joint: Any, preload: Number) -> Number:
     """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
     return preload * joint.row_distance * joint.row_bolts
+
+
+def _whole(model: Model, joint: Bolted) -> Model:
+    """With the forces of the bolts where the sides are elastic; then all outputs follow all motions."""
+    if not joint.elastic:
+        return model
+    meaning = "working force of bolt {}: preload, what the moment adds, and its share of the load"
+    forces = [
+        Variable(bolt_force(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
+    ]
+    inputs = ("preload", "moment", *_PLACE[2:])
+    known = {
+        name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()
+    }
+    dependencies = {**known, "eta_t": (), **{force.name: inputs for force in forces}}
+    return replace(model, outputs=(*model.outputs, *forces), dependencies=dependencies)
 
 
 MODELS = (
@@ -119,6 +137,7 @@ MODELS = (
             "eta_t": (),
             **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _APART),
         },
-        hidden=("pattern", "plate", "field"),
+        hidden=("pattern", "plate", "field", "bodies"),
+        variant=_whole,
     ),
 )

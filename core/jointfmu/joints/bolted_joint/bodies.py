@@ -1,0 +1,121 @@
+"""Bodies that give way: how the members of a bolted joint deform between their attachments, in few modes.
+
+A mode is a displacement field of both bodies with their attachments held, of unit amplitude [m]. What
+tractions and bolt forces change from the tightened state pulls at its amplitude a; the elastic energy of the
+bodies is the sum of stiffness a^2/2.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...quantity import check, series
+
+Array = NDArray[np.float64]
+
+MODES = 24
+"""Most modes of the bodies [1]."""
+DIGITS = 4
+"""Decimals of what modes move [1]: at most 1, and as many as the reduction is worth."""
+BESIDE = 1e-6
+"""Distance [m] by which patches may lie beside those that the modes were computed for."""
+_MOVED = ("opening", "patch_x", "patch_y", "patch_z", "stretch")
+_PLACES = ("x", "y", "bolt_x", "bolt_y", "lever")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigidBodies:
+    """Bodies that do not give way."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ElasticBodies:
+    """Bodies by their modes, computed for the points, patches and bolts of one contact.
+
+    Raises ValueError if the lists do not fit together.
+    """
+
+    stiffness: tuple[float, ...] = series("N/m", "stiffness of each mode", gt=0.0)
+    opening: tuple[float, ...] = series(
+        "1", "how far the points of the contact come apart, of each all modes", ge=-1.0, le=1.0
+    )
+    patch_x: tuple[float, ...] = series(
+        "1", "how far the sides of the patches shift along x, of each all modes", ge=-1.0, le=1.0
+    )
+    patch_y: tuple[float, ...] = series("1", "the same along y", ge=-1.0, le=1.0)
+    patch_z: tuple[float, ...] = series("1", "how far they come apart", ge=-1.0, le=1.0)
+    stretch: tuple[float, ...] = series(
+        "1", "how far the seats of the bolts come apart, of each all modes", ge=-1.0, le=1.0
+    )
+    x: tuple[float, ...] = series("m", "places of the patches along the rows, from the centroid")
+    y: tuple[float, ...] = series("m", "places of the patches across the rows, from the centroid")
+    bolt_x: tuple[float, ...] = series("m", "places of the bolts along the rows, from the centroid")
+    bolt_y: tuple[float, ...] = series("m", "places of the bolts across the rows, from the centroid")
+    lever: tuple[float, ...] = series("1/m", "what a moment adds to the force of each bolt, over the moment")
+
+    def __post_init__(self) -> None:
+        check(self)
+        modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
+        if modes > MODES:
+            raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MODES}")
+        counts = {"y": patches, "bolt_y": bolts, "lever": bolts, "stretch": bolts * modes}
+        counts |= {f"patch_{axis}": patches * modes for axis in "xyz"}
+        counts["opening"] = modes * max(len(self.opening) // modes, 1)
+        for name, count in counts.items():
+            if (given := len(getattr(self, name))) != count:
+                raise ValueError(f"bodies.{name} has {given} numbers, expected {count} with {modes} modes")
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Modes of the bodies at the points of a contact.
+
+    stiffness : (k) [N/m]
+    opening   : (n, k) [1] of the points
+    patch     : (3, m, k) [1] shift of the patches along x and y, and how far they come apart
+    stretch   : (b, k) [1] of the bolts
+    bolts     : (b, 2) [m] their places; lever: (b) [1/m] force over the moment
+    """
+
+    stiffness: Array
+    opening: Array
+    patch: Array
+    stretch: Array
+    bolts: Array
+    lever: Array
+
+    @classmethod
+    def none(cls, points: int, patches: int) -> "Modes":
+        """Of rigid bodies."""
+        zero = np.zeros
+        return cls(zero(0), zero((points, 0)), zero((3, patches, 0)), zero((0, 0)), zero((0, 2)), zero(0))
+
+    @classmethod
+    def of(cls, bodies: RigidBodies | ElasticBodies, points: int, patches: Array) -> "Modes":
+        """Of the bodies of a parameter file, at so many points and patches at (m, 2) [m].
+
+        Raises ValueError if they were computed for others.
+        """
+        if isinstance(bodies, RigidBodies):
+            return cls.none(points, len(patches))
+        each = {name: np.array(getattr(bodies, name)) for name in (*_MOVED, *_PLACES, "stiffness")}
+        count = len(bodies.stiffness)
+        there = np.stack([each["x"], each["y"]], axis=1)
+        if len(each["opening"]) != points * count or there.shape != patches.shape:
+            stated = f"{len(each['opening']) // count} points and {len(there)} patches"
+            raise ValueError(f"[bodies] has {stated}, the contact {points} and {len(patches)}")
+        if (away := float(np.max(np.abs(there - patches)))) > BESIDE:
+            raise ValueError(
+                f"[bodies] lies {away:.3g} m beside the contact: it was computed for another one, expected "
+                f"at most {BESIDE:g} m"
+            )
+        moved = {name: each[name].reshape(-1, count) for name in _MOVED}
+        return cls(
+            each["stiffness"],
+            moved["opening"],
+            np.stack([moved[f"patch_{axis}"] for axis in "xyz"]),
+            moved["stretch"],
+            np.stack([each["bolt_x"], each["bolt_y"]], axis=1),
+            each["lever"],
+        )

@@ -1,0 +1,222 @@
+"""The whole bolted joint: what its bodies give way by, in equilibrium with the interface and the bolts.
+
+The motion of the attachments and the amplitudes of the modes are one set of motions, q and a: points open and
+patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
+
+    r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
+
+at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the symmetric
+part H = G^T W G + S of the slope, W the tangents of points, patches and bolts; the part of H that is left to
+the attachments where a follows is the stiffness of the whole.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...mechanics.footprint.shape import PressureShape
+from .bodies import Modes
+from .contact import Place, along
+
+Array = NDArray[np.float64]
+
+CLOSE = 1e-13
+"""Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""
+CANCELS = 0.02
+"""Forces of points that come apart by rigid motion and modes alike, whose difference is left [1] in CLOSE."""
+ROUGH = 1e7
+"""How much more is enough on the way [1]."""
+STEPS, PARTS = 12, 6
+"""Most steps of Newton's method [1], and most parts of each that are tried."""
+CHORD = 0.05
+"""Part of the residual that a step leaves [1] below which the next one takes the same derivative."""
+LEAST_PART = 1e-4
+"""Least part of a motion that is gone at once [1]."""
+
+
+class Forces(Protocol):
+    """What a trial has at the points and patches."""
+
+    @property
+    def pressure(self) -> Array:
+        """(n) [Pa]."""
+
+    @property
+    def stiffness(self) -> Array:
+        """(n) [Pa/m]."""
+
+    @property
+    def traction(self) -> Array:
+        """(m, 2) [Pa] against the shift."""
+
+    @property
+    def tangent(self) -> Array:
+        """(m, 3) [Pa/m] xx, xy, yy."""
+
+
+T = TypeVar("T", bound=Forces, covariant=True)
+
+
+class Trials(Protocol[T]):
+    """A joint on its way to a place, for amplitudes of its modes."""
+
+    @property
+    def told(self) -> str:
+        """The place, as text."""
+
+    def place(self, part: float) -> Place:
+        """Where it is after a part [1] of the way."""
+
+    def at(self, place: Place, amplitude: Array) -> T:
+        """Forces there at amplitudes (k) [m]."""
+
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A contact between bodies that give way, and its bolts.
+
+    points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (2, m, 3) shift by s_x, s_y, theta_z
+    seats   : (b, 3) stretch by s_z, theta_x, theta_y
+    weight  : (n) [m2] area of the points, `patch` (m) of the patches
+    bolt    : [N/m] stiffness of each bolt
+    """
+
+    modes: Modes
+    points: Array
+    patches: Array
+    seats: Array
+    weight: Array
+    patch: Array
+    bolt: float
+
+    @classmethod
+    def of(cls, modes: Modes, shape: PressureShape, patches: PressureShape, area: float, bolt: float) -> "Whole":
+        """Of points and patches of a nominal area [m2]."""
+        turns = np.eye(3)
+        return cls(
+            modes,
+            _apart(shape.position),
+            np.stack([along(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
+            _apart(modes.bolts),
+            area * shape.share,
+            area * patches.share,
+            bolt,
+        )
+
+    def stretch(self, place: Place, amplitude: Array) -> Array:
+        """Of the bolts (b) [m]."""
+        return np.asarray(self.seats @ _normal(place) + self.modes.stretch @ amplitude)
+
+    def residual(self, at: Forces, tight: Array, place: Place, amplitude: Array) -> tuple[Array, float]:
+        """r (k) [N] of amplitudes (k) [m], and what of it is round-off [N]; tight (n) [Pa] at tightening."""
+        modes = self.modes
+        rigid, own = self.seats @ _normal(place), modes.stretch @ amplitude
+        bolts = self.bolt * (rigid + own)
+        r = modes.stiffness * amplitude + modes.stretch.T @ bolts
+        r = r - modes.opening.T @ (self.weight * (at.pressure - tight))
+        for axis in range(2):
+            r = r + modes.patch[axis].T @ (self.patch * at.traction[:, axis])
+        sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
+        apart = np.max(np.abs(self.points @ _normal(place)))
+        forces = sum(np.sum(size) for size in sizes) + (self.weight @ at.stiffness) * apart * CANCELS
+        return r, float(CLOSE * forces)
+
+    def slope(self, stiffness: Array, tangent: Array) -> Array:
+        """H (6 + k, 6 + k) [N/m] over s_x, s_y, s_z, theta_x, theta_y, theta_z and the amplitudes.
+
+        stiffness (n) [Pa/m] of the points, tangent (m, 3) [Pa/m] of the patches.
+        """
+        modes, normal, shear = self.modes, slice(2, 5), (0, 1, 5)
+        size = 6 + len(modes.stiffness)
+        H = np.zeros((size, size))
+
+        def motions(rigid: Array, columns: "slice | tuple[int, ...]", own: Array) -> Array:
+            G = np.zeros((len(rigid), size))
+            G[:, columns], G[:, 6:] = rigid, own
+            return G
+
+        points = motions(self.points, normal, modes.opening)
+        seats = motions(self.seats, normal, modes.stretch)
+        u, v = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(2))
+        xx, xy, yy = (self.patch * tangent.T)[:, :, None]
+        H += points.T @ ((self.weight * stiffness)[:, None] * points) + self.bolt * seats.T @ seats
+        H += u.T @ (xx * u + xy * v) + v.T @ (xy * u + yy * v)
+        H[6:, 6:] += np.diag(modes.stiffness)
+        return H
+
+    def condensed(self, H: Array) -> Array:
+        """Stiffness (6, 6) of the whole, where the amplitudes follow."""
+        return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
+
+    def jacobian(self, stiffness: Array, slopes: Array) -> Array:
+        """dr/da (k, k) [N/m]: stiffness (n) [Pa/m] of the points, slopes (m, 2, 3) [Pa/m] of the patches'
+        traction x, y over their shift x, y and over how far they come apart."""
+        modes = self.modes
+        pressed, pulled = (self.weight * stiffness)[:, None] * modes.opening, self.bolt * modes.stretch
+        J = np.diag(modes.stiffness) + modes.opening.T @ pressed + modes.stretch.T @ pulled
+        traction = np.einsum("jxc,cjk->xjk", slopes, modes.patch)
+        for axis in range(2):
+            J = J + modes.patch[axis].T @ (self.patch[:, None] * traction[axis])
+        return np.asarray(J)
+
+    def solve(self, trials: "Trials[T]", tight: Array, start: Array, first: Array) -> tuple[Array, T]:
+        """Amplitudes (k) [m] in equilibrium at the end of a motion, and the trial there.
+
+        start, first : amplitudes (k) [m] at its beginning, and at its end in the tangent of the beginning
+
+        Where Newton's method does not come to the end at once, it goes there part by part.
+
+        Raises ValueError if there is no equilibrium, with the residual and the place.
+        """
+        done, step, amplitude, rate = 0.0, 1.0, start, first - start
+        while True:
+            part = min(done + step, 1.0)
+            found = self._newton(trials, part, tight, amplitude + (part - done) * rate)
+            if found is None:
+                step *= 0.5
+                if step < LEAST_PART:
+                    raise ValueError(f"{trials.told}: the sides find no equilibrium beyond {done:.3g} of the way")
+                continue
+            if part == 1.0:
+                return found
+            rate = (found[0] - amplitude) / (part - done)
+            amplitude, done, step = found[0], part, 2.0 * step
+
+    def _newton(self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array) -> tuple[Array, T] | None:
+        """Equilibrium at a part [1] of the motion, from amplitudes (k) [m]; None if it is not found."""
+        place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
+        at = trials.at(place, amplitude)
+        r, least = self.residual(at, tight, place, amplitude)
+        before, J = 0.0, np.eye(r.size)
+        for _ in range(STEPS):
+            left = float(np.max(np.abs(r)))
+            if left <= close * least:
+                return amplitude, at
+            if not left < CHORD * before:
+                J = self.jacobian(at.stiffness, trials.slopes(place, amplitude))
+            step, before = -np.linalg.solve(J, r), left
+            size, falls, begin = 1.0, float(r @ step), amplitude
+            for _ in range(PARTS):
+                amplitude = begin + size * step
+                at = trials.at(place, amplitude)
+                r, least = self.residual(at, tight, place, amplitude)
+                rises = float(r @ step)
+                if not rises > 0.5 * abs(falls):
+                    break
+                size *= max(falls / (falls - rises), 0.1)
+        return None
+
+
+def _apart(position: Array) -> Array:
+    """How far places (n, 2) [m] come apart by s_z, theta_x, theta_y: (n, 3)."""
+    x, y = position.T
+    return np.stack([np.ones_like(x), y, -x], axis=-1)
+
+
+def _normal(place: Place) -> Array:
+    return np.array([place.shift[2], *place.turn[:2]])

@@ -1,0 +1,29 @@
+/* Repeats `Whole` of the package: bodies that give way, in equilibrium with the interface and the bolts. */
+#ifndef JOINTFMU_WHOLE_H
+#define JOINTFMU_WHOLE_H
+
+#include "bolted_joint.h"
+#include "joint.h"
+
+/* The modes as numbers, once for a parameter set. */
+void whole_begin(Kind *kind);
+/* What amplitudes (n_modes) move: openings of points and patches, shifts of the patches. */
+void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2]);
+/* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
+bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
+/* Sums that elastic sides change, and the forces of the bolts. */
+void whole_sums(Joint *joint, const double *inputs, double *x);
+void whole_bolts(const Joint *joint, const double *inputs, double *out);
+/* Rates of the amplitudes along a seed, given those of pressures and tractions while they stay. */
+void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed);
+/* Rates of what `whole_sums` and `whole_bolts` give. */
+void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx);
+void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
+
+/* In bolted_joint.c: the joint at given amplitudes, and the derivative of a patch's traction. */
+bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
+bool joint_press(Joint *joint, const double *inputs, Text *why);
+Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
+                 double rate, const double shift[2]);
+
+#endif

@@ -1,0 +1,289 @@
+"""Both bodies of a joint between their attachments, reduced to the modes that its friction and its opening need.
+
+The contact is cut into the cells of the joint's points. Loads on cells and bolts move the bodies by finite
+elements; with the interface's law at each cell, the first way into slip and into opening, along and about all
+axes, gives states of the whole joint. The modes are the deformations that these need most, by their energy
+(proper orthogonal decomposition).
+
+What a mode does at a point of the joint is its mean over the point's cell, by the stiffness there. Few points
+miss what it does inside the cells; their means are changed in common, so that the tightened interface is as
+stiff against all modes as that of the finite elements.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
+from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+
+from .sparse import Cholesky
+from .whole_joint import AXES, Linear, WholeJoint
+
+Array = NDArray[np.float64]
+
+LEAST = 1e-3
+"""Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
+SHEARED = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
+"""Motions along the surface, over that at which the linear joint would carry all friction [1]."""
+OPENED = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
+"""Motions apart, over that at which the linear joint would lose its clamping force [1]."""
+MIXED = 12
+"""Motions along and about all axes at once [1]."""
+STEPS, CLOSE = 40, 1e-9
+"""Of Newton's method [1], and its residual over the largest motion [1]."""
+GAIN = 10.0
+"""Most by which what a mode does at the points is changed [1]."""
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Loads on the cells of a contact and on the bolts, and how the bodies give way under them.
+
+    joint  : by finite elements
+    spring : the joint that is reduced, its points are the middles of the cells
+    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
+    loads  : (3 n + b, unknowns) means over cells along z, x and y, and the stretch of the bolts
+    moved  : (unknowns, 3 n + b) [m/N] displacement under unit loads
+    """
+
+    joint: WholeJoint
+    spring: BoltedJointSpring
+    normal: Array
+    loads: sp.csr_matrix
+    moved: Array
+
+    @classmethod
+    def of(cls, joint: WholeJoint, spring: BoltedJointSpring, normal: Array) -> "Cells":
+        """Raises RuntimeError if a body can move freely."""
+        means = cell_means(joint, spring.shape.position, normal)
+        stretch = sp.csr_matrix(np.concatenate([-joint.heads[0], joint.heads[1]]).T)
+        loads = sp.vstack([*(means @ joint.apart(axis) for axis in (2, 0, 1)), stretch]).tocsr()
+        moved, first = np.zeros(loads.shape[::-1]), 0
+        for body, held in zip(joint.bodies, joint.held, strict=True):
+            free = np.setdiff1d(np.arange(body.size), held)
+            factor = Cholesky(body.stiffness[free][:, free])
+            moved[first + free] = factor.solve(loads[:, first + free].toarray().T)
+            first += body.size
+        return cls(joint, spring, normal, loads, moved)
+
+
+def cell_means(joint: WholeJoint, places: Array, normal: Array) -> sp.csr_matrix:
+    """Means (n, q) over the cells of places (n, 2) [m], by the stiffness of the interface (q)."""
+    at = joint.interface
+    position = at.position - at.area @ at.position / at.area.sum()
+    cell = cKDTree(places).query(position)[1]
+    weight = at.area * np.maximum(normal, 1e-6 * normal.max())
+    sums = sp.csr_matrix((weight, (cell, np.arange(cell.size))), shape=(len(places), cell.size))
+    total = np.asarray(sums.sum(axis=1)).ravel()
+    for alone in np.flatnonzero(total == 0.0):
+        sums[alone, cKDTree(position).query(places[alone])[1]] = 1.0
+    total = np.asarray(sums.sum(axis=1)).ravel()
+    return (sp.diags(1.0 / total) @ sums).tocsr()
+
+
+@dataclass(frozen=True)
+class States:
+    """The whole joint on its cells, from rest: forces (3 n + b) [N] under motions of side 2.
+
+    compliance : (3 n + b, 3 n + b) [m/N]
+    rigid      : (3 n + b, 6) motion of the cells and bolts without deformation
+    start      : (n) [m] approaches at tightening, preload [N] of each bolt
+    """
+
+    spring: BoltedJointSpring
+    compliance: Array
+    rigid: Array
+    start: Array
+    preload: float
+
+    @classmethod
+    def of(cls, cells: Cells, bolts: Array, preload: float) -> "States":
+        """Of the tightened joint, with bolts at (b, 2) [m]."""
+        spring, compliance = cells.spring, np.asarray(cells.loads @ cells.moved)
+        x, y = spring.shape.position.T
+        n, b = x.size, len(bolts)
+        rigid = np.zeros((3 * n + b, 6))
+        rigid[:n, 2:5] = np.stack([np.ones(n), y, -x], axis=1)
+        rigid[n : 2 * n, [0, 5]] = np.stack([np.ones(n), -y], axis=1)
+        rigid[2 * n : 3 * n, [1, 5]] = np.stack([np.ones(n), x], axis=1)
+        rigid[3 * n :, 2:5] = np.stack([np.ones(b), bolts[:, 1], -bolts[:, 0]], axis=1)
+        start = spring.tightened(preload, 0.0)
+        return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
+
+    def law(self, g: Array) -> tuple[Array, Array]:
+        """Forces (3 n + b) [N] at motions (3 n + b) [m] of cells and bolts, and their slope."""
+        spring, n = self.spring, self.start.size
+        joint, area = spring.joint, spring.joint.A_0 * spring.shape.share
+        foundation = spring.foundation()
+        ratio, reach = foundation.ratio, foundation.friction / foundation.ratio
+        now = self.start - g[:n]
+        p, k = spring.curve.derivatives(now, 1)
+        tight = spring.curve.derivatives(self.start, 0)[0]
+        u, v = g[n : 2 * n], g[2 * n : 3 * n]
+        size = np.maximum(np.hypot(u, v), 1e-30)
+        secant = foundation.backbone(now, size) / size
+        tangent = ratio * spring.curve.derivatives(now - size / reach, 1)[1]
+        secant = np.where(size < 1e-6 * np.max(np.abs(self.start)), ratio * k, secant)
+        bent = (tangent - secant) / size**2
+        bolt = np.full(g.size - 3 * n, joint.bolt_stiffness)
+        force = np.concatenate([-area * (p - tight), area * secant * u, area * secant * v, bolt * g[3 * n :]])
+        own = [area * k, area * (secant + bent * u * u), area * (secant + bent * v * v), bolt]
+        slope, cross = np.diag(np.concatenate(own)), area * bent * u * v
+        cells = np.arange(n)
+        slope[n + cells, 2 * n + cells] = slope[2 * n + cells, n + cells] = cross
+        return force, slope
+
+    def stiffness(self) -> Array:
+        """(6, 6) of the tightened joint."""
+        slope = self.law(np.zeros(len(self.rigid)))[1]
+        one = np.eye(len(slope))
+        return np.asarray(self.rigid.T @ np.linalg.solve(one + slope @ self.compliance, slope @ self.rigid))
+
+    def forces(self, motion: Array) -> Array:
+        """Forces (3 n + b) [N] at a motion (6) of side 2's attachment; as far as Newton's method comes."""
+        given = self.rigid @ motion
+        g = np.zeros_like(given)
+        force, slope = self.law(g)
+        left = g + self.compliance @ force - given
+        for _ in range(STEPS):
+            step = -np.linalg.solve(np.eye(g.size) + self.compliance @ slope, left)
+            for half in range(5):
+                there = g + 0.5**half * step
+                force, slope = self.law(there)
+                rest = there + self.compliance @ force - given
+                if np.linalg.norm(rest) < np.linalg.norm(left):
+                    break
+            g, left = there, rest
+            if np.max(np.abs(left)) < CLOSE * np.max(np.abs(given)):
+                break
+        return force
+
+    def motions(self) -> Iterator[Array]:
+        """Motions (6) of side 2 into slip and opening along and about all axes, and of all at once."""
+        joint, K = self.spring.joint, np.diag(self.stiffness())
+        radius = np.sqrt(self.spring.shape.share @ np.sum(self.spring.shape.position**2, axis=1))
+        clamping = joint.n_bolts * self.preload
+        load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
+        unit = load / K
+        for axis in range(6):
+            for part in OPENED if axis in (2, 3, 4) else SHEARED:
+                yield part * unit * (np.arange(6) == axis)
+        for number in range(MIXED):
+            yield (2.0 * ((0.5 + (number + 1.0) * SPREAD) % 1.0) - 1.0) * unit
+
+
+SPREAD = 0.8566748838545029 ** np.arange(1.0, 7.0)
+"""An even sequence in six dimensions: powers of the inverse root of x^7 = x + 1."""
+
+
+def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
+    """The bodies' modes at the points, patches and bolts of a joint tightened with a preload [N] of each bolt.
+
+    linear : by finite elements
+    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
+
+    Raises RuntimeError if a body can move freely.
+    """
+    joint = linear.joint
+    cells = Cells.of(joint, spring, normal)
+    at = joint.interface
+    bolts = joint.bolts - at.area @ at.position / at.area.sum()
+    states = States.of(cells, bolts, preload)
+    forces = np.stack([states.forces(motion) for motion in states.motions()], axis=1)
+    fields = _modes(linear, cells.moved @ forces)
+    stretch = cells.loads[3 * states.start.size :] @ fields
+    patches = spring.patches
+    tight = spring.curve.derivatives(states.start, 1)[1]
+    few = spring.curve.inverse(pressures(spring.joint, patches, preload, 0.0))
+    ratio = spring.foundation().ratio
+    shear = ratio * spring.curve.derivatives(few, 1)[1]
+    x, y = patches.position.T
+    traces = [joint.apart(axis) @ fields for axis in AXES]
+    area, weight = at.area * normal, spring.joint.A_0
+    opening = _matched(
+        cell_means(joint, spring.shape.position, normal) @ traces[2],
+        _planes(spring.shape.position),
+        weight * spring.shape.share * tight,
+        _planes(at.position - at.area @ at.position / at.area.sum()),
+        traces[2],
+        area,
+    )
+    means = cell_means(joint, patches.position, normal)
+    place = at.position - at.area @ at.position / at.area.sum()
+    both = _matched(
+        np.concatenate([means @ traces[0], means @ traces[1]]),
+        _turns(patches.position),
+        np.tile(weight * patches.share * shear, 2),
+        _turns(place),
+        np.concatenate(traces[:2]),
+        np.tile(ratio * area, 2),
+    )
+    moved = {"opening": opening, "patch_z": means @ traces[2], "stretch": stretch}
+    moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
+    most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
+    rounded = {name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()}
+    away = bolts[:, 1] - bolts[:, 1].mean()
+    spread = float(away @ away)
+    lever = away / spread if spread > 0.0 else 0.0 * away
+    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1], "lever": lever}
+    return ElasticBodies(
+        stiffness=_listed(1.0 / most**2), **rounded, **{name: _listed(each) for name, each in places.items()}
+    )
+
+
+def _listed(values: Array) -> tuple[float, ...]:
+    return tuple((values + 0.0).tolist())
+
+
+def _modes(linear: Linear, states: Array) -> Array:
+    """Displacements (n, k) of unit energy norm: those of the linear joint, and what states (n, s) need most."""
+    first = _unit(linear.moved - linear.rigid, linear)
+    for _ in range(2):  # twice is enough
+        states = states - first @ (first.T @ (linear.bodies @ states))
+        states = states / np.sqrt(np.sum(states * (linear.bodies @ states), axis=0))
+    return np.concatenate([first, _unit(states, linear)[:, : MODES - first.shape[1]]], axis=1)
+
+
+def _unit(fields: Array, linear: Linear) -> Array:
+    """Displacements (n, k) of unit energy norm that span fields (n, s), those that they need most first."""
+    fields = fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0))
+    energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
+    energy, vectors = energy[::-1], vectors[:, ::-1]
+    count = int(np.sum(energy > LEAST**2 * energy[0]))
+    return np.asarray(fields @ (vectors[:, :count] / np.sqrt(energy[:count])))
+
+
+def _planes(place: Array) -> Array:
+    """Openings (n, 3) of places (n, 2) under motions without deformation."""
+    x, y = place.T
+    return np.stack([np.ones_like(x), y, -x], axis=1)
+
+
+def _turns(place: Array) -> Array:
+    """Shifts (2 n, 3) of places (n, 2) along x, then along y."""
+    x, y = place.T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
+
+
+def _matched(means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array) -> Array:
+    """Means (n, k) of modes, changed in common so that springs of weight (n) [N/m] are as stiff as all springs.
+
+    rigid     : (n, 3) motion of the points without deformation; all_rigid (q, 3) of all springs
+    trace     : (q, k) motion of all springs by the modes, which have a stiffness (q) [N/m]
+    """
+    along = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
+    given = np.linalg.solve(all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace))
+    rest, bent = means - rigid @ along, trace - all_rigid @ given
+    target = bent.T @ (springs[:, None] * bent)
+    target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
+    has, vectors = la.eigh(rest.T @ (weight[:, None] * rest), target)
+    gain = np.minimum(1.0 / np.sqrt(np.maximum(has, GAIN**-2)), GAIN)
+    return np.asarray(rigid @ given + rest @ (vectors * gain) @ vectors.T @ target)
