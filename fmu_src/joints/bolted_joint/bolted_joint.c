@@ -62,7 +62,7 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->area = head[3];
     kind->bolt = head[4];
     kind->follows = false;
-    if (data.n_modes > 0 && (!kind->memory || head[5] != 0.0)) {
+    if (ELASTIC && (!kind->memory || head[5] != 0.0)) {
         text_add(why, kind->memory ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
                                    : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
         return false;
@@ -353,7 +353,7 @@ static bool press(Joint *joint, const double *inputs, Text *why)
 {
     Kind *kind = &joint->kind;
     const double apart[3] = {inputs[S_REL + 2], inputs[THETA], inputs[THETA + 1]};
-    if (kind->pressed && data.n_modes == 0 && memcmp(kind->apart, apart, sizeof apart) == 0)
+    if (kind->pressed && !ELASTIC && memcmp(kind->apart, apart, sizeof apart) == 0)
         return true;
     kind->pressed = false;
     if (!sum_nodes(joint, inputs, why))
@@ -537,7 +537,7 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
 /* How it has moved after the way to inputs, where it is no longer at rest. */
 static int moved_on(const double *inputs, const double *memory)
 {
-    bool straight = data.n_modes == 0 && (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
+    bool straight = !ELASTIC && (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
                     inputs[THETA + 2] == memory[AT_RIGID + 2];
     for (int j = 0; j < n_patches() && straight; j++)
         straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0;
@@ -693,7 +693,7 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 
 static bool sum_up(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
 {
-    if (data.n_modes > 0) {
+    if (ELASTIC) {
         tighten(joint, inputs);
         if (!whole_evaluate(joint, inputs, memory, after, x, why))
             return false;
@@ -703,7 +703,7 @@ static bool sum_up(Joint *joint, const double *inputs, const double *memory, dou
         memset(after + AT_APART, 0, (N_MEMORY - AT_APART) * sizeof *after);
     }
     add_loops(joint, inputs, x);
-    if (data.n_modes > 0)
+    if (ELASTIC)
         whole_sums(joint, inputs, x);
     fill(joint, inputs, x);
     return true;
@@ -717,7 +717,7 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     if (!sum_up(joint, inputs, memory, after, x, why))
         return false;
     outputs(x, joint->c, out);
-    if (data.n_modes > 0)
+    if (ELASTIC)
         whole_bolts(joint, inputs, out + N_INTERFACE_OUTPUTS);
     return true;
 }
@@ -857,18 +857,18 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(x, joint->kind.known, sizeof joint->kind.known);
     bolt_pressures(at, joint->c, bolts);
     bolt_pressures_seed(at, joint->c, bolts + 2);
-    if (data.n_modes > 0 && !amplitude_rates(joint, inputs, memory, after, seed, bolts, &ignored))
+    if (ELASTIC && !amplitude_rates(joint, inputs, memory, after, seed, bolts, &ignored))
         return;
     if (!node_rates(joint, inputs, seed, bolts, dx, &ignored))
         return;
     patch_rates(joint, inputs, memory, after, seed, bolts, dx);
-    if (data.n_modes > 0)
+    if (ELASTIC)
         whole_sum_rates(joint, inputs, seed, dx);
     memcpy(dx + X_S_REL, seed + S_REL, 3 * sizeof *dx);
     memcpy(dx + X_THETA, seed + THETA, 3 * sizeof *dx);
     memcpy(dx + X_RATES, seed + V_REL, 3 * sizeof *dx);
     memcpy(dx + X_RATES + 3, seed + OMEGA, 3 * sizeof *dx);
     outputs_seed(x, joint->c, result);
-    if (data.n_modes > 0)
+    if (ELASTIC)
         whole_bolt_rates(joint, seed, result + N_INTERFACE_OUTPUTS);
 }

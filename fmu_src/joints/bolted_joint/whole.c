@@ -18,8 +18,12 @@ static inline int n_modes(void)
     return (int)data.n_modes;
 }
 
+/* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
+
 void whole_begin(Kind *kind)
 {
+    if (!ELASTIC)
+        return;
     for (int i = 0; i < (int)data.n_opening; i++)
         for (int k = 0; k < n_modes(); k++)
             kind->opening[i][k] = data.opening[i][k] / MODE_DIGITS;
@@ -50,6 +54,8 @@ static inline void add_scaled(double by, const double *row, double *sum)
 
 void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2])
 {
+    if (!ELASTIC)
+        return;
     for (int i = 0; i < (int)data.n_opening && opened; i++)
         opened[i] = dot(kind->opening[i], amplitude);
     for (int j = 0; j < (int)data.n_patch_x; j++) {
@@ -375,6 +381,8 @@ static void tell(const double *inputs, double done, Text *why)
 
 bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
 {
+    if (!ELASTIC)
+        return false;
     Kind *kind = &joint->kind;
     const Way way = {inputs, memory, after, x};
     double done = 0.0, step = 1.0, amplitude[MODES], rate[MODES], trial[MODES];
@@ -445,6 +453,8 @@ static void tell_stretch(const Kind *kind, const double *amplitude, double *x)
 
 void whole_sums(Joint *joint, const double *inputs, double *x)
 {
+    if (!ELASTIC)
+        return;
     const Kind *kind = &joint->kind;
     double energy = 0.0;
     tell_whole(kind, kind->whole, kind->bolt, x);
@@ -460,6 +470,8 @@ void whole_sums(Joint *joint, const double *inputs, double *x)
 
 void whole_bolts(const Joint *joint, const double *inputs, double *out)
 {
+    if (!ELASTIC)
+        return;
     const Kind *kind = &joint->kind;
     for (int b = 0; b < (int)data.n_bolts; b++)
         out[b] = inputs[INPUT_PRELOAD] + inputs[INPUT_MOMENT] * data.bolts[b][2] +
@@ -468,6 +480,8 @@ void whole_bolts(const Joint *joint, const double *inputs, double *out)
 
 void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed)
 {
+    if (!ELASTIC)
+        return;
     Kind *kind = &joint->kind;
     double r[MODES] = {0.0};
     for (int i = 0; i < (int)data.n_nodes; i++)
@@ -485,6 +499,8 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
 
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx)
 {
+    if (!ELASTIC)
+        return;
     const Kind *kind = &joint->kind;
     double rates[MOTIONS], energy = 0.0;
     for (int d = 0; d < MOTIONS; d++) { /* the motion with what follows is stationary: only tangents change it */
@@ -516,6 +532,8 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
 
 void whole_bolt_rates(const Joint *joint, const double *seed, double *result)
 {
+    if (!ELASTIC)
+        return;
     const Kind *kind = &joint->kind;
     for (int b = 0; b < (int)data.n_bolts; b++)
         result[b] = seed[INPUT_PRELOAD] + seed[INPUT_MOMENT] * data.bolts[b][2] +

@@ -1,7 +1,7 @@
 """Bolted joint: its parameters and the pressure under its bolts (Zhao 2018, section 3)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 import numpy as np
@@ -102,6 +102,11 @@ class RoughBoltedJoint(Bolts, Roughness):
 
 Bolted: TypeAlias = BoltedJoint | RoughBoltedJoint
 """A bolted joint with any law."""
+
+
+def interface_alone(joint: Bolted) -> Bolted:
+    """The joint with rigid sides."""
+    return replace(joint, sides="rigid") if joint.elastic else joint
 
 
 def bolt_pattern(joint: Bolted) -> BoltPattern:

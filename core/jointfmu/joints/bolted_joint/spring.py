@@ -28,7 +28,7 @@ from .contact import (
     over_plane,
     shear_sums,
 )
-from .law import Bolted, pressures, shear_ratio
+from .law import Bolted, interface_alone, pressures, shear_ratio
 from .outputs import STRETCHES, bolt_force, outputs
 from .whole import Whole
 
@@ -176,13 +176,14 @@ class BoltedJointSpring:
     @classmethod
     def of_nodes(cls, joint: Bolted, nodes: PressureShape | None = None) -> "BoltedJointSpring":
         """The interface alone, on all nodes of its pattern or on given ones."""
-        shape = pressure_shape(joint.pattern) if nodes is None else nodes
+        shape, joint = pressure_shape(joint.pattern) if nodes is None else nodes, interface_alone(joint)
         return cls(joint, approach_curve(joint), shape, shape, Modes.none(shape.share.size, shape.share.size))
 
     def on(self, nodes: PressureShape) -> "BoltedJointSpring":
         """The same interface alone on other nodes."""
         count = nodes.share.size
-        return replace(self, shape=nodes, patches=nodes, modes=Modes.none(count, count))
+        modes = Modes.none(count, count)
+        return replace(self, joint=interface_alone(self.joint), shape=nodes, patches=nodes, modes=modes)
 
     @cached_property
     def _foundations(self) -> Callable[[bytes], Foundation]:

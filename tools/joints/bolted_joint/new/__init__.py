@@ -60,9 +60,20 @@ NEW = Drawing(
             choices=("cones", "computed"),
         ),
         Option(
+            name="thickness",
+            text="of each plate [mm] (default: half the grip)",
+            metavar="T",
+            many=True,
+        ),
+        Option(
+            name="sides",
+            text="elastic: the whole joint, with members and bolts; rigid: the interface alone (default: elastic "
+            "where the finite elements are installed)",
+            choices=("elastic", "rigid"),
+        ),
+        Option(
             name="attached",
-            text="what moves with the bodies that the joint connects, for the printed stiffness of the "
-            "whole: outer faces, edges (side 1 at -x, side 2 at +x), or what lies under the heads "
+            text="what moves with the bodies that the joint connects: outer faces, edges (side 1 at -x, side 2 at +x), or what lies under the heads "
             "(default: faces)",
             choices=tuple(ATTACHED),
         ),

@@ -1,23 +1,27 @@
 """The plates of a drawing by finite elements: the pressure between them, and the stiffness of the whole."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 
 from ....drawing.vdi2230 import ClampedPart
+from . import ATTACHED
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import Compliance, WholeJoint
+    from ....fem.whole_joint import Compliance
+    from ....fem.whole_joint import WholeJoint as Bodies
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -71,22 +75,48 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     return _with_packages("--field computed", solved)
 
 
-def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> "dict[str, Compliance]":
-    """Compliances of the whole joint at its preload by direction: the plates move at their attachments.
+@dataclass(frozen=True, slots=True)
+class WholeJoint:
+    """The joint between its attachments: compliances by direction, and its parameters with elastic sides."""
+
+    compliances: "dict[str, Compliance]"
+    file: ParameterFile
+
+
+def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoint:
+    """The whole joint at its preload: the plates move at their attachments.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
 
-    def solved() -> "dict[str, Compliance]":
-        from ....fem.whole_joint import WholeJoint
+    def solved() -> WholeJoint:
+        from ....fem.elastic_sides import elastic_bodies
+        from ....fem.whole_joint import WholeJoint as Bodies
 
-        joint = WholeJoint.of(plates.assembly(file), attached)
-        return joint.compliances(_springs(file, plates.preload, joint), file.values.bolt_stiffness)
+        joint = Bodies.of(plates.assembly(file), attached)
+        springs = _springs(file, plates.preload, joint)
+        linear = joint.linear(springs, file.values.bolt_stiffness)
+        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], plates.preload)
+        return WholeJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
 
 
-def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
+def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
+    """The joint between elastic sides."""
+    values = replace(file.values, sides="elastic", bodies=bodies)
+    source = f"finite elements of the plates between {ATTACHED[attached]}, reduced to modes"
+    names = [f"bodies.{item.name}" for item in fields(bodies)]
+    stated = "the whole joint between what it connects; rigid: the interface alone"
+    return replace(
+        file,
+        values=values,
+        origins={**file.origins, **dict.fromkeys(names, "derived"), "sides": "user"},
+        sources={**file.sources, **dict.fromkeys(names, source), "sides": stated},
+    )
+
+
+def _springs(file: ParameterFile, preload: float, joint: "Bodies") -> Array:
     """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
 
     That of the nearest point of the joint's own contact, together as stiff as that.

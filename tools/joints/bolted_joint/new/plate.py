@@ -22,8 +22,11 @@ from .computed import Plates, with_computed_field
 
 Array = NDArray[np.float64]
 REST = (0.0, 0.0, 0.0)
+SAME = 1e-6
+"""How far the thicknesses may be from the grip [1]."""
 LONGEST = 50
 """Most grip over the diameter of the thread: beyond it a bolt is a tie rod."""
+ALONE = "the FMU is the interface alone: members and bolts of a tapped joint are not computed"
 LARGE = 16e-3
 """Diameter [m] above which the second strengths of a class hold."""
 
@@ -60,8 +63,9 @@ def joint(given: Given) -> NewJoint:
     heights = faces.put(sheet, given)
     hole, hole_source = _hole(given, thread)
     moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
-    if given["field"] == "computed" and given["tapped"]:
-        raise ValueError("--field computed beside --tapped: expected a head or nut on both sides for it")
+    for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
+        if given["tapped"] and value and given[name] == value:
+            raise ValueError(f"--{name} {value} beside --tapped: expected a head or nut on both sides for it")
     one = clamped(given, thread, (length, width), at, hole, moduli)
     plate = BoltedPlate(
         length=length,
@@ -87,9 +91,9 @@ def joint(given: Given) -> NewJoint:
         file = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
     if given["tapped"]:
-        return NewJoint(file, facts, warnings)
-    beside, heard = whole.facts(file, plates, given["attached"] or "faces")
-    return NewJoint(file, facts | beside, [*warnings, *heard])
+        return NewJoint(file, facts, [*warnings, ALONE])
+    found = whole.facts(file, plates, given["attached"] or "faces", given["sides"])
+    return NewJoint(found.file, facts | found.facts, [*warnings, *found.warnings])
 
 
 def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:
@@ -114,7 +118,7 @@ def clamped(
     for name, value, low in (("hole", hole, thread.d), ("bearing", bearing, hole)):
         if not value > low:
             raise ValueError(f"--{name} = {value * 1e3:g} mm is outside ({low * 1e3:g}, inf) mm")
-    thick = [number("grip", text, "mm", "m") for text in given["grip"]]
+    thick = _thicknesses(given)
     if len(thick) > (1 if tapped else 2):
         expected = "that of side 1" if tapped else "both plates together, or each"
         raise ValueError(f"--grip has {len(thick)} values, expected {expected}")
@@ -138,6 +142,22 @@ def clamped(
     delta_P = vdi2230.members_compliance(layers, bearing, hole, outer, slope, tapped)
     cone = vdi2230.cone_diameter(min(layer.thickness for layer in layers), bearing, slope)
     return Clamped(grip, layers, hole, bearing, outer, slope, cone, 1.0 / delta_S, 1.0 / delta_P)
+
+
+def _thicknesses(given: Given) -> list[float]:
+    """Of the plates [m], or of both together."""
+    thick = [number("grip", text, "mm", "m") for text in given["grip"]]
+    if given["thickness"] is None:
+        return thick
+    each = [number("thickness", text, "mm", "m") for text in given["thickness"]]
+    if len(each) != 2:
+        raise ValueError(f"--thickness has {len(each)} values, expected that of each plate")
+    if abs(sum(each) - sum(thick)) > SAME * sum(thick):
+        raise ValueError(
+            f"--thickness = {each[0] * 1e3:g} and {each[1] * 1e3:g} mm contradict --grip = {sum(thick) * 1e3:g} mm: "
+            "expected their sum"
+        )
+    return each
 
 
 def outer_diameter(size: tuple[float, float], at: Array) -> float:
@@ -248,7 +268,7 @@ def _facts(
         "member_stiffness": (
             one.members,
             "N/m",
-            "of the parts that one bolt clamps, 1/delta_P of VDI 2230; a spring in series, not in the joint",
+            "of the parts that one bolt clamps, 1/delta_P of VDI 2230",
         ),
         "load_factor": (
             one.bolt / (one.bolt + one.members),

@@ -1,7 +1,7 @@
 """What stands in a bolted joint beside its interface: members and bolts, printed side by side with it."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from jointfmu.parameters import ParameterFile
 
@@ -12,17 +12,37 @@ if TYPE_CHECKING:
     from ....fem.whole_joint import Compliance
 
 Facts = dict[str, tuple[float, str, str]]
+
+
+class Whole(NamedTuple):
+    """Parameters of a joint, what is told of the whole, and warnings."""
+
+    file: ParameterFile
+    facts: Facts
+    warnings: list[str]
+
+
 _TURNS = ("rx", "ry", "rz")
 
 
-def facts(file: ParameterFile, plates: Plates, attached: str) -> tuple[Facts, list[str]]:
-    """The whole joint beside the interface, or a line that says why it cannot be computed."""
+def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> Whole:
+    """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
+    cannot be computed.
+
+    sides : rigid or elastic as stated; None: elastic if the packages are there
+
+    Raises ValueError if it was asked for and cannot be computed.
+    """
     try:
         found = whole_joint(file, plates, attached)
     except ValueError as error:
-        return {}, [f"members and bolts are not computed: {error}"]
-    rows = {f"whole_K_{_named(name)}": _row(one, name, attached) for name, one in found.items()}
-    return rows | _load(found["z"], plates.preload, attached) | _share(found), []
+        if sides == "elastic":
+            raise
+        return Whole(file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"])
+    parts = found.compliances
+    rows = {f"whole_K_{_named(name)}": _row(one, name, attached) for name, one in parts.items()}
+    rows |= _load(parts["z"], plates.preload, attached) | _share(parts, sides == "rigid")
+    return Whole(file if sides == "rigid" else found.file, rows, [])
 
 
 def _named(direction: str) -> str:
@@ -37,12 +57,12 @@ def _row(one: "Compliance", direction: str, attached: str) -> tuple[float, str, 
     return 1.0 / one.whole, unit, f"{text}; the interface alone is {one.whole / one.rigid:.3g} times as stiff"
 
 
-def _share(found: "Mapping[str, Compliance]") -> Facts:
-    """Whether the interface matters for the whole, and that it is all that the FMU has."""
+def _share(found: "Mapping[str, Compliance]", alone: bool) -> Facts:
+    """Whether the interface matters for the whole; `alone`: it is all that the FMU has."""
     along, *rest = (found[name].interface / found[name].whole for name in ("z", "x", "y", *_TURNS))
     text = (
         f"part of the interface in the whole's compliance along z, at most {max(rest):.3g} in others; "
-        "the FMU is the interface alone, members and bolts belong beside it (docs/new.md)"
+        + ("the FMU is the interface alone (--sides rigid)" if alone else "the FMU is the whole (sides = elastic)")
     )
     return {"interface_share": (along, "1", text)}
 
