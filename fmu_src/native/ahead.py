@@ -47,7 +47,11 @@ def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
         file = default(model.joint, law)
         own = model.of(file.joint, file.values)
         for choices in _choices(own, file):
-            yield own, file.with_values(choices, "user", "compiled ahead")
+            try:
+                chosen = file.with_values(choices, "user", "compiled ahead")
+            except ValueError:  # a choice that goes with numbers which the file does not have
+                continue
+            yield own, chosen
 
 
 def _choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, Any]]:

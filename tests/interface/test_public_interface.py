@@ -87,7 +87,8 @@ def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest():
     plate = jointfmu.bolted_joint(**PLATE)
     far = plate.evaluate(s_rel_x=[0.0, 3e-7])
     way = plate.follow(s_rel_x=[0.0, 3e-7, 0.0])
-    assert far["f_x"][1] == pytest.approx(way["f_x"][1], rel=1e-9)
+    # from rest the pressure stays on the way, from the tightened state the sides change it a little
+    assert far["f_x"][1] == pytest.approx(way["f_x"][1], rel=1e-6)
     assert way["f_x"][2] > 0.0  # friction holds it back
     assert far.units["f_x"] == "N"
 

@@ -1,4 +1,4 @@
-"""Both bodies of a joint between their attachments, reduced to the modes that its friction and its opening need.
+"""Both bodies of a joint between their attachments, reduced to the modes that friction and opening need.
 
 The contact is cut into the cells of the joint's points. Loads on cells and bolts move the bodies by finite
 elements; with the interface's law at each cell, the first way into slip and into opening, along and about all
@@ -184,7 +184,7 @@ SPREAD = 0.8566748838545029 ** np.arange(1.0, 7.0)
 
 
 def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
-    """The bodies' modes at the points, patches and bolts of a joint tightened with a preload [N] of each bolt.
+    """The bodies' modes at the points, patches and bolts of a joint under a preload [N] of each bolt.
 
     linear : by finite elements
     normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
@@ -229,10 +229,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
     most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
     rounded = {name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()}
-    away = bolts[:, 1] - bolts[:, 1].mean()
-    spread = float(away @ away)
-    lever = away / spread if spread > 0.0 else 0.0 * away
-    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1], "lever": lever}
+    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
     return ElasticBodies(
         stiffness=_listed(1.0 / most**2), **rounded, **{name: _listed(each) for name, each in places.items()}
     )
@@ -243,7 +240,7 @@ def _listed(values: Array) -> tuple[float, ...]:
 
 
 def _modes(linear: Linear, states: Array) -> Array:
-    """Displacements (n, k) of unit energy norm: those of the linear joint, and what states (n, s) need most."""
+    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most."""
     first = _unit(linear.moved - linear.rigid, linear)
     for _ in range(2):  # twice is enough
         states = states - first @ (first.T @ (linear.bodies @ states))
@@ -273,14 +270,18 @@ def _turns(place: Array) -> Array:
     return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
 
 
-def _matched(means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array) -> Array:
-    """Means (n, k) of modes, changed in common so that springs of weight (n) [N/m] are as stiff as all springs.
+def _matched(
+    means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array
+) -> Array:
+    """Means (n, k) of modes, changed in common: springs of weight (n) [N/m] become as stiff as all springs.
 
     rigid     : (n, 3) motion of the points without deformation; all_rigid (q, 3) of all springs
     trace     : (q, k) motion of all springs by the modes, which have a stiffness (q) [N/m]
     """
     along = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
-    given = np.linalg.solve(all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace))
+    given = np.linalg.solve(
+        all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace)
+    )
     rest, bent = means - rigid @ along, trace - all_rigid @ given
     target = bent.T @ (springs[:, None] * bent)
     target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))

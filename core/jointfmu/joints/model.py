@@ -140,7 +140,7 @@ class Model:
     rest: Callable[..., Memory] | None = None
     evolve: Callable[..., tuple[Outputs, Memory]] | None = None
     loop: Loop | None = None
-    variant: "Callable[[Model, object], Model] | None" = None
+    variant: "Callable[[Model, Any], Model] | None" = None
     alias: str = ""
 
     def __post_init__(self) -> None:

@@ -51,12 +51,14 @@ def choice(*allowed: str | bool, doc: str) -> Any:
 def group(doc: str, **alternatives: type[Any]) -> Any:
     """Declare a nested group of quantities (`surface`, `side1`, ...).
 
-    alternatives : names and classes of which a parameter set has one, instead of the field's own; the first is
-        the default if it has no fields
+    alternatives : names and classes of which a parameter set has one, instead of the field's own; the first
+        is the default if it has no fields
     """
     first = next(iter(alternatives.values()), None)
-    default = MISSING if first is None or fields(first) else first
-    return field(metadata={"group": True, "doc": doc, "alternatives": alternatives}, default_factory=default)
+    metadata = {"group": True, "doc": doc, "alternatives": alternatives}
+    if first is None or fields(first):
+        return field(metadata=metadata)
+    return field(metadata=metadata, default_factory=first)
 
 
 def label(item: Field[Any]) -> str:

@@ -24,15 +24,14 @@ def _stands(joint: Bolted) -> Mapping[str, object]:
     """The joint with one point, as its C is generated, and the place of its bolts."""
     own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
     spread = dict(zip(BOLT_MEANS, joint.pattern.bolt_means, strict=True))
-    field = {f"field.{name}": value for name, value in (_ONE | spread).items()}
-    return own | field | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
+    points: dict[str, object] = {f"field.{name}": value for name, value in (_ONE | spread).items()}
+    return own | points | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
 
 
-def _one_mode(bolts: int) -> Mapping[str, object]:
+def _one_mode(bolts: int) -> dict[str, object]:
     """Bodies of one mode, one patch and so many bolts."""
-    zero, each = (0.0,), (0.0,) * bolts
-    values = {item.name: zero for item in fields(ElasticBodies)} | {"stiffness": (1.0,)}
-    values |= dict.fromkeys(("stretch", "bolt_x", "bolt_y", "lever"), each)
+    values: dict[str, tuple[float, ...]] = {item.name: (0.0,) for item in fields(ElasticBodies)}
+    values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolts)}
     return {f"bodies.{name}": value for name, value in values.items()}
 
 
@@ -51,17 +50,18 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
 
     A joint with rigid sides has room for one row.
     """
-    modes, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), (1, 1, 1, 1)
+    modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
     if joint.elastic:
         places = spring.patches(joint.pattern).position
         modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
+        lever = modes.lever
         most = MODES, spring.POINTS, spring.PATCHES, len(modes.bolts)
     x, y, z = modes.patch
     moved = {"opening": modes.opening, "patch_x": x, "patch_y": y, "patch_z": z, "stretch": modes.stretch}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
-        "bolts": DataTable(np.column_stack([modes.bolts, modes.lever]), most[3]),
+        "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
         **{name: DataTable(_padded(rows), room[name]) for name, rows in moved.items()},
     }
 

@@ -129,10 +129,17 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
     counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
-    counts |= {"MODES": bodies.MODES, "ELASTIC": int(g.joint.elastic), "NEWTON_STEPS": whole.STEPS, "NEWTON_PARTS": whole.PARTS}
+    counts |= {
+        "MODES": bodies.MODES,
+        "ELASTIC": int(g.joint.elastic),
+        "NEWTON_STEPS": whole.STEPS,
+        "NEWTON_PARTS": whole.PARTS,
+    }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
     numbers["MODE_DIGITS"] = 10.0**bodies.DIGITS
-    numbers |= {f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")}
+    numbers |= {
+        f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")
+    }
     return Definitions(counts, numbers)
 
 

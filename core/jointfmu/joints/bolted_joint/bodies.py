@@ -21,7 +21,7 @@ DIGITS = 4
 BESIDE = 1e-6
 """Distance [m] by which patches may lie beside those that the modes were computed for."""
 _MOVED = ("opening", "patch_x", "patch_y", "patch_z", "stretch")
-_PLACES = ("x", "y", "bolt_x", "bolt_y", "lever")
+_PLACES = ("x", "y", "bolt_x", "bolt_y")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,14 +52,13 @@ class ElasticBodies:
     y: tuple[float, ...] = series("m", "places of the patches across the rows, from the centroid")
     bolt_x: tuple[float, ...] = series("m", "places of the bolts along the rows, from the centroid")
     bolt_y: tuple[float, ...] = series("m", "places of the bolts across the rows, from the centroid")
-    lever: tuple[float, ...] = series("1/m", "what a moment adds to the force of each bolt, over the moment")
 
     def __post_init__(self) -> None:
         check(self)
         modes, patches, bolts = len(self.stiffness), len(self.x), len(self.bolt_x)
         if modes > MODES:
             raise ValueError(f"bodies.stiffness has {modes} numbers, expected at most {MODES}")
-        counts = {"y": patches, "bolt_y": bolts, "lever": bolts, "stretch": bolts * modes}
+        counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
         counts |= {f"patch_{axis}": patches * modes for axis in "xyz"}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
         for name, count in counts.items():
@@ -75,7 +74,7 @@ class Modes:
     opening   : (n, k) [1] of the points
     patch     : (3, m, k) [1] shift of the patches along x and y, and how far they come apart
     stretch   : (b, k) [1] of the bolts
-    bolts     : (b, 2) [m] their places; lever: (b) [1/m] force over the moment
+    bolts     : (b, 2) [m] their places
     """
 
     stiffness: Array
@@ -83,13 +82,19 @@ class Modes:
     patch: Array
     stretch: Array
     bolts: Array
-    lever: Array
+
+    @property
+    def lever(self) -> Array:
+        """Force that a moment adds to each bolt (b) over the moment [1/m], as in `BoltedPlate.shape`."""
+        away = self.bolts[:, 1] - np.sum(self.bolts[:, 1]) / max(len(self.bolts), 1)
+        square = float(away @ away)
+        return away / square if square > 0.0 else away
 
     @classmethod
     def none(cls, points: int, patches: int) -> "Modes":
         """Of rigid bodies."""
         zero = np.zeros
-        return cls(zero(0), zero((points, 0)), zero((3, patches, 0)), zero((0, 0)), zero((0, 2)), zero(0))
+        return cls(zero(0), zero((points, 0)), zero((3, patches, 0)), zero((0, 0)), zero((0, 2)))
 
     @classmethod
     def of(cls, bodies: RigidBodies | ElasticBodies, points: int, patches: Array) -> "Modes":
@@ -117,5 +122,4 @@ class Modes:
             np.stack([moved[f"patch_{axis}"] for axis in "xyz"]),
             moved["stretch"],
             np.stack([each["bolt_x"], each["bolt_y"]], axis=1),
-            each["lever"],
         )

@@ -67,11 +67,16 @@ class Bolts:
 
     def _check_elastic(self) -> None:
         if isinstance(self.bodies, RigidBodies):
-            raise ValueError("sides = elastic without [bodies]: expected what `new bolted-joint` writes there")
+            raise ValueError(
+                "sides = elastic without [bodies]: expected what `new bolted-joint` writes there"
+            )
         for name, wrong in (("memory", False), ("damping", True)):
             if getattr(self, name) is wrong:
                 why = ELASTIC_NEEDS[name]
-                raise ValueError(f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower())
+                raise ValueError(
+                    f"{name} = {wrong} beside sides = elastic: expected {not wrong}, {why}".lower()
+                )
+
     def limits(self) -> list[Limit]:
         """Intervals that other parameters decide."""
         why = "two rows hold at most half of n_bolts each; set row_bolts = 1 where all bolts make one row"

@@ -1,6 +1,6 @@
 """The exported bolted joint: six degrees of freedom under uneven pressure, with friction that remembers."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -20,7 +20,6 @@ from ...quantity import Number
 from .bodies import MODES, Modes, RigidBodies
 from .contact import (
     Place,
-    along,
     elastic_shear,
     further_tangent,
     loop_sums,
@@ -30,6 +29,7 @@ from .contact import (
 )
 from .law import Bolted, interface_alone, pressures, shear_ratio
 from .outputs import STRETCHES, bolt_force, outputs
+from .trials import Memory, Trial, Trials, Way, told
 from .whole import Whole
 
 Array = NDArray[np.float64]
@@ -39,8 +39,6 @@ POINTS = 120
 PATCHES = 22
 """Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
-DIFFERENCE = 1e-7
-"""Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
 UNKNOWN, RESTING, ALONG, FREE = range(4)
 """How friction has moved so far, see `memory_of`."""
 
@@ -86,59 +84,6 @@ def points(pattern: PressureSource) -> PressureShape:
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
     return friction_patches(pressure_shape(pattern), PATCHES)
-
-
-Memory = Mapping[str, Array]
-
-
-@dataclass(frozen=True, slots=True)
-class Way:
-    """How the patches came to where they are: state, reference and approach (m) [m] as in `memory_of`.
-
-    stick : (m) [Pa/m] of all sliders
-    """
-
-    state: int
-    reference: Array
-    approach: Array
-    moved: Moved
-    stick: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """A joint with amplitudes of its modes.
-
-    derivatives : of the pressure (n) [Pa] over the approach of the points
-    approach    : (m) [m] of the patches
-    way         : of the patches, None without memory
-    """
-
-    derivatives: list[Array]
-    approach: Array
-    way: Way | None
-
-    @property
-    def pressure(self) -> Array:
-        """(n) [Pa]."""
-        return self.derivatives[0]
-
-    @property
-    def stiffness(self) -> Array:
-        """(n) [Pa/m]."""
-        return self.derivatives[1]
-
-    @property
-    def traction(self) -> Array:
-        """(m, 2) [Pa] against the shift."""
-        assert self.way
-        return self.way.moved.traction
-
-    @property
-    def tangent(self) -> Array:
-        """(m, 3) [Pa/m] xx, xy, yy."""
-        assert self.way
-        return self.way.moved.tangent
 
 
 @dataclass(frozen=True)
@@ -264,7 +209,7 @@ class BoltedJointSpring:
         start, tight, first = self._tightened(float(preload), float(moment))
         before = self.memory.split(memory)
 
-        trials = _Trials(self, (start, first), place, before, _told(preload, moment, place))
+        trials = Trials(self, (start, first), place, before, told(preload, moment, place))
         amplitude = np.zeros(0)
         if joint.elastic:
             begin = before["amplitude"][: len(self.modes.stiffness)]
@@ -280,7 +225,7 @@ class BoltedJointSpring:
             traction, tangent = np.stack(parts[:2], axis=-1), np.stack(parts[2:], axis=-1)
             shear, after = shear_sums(shape, traction, tangent) | {"loss": 0.0}, memory
         plastic, elastic = self.works(at.derivatives[0])
-        size = np.hypot(*(place.along(self.patches) + self._shift(amplitude)).T)
+        size = np.hypot(*(place.along(self.patches) + self.shift(amplitude)).T)
         sums: dict[str, Number] = {
             **over_plane(shape, "tightened", tight),
             **normal_sums(shape, lifted, stiffer, at.derivatives),
@@ -301,11 +246,11 @@ class BoltedJointSpring:
         joint = self.joint
         return Whole.of(self.modes, self.shape, self.patches, joint.A_0, joint.bolt_stiffness)
 
-    def _shift(self, amplitude: Array) -> Array:
+    def shift(self, amplitude: Array) -> Array:
         """Shift (m, 2) [m] of the patches by amplitudes (k) [m] of the modes."""
         return np.stack([self.modes.patch[axis] @ amplitude for axis in range(2)], axis=-1)
 
-    def _way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
+    def way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
         """How the patches move on a straight path to approaches (m) [m] by shifts (m, 2) [m]."""
         first = approach if before["state"] == UNKNOWN else before["approach"]
         stick = self.foundation().stick(approach)
@@ -319,7 +264,9 @@ class BoltedJointSpring:
             force = foundation.spread(force[..., 0], first)
         return Way(state, reference, approach, foundation.moved(force, first, approach, shift), stick)
 
-    def _friction(self, way: "Way", amplitude: Array, place: Place, before: Memory) -> tuple[dict[str, Number], Array]:
+    def _friction(
+        self, way: "Way", amplitude: Array, place: Place, before: Memory
+    ) -> tuple[dict[str, Number], Array]:
         """Sums of the shear, and the memory after a way of the patches."""
         patches, area, moved = self.patches, self.joint.A_0, way.moved
         loss = float(before["loss"]) + area * float(patches.share @ moved.loss)
@@ -354,7 +301,7 @@ class BoltedJointSpring:
         force[..., 0] = traction
         return Moved(force, np.zeros_like(stick), stick[:, None] * np.array([1.0, 0.0, 1.0]))
 
-    def _followed(self, trials: "_Trials", amplitude: Array) -> Array:
+    def _followed(self, trials: Trials, amplitude: Array) -> Array:
         """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning."""
         whole, before, there = self.whole, trials.before, trials.place(0.0)
         points, patches = trials.approaches(there, amplitude)
@@ -365,8 +312,10 @@ class BoltedJointSpring:
         motion = trials.end.six - there.six
         return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion))
 
-    def _whole_sums(self, at: "Trial", place: Place, amplitude: Array, loop_energy: Number) -> dict[str, Number]:
-        """Sums of elastic sides: stiffnesses are those of the whole without the bolts' own part, see `outputs`."""
+    def _whole_sums(
+        self, at: "Trial", place: Place, amplitude: Array, loop_energy: Number
+    ) -> dict[str, Number]:
+        """Sums of elastic sides: stiffnesses of the whole without the bolts' own part, see `outputs`."""
         joint, area, modes = self.joint, self.joint.A_0, self.modes
         bolts, (_, _, x2, y2, _) = joint.n_bolts * joint.bolt_stiffness, joint.pattern.bolt_means
         K = np.diag(self.whole.condensed(self.whole.slope(at.stiffness, at.tangent)))
@@ -384,7 +333,9 @@ class BoltedJointSpring:
             "loop_energy": loop_energy + energy / area,
         }
 
-    def _bolt_forces(self, preload: float, moment: float, place: Place, amplitude: Array) -> dict[str, Number]:
+    def _bolt_forces(
+        self, preload: float, moment: float, place: Place, amplitude: Array
+    ) -> dict[str, Number]:
         """Working force [N] of each bolt of elastic sides."""
         given = preload + moment * self.modes.lever
         forces = given + self.joint.bolt_stiffness * self.whole.stretch(place, amplitude)
@@ -400,67 +351,7 @@ class BoltedJointSpring:
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
 
 
-def _moved_on(before: Mapping[str, Array], rigid: Array) -> int:
+def _moved_on(before: Memory, rigid: Array) -> int:
     """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
     free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
     return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
-
-
-@dataclass(frozen=True, slots=True)
-class _Trials:
-    """The joint on its way from a memory to a place, see `whole.Trials`.
-
-    starts : approaches [m] of points (n) and patches (m) at tightening
-    """
-
-    spring: BoltedJointSpring
-    starts: tuple[Array, Array]
-    end: Place
-    before: Memory
-    told: str
-
-    def place(self, part: float) -> Place:
-        """Where it is after a part [1] of the way."""
-        if part == 1.0:
-            return self.end
-        before = self.before
-        first = np.array([*before["rigid"][:2], *before["apart"], before["rigid"][2]])
-        return Place.of(first + part * (self.end.six - first))
-
-    def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
-        """Approaches [m] of points (n) and patches (m)."""
-        spring, (points, patches) = self.spring, self.starts
-        return (
-            points - (place.apart(spring.shape) + spring.modes.opening @ amplitude),
-            patches - (place.apart(spring.patches) + spring.modes.patch[2] @ amplitude),
-        )
-
-    def at(self, place: Place, amplitude: Array) -> Trial:
-        """At a place with amplitudes (k) [m]."""
-        points, patches = self.approaches(place, amplitude)
-        way = self._way(place, amplitude, patches, np.zeros(2)) if self.spring.joint.memory else None
-        return Trial(self.spring.curve.derivatives(points, 3), patches, way)
-
-    def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
-        spring, before = self.spring, self.before
-        rigid = np.array([*place.shift[:2], place.turn[2]])
-        bent = spring._shift(amplitude - before["amplitude"][: amplitude.size])
-        shift = along(spring.patches, rigid - before["rigid"]) + bent + further
-        return spring._way(before, approach, shift, rigid)
-
-    def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
-        approach = self.approaches(place, amplitude)[1]
-        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
-
-        def traction(moved: Array) -> Array:
-            return self._way(place, amplitude, approach - moved[2], moved[:2]).moved.traction
-
-        return np.stack([traction(d) - traction(-d) for d in step * np.eye(3)], axis=-1) / (2.0 * step)
-
-
-def _told(preload: float, moment: float, place: Place) -> str:
-    """Inputs that are not zero, as text."""
-    names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
-    values = dict(zip(names, (preload, moment, *place.six), strict=True))
-    return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)

@@ -42,9 +42,7 @@ def _whole(model: Model, joint: Bolted) -> Model:
     if not joint.elastic:
         return model
     meaning = "working force of bolt {}: preload, what the moment adds, and its share of the load"
-    forces = [
-        Variable(bolt_force(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))
-    ]
+    forces = [Variable(bolt_force(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))]
     inputs = ("preload", "moment", *_PLACE[2:])
     known = {
         name: (*inputs, *(v for v in given if v not in inputs)) for name, given in model.dependencies.items()

@@ -95,7 +95,9 @@ class Whole:
     bolt: float
 
     @classmethod
-    def of(cls, modes: Modes, shape: PressureShape, patches: PressureShape, area: float, bolt: float) -> "Whole":
+    def of(
+        cls, modes: Modes, shape: PressureShape, patches: PressureShape, area: float, bolt: float
+    ) -> "Whole":
         """Of points and patches of a nominal area [m2]."""
         turns = np.eye(3)
         return cls(
@@ -180,14 +182,18 @@ class Whole:
             if found is None:
                 step *= 0.5
                 if step < LEAST_PART:
-                    raise ValueError(f"{trials.told}: the sides find no equilibrium beyond {done:.3g} of the way")
+                    raise ValueError(
+                        f"{trials.told}: the sides find no equilibrium beyond {done:.3g} of the way"
+                    )
                 continue
             if part == 1.0:
                 return found
             rate = (found[0] - amplitude) / (part - done)
             amplitude, done, step = found[0], part, 2.0 * step
 
-    def _newton(self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array) -> tuple[Array, T] | None:
+    def _newton(
+        self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array
+    ) -> tuple[Array, T] | None:
         """Equilibrium at a part [1] of the motion, from amplitudes (k) [m]; None if it is not found."""
         place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
         at = trials.at(place, amplitude)

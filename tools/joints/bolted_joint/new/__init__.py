@@ -67,14 +67,14 @@ NEW = Drawing(
         ),
         Option(
             name="sides",
-            text="elastic: the whole joint, with members and bolts; rigid: the interface alone (default: elastic "
-            "where the finite elements are installed)",
+            text="elastic: the whole joint, with members and bolts; rigid: the interface alone (default: "
+            "elastic where the finite elements are installed)",
             choices=("elastic", "rigid"),
         ),
         Option(
             name="attached",
-            text="what moves with the bodies that the joint connects: outer faces, edges (side 1 at -x, side 2 at +x), or what lies under the heads "
-            "(default: faces)",
+            text="what moves with the bodies that the joint connects: outer faces, edges (side 1 at -x, "
+            "side 2 at +x), or what lies under the heads (default: faces)",
             choices=tuple(ATTACHED),
         ),
         Option(name="law", text="of the interface (default: roughness)", choices=("roughness", "zhao2018")),

@@ -154,8 +154,8 @@ def _thicknesses(given: Given) -> list[float]:
         raise ValueError(f"--thickness has {len(each)} values, expected that of each plate")
     if abs(sum(each) - sum(thick)) > SAME * sum(thick):
         raise ValueError(
-            f"--thickness = {each[0] * 1e3:g} and {each[1] * 1e3:g} mm contradict --grip = {sum(thick) * 1e3:g} mm: "
-            "expected their sum"
+            f"--thickness = {each[0] * 1e3:g} and {each[1] * 1e3:g} mm contradicts --grip = "
+            f"{sum(thick) * 1e3:g} mm: expected their sum"
         )
     return each
 

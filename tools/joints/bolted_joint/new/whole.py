@@ -38,7 +38,9 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
     except ValueError as error:
         if sides == "elastic":
             raise
-        return Whole(file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"])
+        return Whole(
+            file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
+        )
     parts = found.compliances
     rows = {f"whole_K_{_named(name)}": _row(one, name, attached) for name, one in parts.items()}
     rows |= _load(parts["z"], plates.preload, attached) | _share(parts, sides == "rigid")
@@ -60,9 +62,10 @@ def _row(one: "Compliance", direction: str, attached: str) -> tuple[float, str, 
 def _share(found: "Mapping[str, Compliance]", alone: bool) -> Facts:
     """Whether the interface matters for the whole; `alone`: it is all that the FMU has."""
     along, *rest = (found[name].interface / found[name].whole for name in ("z", "x", "y", *_TURNS))
-    text = (
-        f"part of the interface in the whole's compliance along z, at most {max(rest):.3g} in others; "
-        + ("the FMU is the interface alone (--sides rigid)" if alone else "the FMU is the whole (sides = elastic)")
+    text = f"part of the interface in the whole's compliance along z, at most {max(rest):.3g} in others; " + (
+        "the FMU is the interface alone (--sides rigid)"
+        if alone
+        else "the FMU is the whole (sides = elastic)"
     )
     return {"interface_share": (along, "1", text)}
 

@@ -1,0 +1,129 @@
+"""The bolted joint on its way to a place, for amplitudes of the modes of its sides."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...mechanics.jenkins import Moved
+from .contact import Place, along
+
+if TYPE_CHECKING:
+    from .spring import BoltedJointSpring
+
+Array = NDArray[np.float64]
+DIFFERENCE = 1e-7
+"""Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
+Memory = Mapping[str, Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """How the patches came to where they are: state, reference and approach (m) [m] as in `memory_of`.
+
+    stick : (m) [Pa/m] of all sliders
+    """
+
+    state: int
+    reference: Array
+    approach: Array
+    moved: Moved
+    stick: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A joint with amplitudes of its modes.
+
+    derivatives : of the pressure (n) [Pa] over the approach of the points
+    approach    : (m) [m] of the patches
+    way         : of the patches, None without memory
+    """
+
+    derivatives: list[Array]
+    approach: Array
+    way: Way | None
+
+    @property
+    def pressure(self) -> Array:
+        """(n) [Pa]."""
+        return self.derivatives[0]
+
+    @property
+    def stiffness(self) -> Array:
+        """(n) [Pa/m]."""
+        return self.derivatives[1]
+
+    @property
+    def traction(self) -> Array:
+        """(m, 2) [Pa] against the shift."""
+        assert self.way
+        return self.way.moved.traction
+
+    @property
+    def tangent(self) -> Array:
+        """(m, 3) [Pa/m] xx, xy, yy."""
+        assert self.way
+        return self.way.moved.tangent
+
+
+@dataclass(frozen=True, slots=True)
+class Trials:
+    """The joint on its way from a memory to a place, see `whole.Trials`.
+
+    starts : approaches [m] of points (n) and patches (m) at tightening
+    """
+
+    spring: "BoltedJointSpring"
+    starts: tuple[Array, Array]
+    end: Place
+    before: Memory
+    told: str
+
+    def place(self, part: float) -> Place:
+        """Where it is after a part [1] of the way."""
+        if part == 1.0:
+            return self.end
+        before = self.before
+        first = np.array([*before["rigid"][:2], *before["apart"], before["rigid"][2]])
+        return Place.of(first + part * (self.end.six - first))
+
+    def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
+        """Approaches [m] of points (n) and patches (m)."""
+        spring, (points, patches) = self.spring, self.starts
+        return (
+            points - (place.apart(spring.shape) + spring.modes.opening @ amplitude),
+            patches - (place.apart(spring.patches) + spring.modes.patch[2] @ amplitude),
+        )
+
+    def at(self, place: Place, amplitude: Array) -> Trial:
+        """At a place with amplitudes (k) [m]."""
+        points, patches = self.approaches(place, amplitude)
+        way = self._way(place, amplitude, patches, np.zeros(2)) if self.spring.joint.memory else None
+        return Trial(self.spring.curve.derivatives(points, 3), patches, way)
+
+    def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
+        spring, before = self.spring, self.before
+        rigid = np.array([*place.shift[:2], place.turn[2]])
+        bent = spring.shift(amplitude - before["amplitude"][: amplitude.size])
+        shift = along(spring.patches, rigid - before["rigid"]) + bent + further
+        return spring.way(before, approach, shift, rigid)
+
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
+        approach = self.approaches(place, amplitude)[1]
+        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
+
+        def traction(moved: Array) -> Array:
+            return self._way(place, amplitude, approach - moved[2], moved[:2]).moved.traction
+
+        return np.stack([traction(d) - traction(-d) for d in step * np.eye(3)], axis=-1) / (2.0 * step)
+
+
+def told(preload: float, moment: float, place: Place) -> str:
+    """Inputs that are not zero, as text."""
+    names = ("preload", "moment", "s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+    values = dict(zip(names, (preload, moment, *place.six), strict=True))
+    return ", ".join(f"{name} = {value:g}" for name, value in values.items() if value)
