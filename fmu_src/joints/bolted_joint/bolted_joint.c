@@ -663,6 +663,9 @@ static bool as_tightened(const Kind *kind, const double *inputs)
 {
     const double *s = inputs + S_REL, *turn = inputs + THETA;
     const bool sheared = s[0] != 0.0 || s[1] != 0.0 || turn[2] != 0.0;
+    for (int k = 0; k < MODES && ELASTIC; k++)
+        if (kind->amplitude[k] != 0.0)
+            return false;
     return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
 }
 

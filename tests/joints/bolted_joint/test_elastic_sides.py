@@ -1,0 +1,230 @@
+"""Elastic sides: the whole joint against finite elements and VDI 2230, energy, FMU, what is refused."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from conftest import Fmu, refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.joints.bolted_joint.new import computed, whole
+
+from jointfmu.joints.bolted_joint import whole as equilibrium
+from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import dump, load
+
+PRELOAD = 60e3
+M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]
+FOUR = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
+STILL = (0.0,) * 6
+AXIS_X = np.eye(6)[0]
+AXES = ("K_xx", "K_yy", "K_zz", "K_rx", "K_ry", "K_rz")
+MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Joints that the command makes, with the compliances that finite elements gave it."""
+    found, seen = {}, {}
+    real = computed.whole_joint
+
+    def watched(*arguments):
+        seen["last"] = real(*arguments)
+        return seen["last"]
+
+    def make(*words, preload=PRELOAD):
+        if words not in found:
+            path = tmp_path_factory.mktemp("whole") / "joint.toml"
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(whole, "whole_joint", watched)
+                command = ["new", "bolted-joint", *words, "--preload", str(preload), "--out", str(path)]
+                assert cli.main([*command, "--json"]) == 0
+            file = load(path)
+            spring = BoltedJointSpring.of(file.values)
+            found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen["last"].compliances)
+        return found[words]
+
+    return make
+
+
+def at(spring, *six, memory=None, preload=PRELOAD, moment=0.0):
+    start = spring.at_rest() if memory is None else memory
+    return spring.evolve(preload, moment, Place.of(np.array(six)), STILL, start)
+
+
+def stiffness(spring):
+    """Whole stiffness (6, 6) at tightening, from the forces of small motions."""
+    names, step = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z"), 1e-11
+    columns = []
+    for axis in np.eye(6):
+        rise, fall = (at(spring, *(sign * step * axis))[0] for sign in (1.0, -1.0))
+        columns.append([(fall[name] - rise[name]) / (2.0 * step) for name in names])
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("words", [FOUR, [*FOUR, "--attached", "heads"]], ids=["faces", "heads"])
+def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words):
+    """Within 3 %: modes are rounded to four digits, and few points stand for the contact."""
+    joint = made(*words, preload=15e3)
+    out, _ = at(joint.spring, *STILL, preload=15e3)
+    found = 1.0 / np.diag(np.linalg.inv(np.diag([out[name] for name in AXES])))
+    expected = [1.0 / joint.fe[axis].whole for axis in ("x", "y", "z", "rx", "ry", "rz")]
+    np.testing.assert_allclose(found, expected, rtol=0.03)
+
+
+def test_stiffnesses_are_those_of_the_forces(made):
+    joint = made(*M16, "--attached", "heads")
+    out, _ = at(joint.spring, *STILL)
+    # differences over 1e-11 m of forces that are round-off of 60 kN beside 1e-2 N
+    np.testing.assert_allclose(np.diag(stiffness(joint.spring)), [out[name] for name in AXES], rtol=2e-3)
+
+
+def test_a_load_at_the_heads_is_shared_as_in_vdi_2230(made):
+    """30 kN at the heads of an M16 with 60 kN: Phi = 0.187 by hand, +5.6 kN in the bolt; the interface opens
+    at 1.23 times the preload. Finite elements hold the faces under the heads, which the cone does not."""
+    spring = made(*M16, "--attached", "heads").spring
+    pulls = np.linspace(0.0, 60e-6, 61)
+    states = (at(spring, 0, 0, pull, 0, 0, 0)[0] for pull in pulls)
+    forces = np.array([[-out["f_z"], out["F_bolt[1]"], out["p_mean"]] for out in states])
+    bolt = np.interp(30e3, forces[:, 0], forces[:, 1])
+    assert bolt - PRELOAD == pytest.approx(5.6e3, rel=0.15)
+    opened = forces[:, 2] < 1e-3 * forces[0, 2]
+    assert forces[opened, 0][0] == pytest.approx(1.23 * PRELOAD, rel=0.05)
+    # open, the bolt carries all that pulls
+    np.testing.assert_allclose(forces[-1, 1], forces[-1, 0], rtol=1e-6)
+
+
+def test_a_load_at_the_faces_hardly_reaches_the_bolts(made):
+    faces, heads = (made(*M16, *words).spring for words in ((), ("--attached", "heads")))
+    shares = []
+    for spring in (faces, heads):
+        out, _ = at(spring, 0, 0, 2e-6, 0, 0, 0)
+        shares.append((out["F_bolt[1]"] - PRELOAD) / -out["f_z"])
+    assert shares[0] < 0.5 * shares[1]
+
+
+def test_a_moment_changes_the_bolts_by_their_rows(made):
+    spring = made(*FOUR, preload=15e3).spring
+    forces = [at(spring, *STILL, preload=15e3, moment=100.0)[0][f"F_bolt[{j}]"] for j in (1, 2, 3, 4)]
+    expected = 15e3 + 100.0 * np.sign(spring.modes.bolts[:, 1]) / (2.0 * 0.05)
+    np.testing.assert_allclose(forces, expected, rtol=1e-9)
+
+
+def test_sides_that_do_not_give_way_are_rigid(made):
+    """Modes 1e12 times as stiff: the interface alone, with the bolts at their places."""
+    values = made(*FOUR, preload=15e3).file.values
+    stiff = replace(values.bodies, stiffness=tuple(1e12 * k for k in values.bodies.stiffness))
+    elastic = BoltedJointSpring.of(replace(values, bodies=stiff))
+    rigid = BoltedJointSpring.of(replace(values, sides="rigid"))
+    memory = [spring.at_rest() for spring in (elastic, rigid)]
+    for six in ([1e-7, 2e-8, -1e-8, 1e-7, 0.0, 1e-7], [2e-7, 1e-7, 5e-8, -1e-7, 2e-7, 0.0]):
+        (a, memory[0]), (b, memory[1]) = (
+            at(s, *six, memory=m, preload=15e3) for s, m in zip((elastic, rigid), memory, strict=True)
+        )
+        for name in ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z", "E_loss"):
+            assert a[name] == pytest.approx(b[name], rel=1e-6, abs=1e-6), name
+
+
+def test_closed_paths_never_give_work(made):
+    """Random loops in all six directions, into slip and opening, in steps of the trapezoidal rule."""
+    spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(4)
+    unit = np.array([3e-6, 3e-6, 1e-6, 2e-5, 2e-5, 5e-5])
+    for _ in range(4):
+        a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
+        memory, before, work = spring.at_rest(), None, 0.0
+        for angle in np.linspace(0.0, 2.0 * np.pi, 25):
+            six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
+            out, memory = at(spring, *six, memory=memory, preload=15e3)
+            force = np.array([out[name] for name in ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")])
+            if before is not None:
+                work -= 0.5 * (force + before[1]) @ (six - before[0])
+            before = six, force
+        assert work > 0.0
+        assert out["E_loss"] > 0.0
+
+
+def test_a_step_depends_on_inputs_and_memory_alone(made):
+    spring = made(*FOUR, preload=15e3).spring
+    _, memory = at(spring, 1e-6, 0, 0, 0, 1e-6, 0, preload=15e3)
+    kept = memory.copy()
+    first, _ = at(spring, 2e-6, 1e-6, 0, 0, 0, 1e-6, memory=memory, preload=15e3)
+    at(spring, -5e-6, 0, 4e-6, 0, 0, 0, memory=memory, preload=15e3)
+    again, _ = at(spring, 2e-6, 1e-6, 0, 0, 0, 1e-6, memory=memory, preload=15e3)
+    assert first == again
+    np.testing.assert_array_equal(memory, kept)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
+def test_the_fmu_is_the_package(made, tmp_path, flavour):
+    """Ways through slip, opening and tilt: both find the equilibrium to 1e-13 of all forces."""
+    joint = made(*FOUR, preload=15e3)
+    assert (
+        cli.main(
+            [
+                "build",
+                "BoltedJoint",
+                "--flavour",
+                flavour,
+                "--params",
+                str(joint.path),
+                "--out",
+                str(tmp_path),
+            ]
+        )
+        == 0
+    )
+    (path,) = tmp_path.rglob("BoltedJoint.fmu")
+    rng, six = np.random.default_rng(3), np.zeros(6)
+    unit, memory = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), joint.spring.at_rest()
+    _, memory = at(joint.spring, *six, memory=memory, preload=15e3)
+    fmu = Fmu(path).start({"preload": 15e3})
+    for step in range(30):
+        moved = rng.uniform(-1.0, 1.0, 6) * unit * (step > 2 or AXIS_X)
+        six = 0.3 * six if step % 10 == 9 else six + moved
+        expected, memory = at(joint.spring, *six, memory=memory, preload=15e3)
+        fmu.set(dict(zip(MOTIONS, six, strict=True)))
+        fmu.step()
+        for name, found in fmu.get(*expected).items():
+            least = {"f": 1e-5, "m": 1e-6}.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m
+            assert found == pytest.approx(float(expected[name]), rel=1e-8, abs=least), name
+    fmu.free()
+
+
+# What is refused
+
+
+def refused(changes, file):
+    with pytest.raises(ValueError) as error:
+        BoltedJointSpring.of(replace(file.values, **changes))
+    return str(error.value)
+
+
+def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
+    file = made(*FOUR, preload=15e3).file
+    assert "memory = false beside sides = elastic" in refused({"memory": False}, file)
+    assert "damping = true beside sides = elastic" in refused({"damping": True}, file)
+    assert "n_bolts = 5 is outside [4, 4]: the bolts that [bodies] has" in refused({"n_bolts": 5.0}, file)
+    other = replace(file.values.bodies, x=tuple(x + 1e-3 for x in file.values.bodies.x))
+    assert "[bodies] lies 0.001 m beside the contact" in refused({"bodies": other}, file)
+    text = dump(file)
+    alone = text[: text.index("[bodies]")] + text[text.index("[plate]") :] if "[plate]" in text else text
+    (tmp_path / "alone.toml").write_text(alone)
+    with pytest.raises(ValueError, match=r"sides = elastic without \[bodies\]"):
+        load(tmp_path / "alone.toml")
+    line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--thickness", "10", "12")
+    assert "--thickness = 10 and 12 mm contradicts --grip = 20 mm" in line
+    line = refused_line(capsys, "new", "bolted-joint", *FOUR, "--tapped", "--sides", "elastic")
+    assert "--sides elastic beside --tapped" in line
+
+
+def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
+    spring = made(*FOUR, preload=15e3).spring
+    with monkeypatch.context() as patch:
+        patch.setattr(equilibrium, "STEPS", 0)
+        with pytest.raises(
+            ValueError, match="preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium"
+        ):
+            at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
+    assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0
