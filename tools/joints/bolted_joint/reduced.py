@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, node_pressure, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -158,7 +158,7 @@ def _evaluate(
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]."""
-    spring, rest = BoltedJointSpring.of_nodes(replace(joint, memory=False)), (0.0, 0.0, 0.0)
+    spring, rest = BoltedJointSpring.of_nodes(replace(interface_alone(joint), memory=False)), (0.0, 0.0, 0.0)
     states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     return curves | {"approach": approach(spring, loads)}

@@ -1,0 +1,215 @@
+"""Elastic sides of the bolted joint of the README's example, reduced to modes, beside finite elements.
+
+Three tables: the tightened joint's stiffness, of the reduced joint over that of finite elements, each motion
+alone; the force on the first way into slip and opening, of the reduced joint less that of all compliances of
+some cells, over the force at which all slips or opens; and what calls of its FMU take in C beside those of
+the interface alone, in one run. Then closed paths in six directions through the FMU: the least work over the
+heat.
+
+Run: python benchmarks/elastic_sides.py [--cells N] [--paths N]
+"""
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import native_fmus
+import numpy as np
+from jointfmu_fmu_src.native import compiler, generate
+from jointfmu_fmu_src.native.build import build_fmi3
+from jointfmu_tools.fem.elastic_sides import Cells, States
+from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
+from jointfmu_tools.joints.bolted_joint.new import NEW, computed, whole
+from numpy.typing import NDArray
+from whole_joint import EXAMPLE
+
+from jointfmu.fmi.host import Instance, opened, unpacked
+from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+from jointfmu.mechanics.footprint.patches import few_points
+from jointfmu.parameters import ParameterFile
+
+Array = NDArray[np.float64]
+CELLS, PATHS, STEPS = 300, 1000, 48
+ATTACHED = ("faces", "heads", "edge")
+AXES = ("K_xx", "K_yy", "K_zz", "K_rx", "K_ry", "K_rz")
+FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+LEVELS = (0.1, 0.3, 0.5, 0.8, 1.0, 1.3)
+"""Motions over that at which the linear joint carries all friction, or loses all clamping force [1]."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """The example between its attachments: with elastic sides and rigid ones, and its finite elements."""
+
+    file: ParameterFile
+    rigid: ParameterFile
+    linear: Linear
+    normal: Array
+    preload: float
+
+    @classmethod
+    def of(cls, attached: str) -> "Joint":
+        """Made as the command makes it."""
+        seen: dict[str, object] = {}
+        real = whole.whole_joint
+
+        def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.WholeJoint:
+            joint = WholeJoint.of(plates.assembly(file), to)
+            springs = computed._springs(file, plates.preload, joint)
+            seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2])
+            seen["linear"] = joint.linear(springs, file.values.bolt_stiffness)
+            return real(file, plates, to)
+
+        whole.whole_joint = watched
+        try:
+            given = dict.fromkeys(option.name for option in NEW.options) | EXAMPLE | {"attached": attached}
+            file = NEW.run(given).file
+        finally:
+            whole.whole_joint = real
+        return cls(file=file, **seen)  # type: ignore[arg-type]
+
+    @property
+    def spring(self) -> BoltedJointSpring:
+        """With elastic sides."""
+        return BoltedJointSpring.of(self.file.values)
+
+    def load(self) -> Array:
+        """Forces and moments (6) at which all slips, or the clamping force is lost."""
+        values, spring = self.file.values, self.spring
+        clamping = values.n_bolts * self.preload
+        radius = float(np.sqrt(spring.shape.share @ np.sum(spring.shape.position**2, axis=1)))
+        mu = values.mu
+        return clamping * np.array([mu, mu, 1.0, radius, radius, mu * radius])
+
+
+def along(spring: BoltedJointSpring, motions: Sequence[Array], preload: float) -> list[Array]:
+    """Forces and moments (6) on the way through motions (6) from rest."""
+    memory, rows = spring.at_rest(), []
+    for six in motions:
+        out, memory = spring.evolve(preload, 0.0, Place.of(six), (0.0,) * 6, memory)
+        rows.append(np.array([float(out[name]) for name in FORCES]))
+    return rows
+
+
+def stiffnesses(joint: Joint) -> tuple[Array, Array]:
+    """(6) of the reduced joint and of finite elements, each motion alone."""
+    linear = joint.linear
+    out = joint.spring.motion(joint.preload, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    forces = linear.moved.T @ ((linear.bodies + linear.contact + linear.shanks) @ linear.moved)
+    return np.array([float(out[name]) for name in AXES]), np.diag(forces)
+
+
+def first_way(joint: Joint, count: int) -> Array:
+    """(5, levels) force less that of all compliances of `count` cells, over the load.
+
+    Along x, y, z, about y, z.
+    """
+    fine = few_points(pressure_shape(joint.rigid.values.pattern), count)
+    spring = BoltedJointSpring.of(joint.rigid.values).on(fine)
+    at = joint.linear.joint.interface
+    bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
+    states = States.of(Cells.of(joint.linear.joint, spring, joint.normal), bolts, joint.preload)
+    unit, rows = joint.load() / stiffnesses(joint)[0], []
+    for axis in (0, 1, 2, 4, 5):
+        motions = [level * unit * (np.arange(6) == axis) for level in LEVELS]
+        expected = [states.rigid.T @ states.forces(six) for six in motions]
+        found = along(joint.spring, motions, joint.preload)
+        rows.append([(-f[axis] - e[axis]) / joint.load()[axis] for f, e in zip(found, expected, strict=True)])
+    return np.array(rows)
+
+
+def times(joint: Joint, folder: Path) -> None:
+    """Print what calls of the FMUs take."""
+    host, unit = native_fmus.build_host(folder), joint.load() / stiffnesses(joint)[0]
+    part = 0.5 * np.array([1.0, 0.3, 0.1, 0.1, 0.1, 0.3])
+    ends = dict(zip(MOTIONS, part * unit, strict=True))
+    motions = {v.name: (-ends.get(v.name, 0.0), ends.get(v.name, 0.0)) for v in MODELS["BoltedJoint"].inputs}
+    ranges = motions | {"preload": (joint.preload, joint.preload)}
+    rounds: dict[str, list[dict[str, float]]] = {}
+    jobs = {"elastic": joint.file, "rigid": joint.rigid}
+    made = {}
+    for name, file in jobs.items():
+        files = generate.sources("BoltedJoint", file)
+        library = compiler.libraries(
+            "BoltedJoint", files, compiler.exported(list(files), "3"), ["x86_64-linux"]
+        )
+        (folder / f"{name}.so").write_bytes(library["x86_64-linux"])
+        model = MODELS["BoltedJoint"].of(file.joint, file.values)
+        made[name] = folder / f"{name}.so", generate.token(files), len(model.outputs)
+        native_fmus.RANGES[name] = ranges
+    for _ in range(native_fmus.ROUNDS):
+        for name, rest in made.items():
+            rounds.setdefault(name, []).append(native_fmus.native_times(host, name, "fmi3", *rest))
+    print("\n| sides | step | derivative | start |\n|---|---|---|---|")
+    for name, found in rounds.items():
+        middle = {key: np.median([each[key] for each in found]) for key in found[0]}
+        step, rate, start = (middle[key] for key in ("step_smooth", "derivative", "start"))
+        print(f"| {name} | {step * 1e6:.1f} us | {rate * 1e6:.1f} us | {start * 1e3:.2f} ms |")
+
+
+def closed(joint: Joint, folder: Path, paths: int) -> None:
+    """Print the least work of closed paths over their heat."""
+    path = build_fmi3("BoltedJoint", joint.file, folder, "tunable")
+    rng, unit, least = np.random.default_rng(1), 0.7 * joint.load() / stiffnesses(joint)[0], np.inf
+    with unpacked(path) as (unzipped, described):
+        for _ in range(paths):
+            a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
+            angles = np.linspace(0.0, 2.0 * np.pi, STEPS + 1)
+            way = np.sin(angles)[:, None] * a + (1.0 - np.cos(angles))[:, None] * b
+            with opened(unzipped, described, path.name, []) as fmu:
+                force = np.array(followed(fmu, way, joint.preload))
+            work = -0.5 * np.sum((force[1:, :6] + force[:-1, :6]) * np.diff(way, axis=0))
+            least = min(least, work / force[-1, 6])
+    print(f"\n{paths} closed paths of {STEPS} steps: least work over heat {least:.3f}; FMU {size_of(path)}")
+
+
+def size_of(path: Path) -> str:
+    """In kB."""
+    return f"{path.stat().st_size / 1e3:.0f} kB"
+
+
+def followed(fmu: Instance, way: Array, preload: float) -> list[list[float]]:
+    """Forces, moments and heat on a way (n, 6)."""
+    fmu.begin()
+    fmu.set({"preload": preload})
+    fmu.fmu.exitInitializationMode()
+    given, told, rows = fmu.reals(MOTIONS), fmu.reals((*FORCES, "E_loss")), []
+    for now, six in enumerate(way):
+        given.set(*six.tolist())
+        fmu.advance(float(now), 1.0)
+        rows.append(told.get())
+    return rows
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--cells", type=int, default=CELLS)
+    parser.add_argument("--paths", type=int, default=PATHS)
+    given = parser.parse_args(arguments)
+    joints = {attached: Joint.of(attached) for attached in ATTACHED}
+    print("| attached | " + " | ".join(AXES) + " |\n|---|" + "---|" * len(AXES))
+    for attached, joint in joints.items():
+        found, expected = stiffnesses(joint)
+        print(f"| `{attached}` | " + " | ".join(f"{x:.3f}" for x in found / expected) + " |")
+    print("\n| attached | along x | along y | along z | about y | about z |\n|---|---|---|---|---|---|")
+    for attached in ATTACHED[:2]:
+        worst = np.max(np.abs(first_way(joints[attached], given.cells)), axis=1)
+        print(f"| `{attached}` | " + " | ".join(f"{x:.1%}" for x in worst) + " |")
+    with tempfile.TemporaryDirectory() as folder:
+        times(joints["faces"], Path(folder))
+        closed(joints["faces"], Path(folder), given.paths)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
