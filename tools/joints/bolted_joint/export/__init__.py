@@ -68,8 +68,8 @@ EXPORTS = Exports(
     springs=_springs,
     contact=_contact,
     curve=LoadCurve(
-        meaning="force that holds the interface together over its separation from the tightened state, with the "
-        "tension of the bolts; without members and damping",
+        meaning="force that holds the interface together over its separation from the tightened state, "
+        "with the tension of the bolts; without members and damping",
         columns=(
             _VARIABLES["s_rel_z"],
             Variable("pull", "N", "force that holds it together"),
