@@ -196,7 +196,7 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
 
 
 def refused(changes, file):
-    with pytest.raises(ValueError, match="sides|bodies") as error:
+    with pytest.raises(ValueError, match=r"sides|bodies") as error:
         BoltedJointSpring.of(replace(file.values, **changes))
     return str(error.value)
 

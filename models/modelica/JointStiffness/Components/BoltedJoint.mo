@@ -116,7 +116,7 @@ equation
       Rectangle(extent={{-28,-44},{28,-68}}, lineColor={43,58,74}, fillColor={31,95,168}, fillPattern=FillPattern.Solid),
       Text(extent={{-150,120},{150,80}}, textColor={0,0,255}, textString="%name")}),
     Documentation(info="<html>
-<p>The interface of a bolted joint: a contact pressed together by bolts, whose pressure is high around each bolt and low between them. The bolts act as springs of stiffness <code>bolt_stiffness</code> beside the interface; with the default 0 they only press. The clamped members are not in it, and between rigid bodies they are mostly far softer than it: <code>jointfmu new bolted-joint</code> prints the stiffness of the whole joint beside that of the interface.</p>
+<p>The interface of a bolted joint: a contact pressed together by bolts, whose pressure is high around each bolt and low between them. The bolts act as springs of stiffness <code>bolt_stiffness</code> beside the interface; with the default 0 they only press. The clamped members are not in it, and between rigid bodies they are mostly far softer than it: <code>jointfmu new bolted-joint</code> makes the whole joint.</p>
 <h4>Flanges</h4>
 <p>The three flanges are side 2 along x, y and z, from the tightened state; z is the normal, positive apart. Side 1 is fixed. Hold a flange that does not move with <code>Modelica.Mechanics.Translational.Components.Fixed</code>.</p>
 <h4>Law</h4>
