@@ -58,7 +58,8 @@ def reduced(request):
 def direct(joint, shape, load):
     """Force, K_zz, K_xx, K_rx, K_ry of the spring itself over all nodes, and those at tightening."""
     elastic = replace(joint, memory=False)
-    spring = BoltedJointSpring(elastic, Sums.of(joint, PRELOAD, pressures).curve, shape, shape)
+    curve = Sums.of(joint, PRELOAD, pressures).curve
+    spring = replace(BoltedJointSpring.of_nodes(elastic, shape), curve=curve)
     force = load.preload * PRELOAD
     moment = load.moment * force * joint.row_distance * joint.row_bolts
     start = spring.tightened(force, moment)
