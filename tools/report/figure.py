@@ -15,13 +15,15 @@ _COLOURS = (BLUE, RED, GREEN, GREY, "#8055a8", "#b8860b")
 
 
 class Figure(NamedTuple):
-    """Title, what is to be seen, panels or pictures as SVG elements, and the CSV file beside the page."""
+    """Title, what is to be seen, panels or pictures as SVG elements, the CSV file beside the page, and rows
+    of a table, its head first."""
 
     title: str
     text: str
     panels: Sequence[Panel] = ()
     pictures: Sequence[str] = ()
     data: str | None = None
+    table: Sequence[Sequence[str]] = ()
 
 
 def published(points: Sequence[Point], over: str, factor: float = 1.0) -> list[Series]:

@@ -81,7 +81,6 @@ def _page(model: Model, file: ParameterFile) -> str:
         file=file,
         version=__version__,
         figures=[(figure, as_json(figure.panels)) for figure in figures],
-        loops=_loop_rows(loops) if loops else [],
         beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
         drawings=drawings(model, course.spring),
         rows=rows,
@@ -162,11 +161,11 @@ def looped(course: Course, loops: HysteresisLoops) -> Figure:
         text += "With these parameters the joint remembers nothing: way there and way back are one curve."
     force = f"{'-' if loops.sign < 0.0 else ''}{loops.force}"
     panel = Panel(f"{force} over {loops.motion}", f"{loops.motion} [{x_unit}]", f"{force} [{y_unit}]", series)
-    return Figure("Loops", text, [panel])
+    return Figure("Loops", text, [panel], table=_loop_rows(loops))
 
 
-def _loop_rows(loops: HysteresisLoops) -> list[dict[str, str]]:
-    """The table of the loops, in display units."""
+def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
+    """What the loops lose, in display units."""
     stiffness = "N/m" if loops.units[0] == "m" else "N.m/rad"
     units = {"motion": loops.units[0], "force": loops.units[1], "secant_stiffness": stiffness, "loss": "J"}
 
@@ -174,10 +173,12 @@ def _loop_rows(loops: HysteresisLoops) -> list[dict[str, str]]:
         value, unit = _scale(row[name], units[name])
         return f"{float(value):.4g} {unit}"
 
-    return [
-        {name: shown(row, name) for name in units} | {"loss_factor": f"{row['loss_factor']:.3g}"}
-        for row in loops.rows()
+    rows: list[tuple[str, ...]] = [
+        ("amplitude", "force or torque", "secant stiffness", "loss of a cycle", "loss factor")
     ]
+    for row in loops.rows():
+        rows.append((*(shown(row, name) for name in units), f"{row['loss_factor']:.3g}"))
+    return rows
 
 
 def _beside_rows(rows: list[Beside]) -> list[dict[str, str]]:

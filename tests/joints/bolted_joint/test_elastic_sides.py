@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from conftest import Fmu, refused_line
 from jointfmu_tools import cli
+from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.new import computed, whole
 
+from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import whole as equilibrium
 from jointfmu.joints.bolted_joint.contact import Place
+from jointfmu.joints.bolted_joint.law import interface_alone
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import dump, load
 
@@ -71,6 +74,33 @@ def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words):
     found = 1.0 / np.diag(np.linalg.inv(np.diag([out[name] for name in AXES])))
     expected = [1.0 / joint.fe[axis].whole for axis in ("x", "y", "z", "rx", "ry", "rz")]
     np.testing.assert_allclose(found, expected, rtol=0.03)
+
+
+def test_the_report_states_the_whole_beside_its_parts(made):
+    """Parts of the compliance as finite elements have them, within 0.02 of the whole: modes and rounding as
+    above; what the page says of rigid sides is nothing."""
+    joint = made(*FOUR, preload=15e3)
+    found = report.compliances(joint.spring, 15e3)
+    out, _ = at(joint.spring, *STILL, preload=15e3)
+    np.testing.assert_allclose(1.0 / found.whole, [out[name] for name in AXES], rtol=0.01)
+    fe = [joint.fe[axis] for axis in ("x", "y", "z", "rx", "ry", "rz")]
+    expected = np.array([[one.interface, one.members, one.bolts] for one in fe]).T
+    np.testing.assert_allclose(found.parts / found.whole, expected / expected.sum(axis=0), atol=0.02)
+    np.testing.assert_allclose(found.rigid, [one.rigid for one in fe], rtol=0.03)
+    np.testing.assert_allclose(found.bolt_force[:, 2], fe[2].bolt_force, rtol=0.05)
+
+    model = KINDS[joint.file.joint].models[0]
+    (figure,) = report.whole_joint(model, joint.file)
+    assert [row[0] for row in figure.table[1:]] == list(AXES)
+    assert f"{1e-6 / found.whole[2]:.4g} N/µm" in figure.table[3]
+    (panel,) = figure.panels
+    for series in panel.series:  # from its preload, slowly, then with all of the load
+        assert series.y[0] == pytest.approx(15.0)
+        assert series.y[-1] > 1.1 * 15.0
+    whole_force = sum(np.array(series.y)[-1] for series in panel.series)
+    assert whole_force == pytest.approx(panel.series[0].x[-1], rel=1e-3)  # open: the bolts alone carry
+    alone = interface_alone(joint.file.values)
+    assert report.whole_joint(model, replace(joint.file, values=alone)) == []
 
 
 def test_stiffnesses_are_those_of_the_forces(made):

@@ -16,6 +16,7 @@ PARTS = ToolParts(
         "new",
         "pressure",
         "reduced",
+        "report",
         "ringing",
     ),
 )
