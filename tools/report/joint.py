@@ -72,7 +72,7 @@ def _page(model: Model, file: ParameterFile) -> str:
     loops = course.loops() if model.loop else None
     figures = [curves(course), *([looped(course, loops)] if loops else [])]
     if own and model.name in own.FIGURES:
-        figures += own.FIGURES[model.name](model, file)
+        figures += own.FIGURES[model.name](course)
     return template(asset(model, "page.html"), here, FRAME).render(
         model=course.model,
         spring=course.spring,

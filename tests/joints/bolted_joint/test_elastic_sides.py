@@ -9,6 +9,7 @@ from conftest import Fmu, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.new import computed, whole
+from jointfmu_tools.report.course import Course
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import whole as equilibrium
@@ -90,7 +91,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(found.bolt_force[:, 2], fe[2].bolt_force, rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
-    (figure,) = report.whole_joint(model, joint.file)
+    (figure,) = report.whole_joint(Course(model, joint.file))
     assert [row[0] for row in figure.table[1:]] == list(AXES)
     assert f"{1e-6 / found.whole[2]:.4g} N/µm" in figure.table[3]
     (panel,) = figure.panels
@@ -100,7 +101,7 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     whole_force = sum(np.array(series.y)[-1] for series in panel.series)
     assert whole_force == pytest.approx(panel.series[0].x[-1], rel=1e-3)  # open: the bolts alone carry
     alone = interface_alone(joint.file.values)
-    assert report.whole_joint(model, replace(joint.file, values=alone)) == []
+    assert report.whole_joint(Course(model, replace(joint.file, values=alone))) == []
 
 
 def test_stiffnesses_are_those_of_the_forces(made):

@@ -18,6 +18,7 @@ from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
+from .new.whole import named, opening_load
 
 Array = NDArray[np.float64]
 
@@ -65,15 +66,15 @@ def compliances(spring: BoltedJointSpring, preload: float, moment: float = 0.0) 
     return Compliances(np.stack([interface, members, bolts]), np.diag(np.linalg.inv(alone)), force)
 
 
-def whole_joint(model: Model, file: ParameterFile) -> list[Figure]:
+def whole_joint(course: Course) -> list[Figure]:
     """The whole joint beside its interface and its bolts, and the force of each bolt over a force along z."""
-    joint = file.values
+    joint, spring = course.file.values, course.spring
     if not joint.elastic:
         return []
-    about, spring = Course(model, file).about, BoltedJointSpring.of(joint)
-    preload, moment = (float(about.get(name, 0.0)) for name in ("preload", "moment"))
+    assert isinstance(spring, BoltedJointSpring)
+    preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
     found = compliances(spring, preload, moment)
-    opening = preload / (1.0 / joint.n_bolts - float(found.bolt_force[:, 2].mean()))
+    opening = opening_load(preload, found.bolt_force[:, 2])
     limit = joint.mu * joint.n_bolts * preload
     panel = _bolt_forces(spring, preload, moment, opening * found.whole[2])
     text = _text(found, preload, moment) + (
@@ -98,7 +99,7 @@ def _rows(found: Compliances, spring: BoltedJointSpring) -> list[tuple[str, ...]
         stiffness = (1.0 / found.whole[i], 1.0 / found.rigid[i], bolts[i])
         told = [_told(value, unit) if value > 0.0 else "none" for value in stiffness]
         parts = (f"{part / found.whole[i]:.1%}" for part in found.parts[:, i])
-        rows.append((f"K_{name if len(name) == 2 else 2 * name}", *told, *parts))
+        rows.append((f"K_{named(name)}", *told, *parts))
     return rows
 
 

@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, Friction, limits, viscous
-from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
+from ...report.course import Course
 from ...report.figure import Figure, Panel, Series
 from .beside import beside
 from .efficiency import spring_bench
@@ -21,8 +21,9 @@ _MOST = 10.0
 """Torque up to which back-driving is sought, over the rated torque [1]."""
 
 
-def friction(model: Model, file: ParameterFile) -> list[Figure]:
+def friction(course: Course) -> list[Figure]:
     """Efficiency over the load at some speeds; the torques that set the drive in motion."""
+    model, file = course.model, course.file
     drive = file.values
     title = "Friction"
     if not Friction.of(drive).acts and drive.friction_viscous == 0.0:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from jointfmu.parameters import ParameterFile
 
 from . import ATTACHED
-from .computed import Plates, whole_joint
+from .computed import Array, Plates, whole_joint
 
 if TYPE_CHECKING:
     from ....fem.whole_joint import Compliance
@@ -42,12 +42,13 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
             file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
         )
     parts = found.compliances
-    rows = {f"whole_K_{_named(name)}": _row(one, name, attached) for name, one in parts.items()}
+    rows = {f"whole_K_{named(name)}": _row(one, name, attached) for name, one in parts.items()}
     rows |= _load(parts["z"], plates.preload, attached) | _share(parts, sides == "rigid")
     return Whole(file if sides == "rigid" else found.file, rows, [])
 
 
-def _named(direction: str) -> str:
+def named(direction: str) -> str:
+    """A direction as stiffnesses are called: zz, rx."""
     return direction if direction in _TURNS else 2 * direction
 
 
@@ -70,10 +71,15 @@ def _share(found: "Mapping[str, Compliance]", alone: bool) -> Facts:
     return {"interface_share": (along, "1", text)}
 
 
+def opening_load(preload: float, bolt_force: Array) -> float:
+    """Force [N] along z that takes all pressure of a preload [N] from the interface, linearly; bolt_force
+    (bolts) [N per N] what each bolt gets of it."""
+    return preload / (1.0 / len(bolt_force) - float(bolt_force.mean()))
+
+
 def _load(one: "Compliance", preload: float, attached: str) -> Facts:
     """What an outer force along the axis does, without an eccentric one's bending."""
-    each, most = one.bolt_force.mean(), one.bolt_force.max()
-    force = preload / (1.0 / len(one.bolt_force) - each)
+    most, force = one.bolt_force.max(), opening_load(preload, one.bolt_force)
     where = f"a force along z at {ATTACHED[attached]}"
     return {
         "whole_load_factor": (
@@ -82,5 +88,5 @@ def _load(one: "Compliance", preload: float, attached: str) -> Facts:
             f"n Phi_K: part that the bolts take of {where}",
         ),
         "whole_bolt_share": (float(most), "1", f"part that one bolt takes at most of {where}"),
-        "opening_load": (float(force), "N", f"{where} that takes all pressure from the interface, linear"),
+        "opening_load": (force, "N", f"{where} that takes all pressure from the interface, linear"),
     }
