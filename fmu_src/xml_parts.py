@@ -58,7 +58,8 @@ def listed(model: Model, parameters: ParameterFile) -> list[Listed]:
         for i, v in enumerate(group):
             attributes = _shown(v.unit, v.nominal) | _bounds(v.interval)
             state = causality == "output" and i < model.states
-            rate_of = len(variables) if causality == "output" and 0 < i <= model.states else None
+            rate = causality == "output" and model.rate(i)
+            rate_of = len(variables) + 1 - model.states // 2 if rate else None
             attributes["nominal"] = repr(v.nominal)
             start = parameters.start(v.name) if causality == "input" else 0.0 if state else None
             variables.append(Listed(v.name, causality, v.doc, start, attributes, rate_of))
@@ -118,7 +119,7 @@ def unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
             knowns[index[name]] = {None: "dependent", "parameters": variability}.get(linear, "constant")
             # during initialization parameters still change, so only a number is a known factor
             initial[index[name]] = "constant" if linear == "constant" else "dependent"
-        state, rate = i < model.states, 0 < i <= model.states
+        state, rate = i < model.states, model.rate(i)
         rows.append(ModelStructureUnknown(index[output], state, rate, knowns, initial | parameters))
     return rows
 

@@ -72,16 +72,14 @@ def _members(model: Model, parameters: ParameterFile, version: str, variability:
             "modelDescription.xml": fmi2_xml(model, parameters, data.token, units, variability),
             "model.png": icons["icon.png"],
         }
-        binaries = _fmi2_binaries(model.title, built)
     else:
         top = {
             "modelDescription.xml": fmi3_xml(model, parameters, data.token, variability),
             "sources/buildDescription.xml": build_description(model, units),
         }
-        binaries = {f"{p}/{file_name(model.title, p)}": content for p, content in built.items()}
     return (
         top
-        | _below("binaries", binaries)
+        | binaries(model.title, built, version)
         | _below("sources", {path: text.encode() for path, text in own.items()})
         | _below("documentation", documentation(model, parameters))
         | _below("terminalsAndIcons", icons)
@@ -89,14 +87,22 @@ def _members(model: Model, parameters: ParameterFile, version: str, variability:
     )
 
 
-def _fmi2_binaries(name: str, built: Mapping[str, bytes]) -> dict[str, bytes]:
-    """{path: content} of the binaries with FMI 2.0's names; one file serves every macOS."""
-    return {
-        f"win64/{name}.dll": built["x86_64-windows"],
-        f"linux64/{name}.so": built["x86_64-linux"],
-        f"aarch64-linux/{name}.so": built["aarch64-linux"],
-        f"darwin64/{name}.dylib": universal([built["x86_64-darwin"], built["aarch64-darwin"]]),
+_FMI2 = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}
+"""FMI 2.0's names of platforms."""
+_MACS = ("x86_64-darwin", "aarch64-darwin")
+
+
+def binaries(name: str, built: Mapping[str, bytes], version: str) -> dict[str, bytes]:
+    """{path in an FMU: content} of the libraries {platform of FMI 3.0: content}; in FMI 2.0 one file serves
+    every macOS."""
+    if version == "3":
+        return {f"binaries/{p}/{file_name(name, p)}": content for p, content in built.items()}
+    found = {
+        f"binaries/{_FMI2[p]}/{file_name(name, p)}": content for p, content in built.items() if p in _FMI2
     }
+    if macs := [built[p] for p in _MACS if p in built]:
+        found[f"binaries/darwin64/{name}.dylib"] = universal(macs)
+    return found
 
 
 def _below(folder: str, files: Mapping[str, bytes]) -> dict[str, bytes]:

@@ -85,9 +85,10 @@ def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
 
 def _model(model: Model, parameters: Any, memory: int) -> str:
     moving = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
-    if model.states:
+    fields = list(model.parameter_fields())
+    if "lag_a" in fields:
         first = 1 + len(model.inputs) + len(model.outputs)
-        moving += f"#define LAGS {first + list(model.parameter_fields()).index('lag_a')}\n"
+        moving += f"#define LAGS {first + fields.index('lag_a')}\n"
     if model.events:
         moving += f"#define N_EVENTS {len(model.events(parameters))}\n"
     places = ", ".join(f"INPUT_{v.name.upper()}" for v in model.inputs)

@@ -1,6 +1,6 @@
 """The folder documentation: one page about the joint, its connection, law, limits and parameters."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,6 +16,7 @@ from jointfmu.quantity.units import UNITS, display_unit
 from ..folders import asset, parts_of
 from ..joint_parts import chart
 from ..joint_parts.page import RampPanel
+from ..joint_parts.terminals import Terminal
 from ..templates import law_terms, template
 from ..xml_parts import listed
 from .licence import licence
@@ -46,11 +47,18 @@ def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
 
 
 def _partner_page(model: Model, parameters: ParameterFile) -> str:
-    return _template(model).render(
+    return plain_page(model, parameters, asset(model, "page.html"), terminals(model))
+
+
+def plain_page(
+    model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()
+) -> str:
+    """A page of the variables alone, of the template `page`."""
+    return template(page, Path(__file__).parent).render(
         model=model,
         version=__version__,
         variables=listed(model, parameters),
-        terminals=terminals(model),
+        terminals=flanges,
     )
 
 

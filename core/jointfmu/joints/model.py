@@ -110,7 +110,8 @@ class Model:
     linear   : {output: {input: what the factor depends on}} where an output is linear in an input with a
         factor of parameters only ("parameters") or of none ("constant")
     hidden   : prefixes of parameters that no tool may change
-    states   : continuous states, the first outputs; the rate of each is the output after it
+    states   : continuous states, the first outputs: positions of bodies, then their speeds; after them the
+        accelerations, so that the rate of each is the output as many places on as there are bodies
     moves    : outputs change with time, while inputs rest
     events   : (spring) -> times [s] at which their course has a corner, numbers or symbols; None: at none
     rest     : (spring) -> memory (n) of a joint that has not moved yet, all zero; None: it has no memory
@@ -153,6 +154,11 @@ class Model:
     def title(self) -> str:
         """What it is called where it is used."""
         return self.alias or self.name
+
+    def rate(self, output: int) -> bool:
+        """Whether an output is the rate of a state."""
+        bodies = self.states // 2
+        return bodies <= output < self.states + bodies
 
     def parameter_fields(self) -> dict[str, Any]:
         """Structured names and fields of the parameters that the FMU exposes."""

@@ -4,8 +4,9 @@
 
 #include "memory.h"
 
-/* Continuous states: a position and its speed, whose rate is the output after them. Joints have none. */
+/* Continuous states: positions and speeds of bodies, whose rates are outputs. Joints have none. */
 
+#if !IMPLICIT
 #if N_STATES
 enum { POSITION = FIRST_OUTPUT, SPEED, RATE };
 
@@ -27,7 +28,7 @@ static double rate_at_begin(Instance *m)
 
 /* Velocity Verlet: positions are those of the leapfrog scheme. The speed at the end of a step needs the rate
  * there, which is known in the next step only: until then the rate at its begin stands in for it. */
-void instance_advance(Instance *m, double size)
+Status instance_advance(Instance *m, double size)
 {
     State *now = &m->now;
     double *x = now->values;
@@ -39,14 +40,17 @@ void instance_advance(Instance *m, double size)
     memcpy(now->last_inputs, x + FIRST_INPUT, sizeof now->last_inputs);
     now->last_rate = rate;
     now->last_size = size;
+    return OK;
 }
 #else
 static const double nominals[1];
 
-void instance_advance(Instance *m, double size)
+Status instance_advance(Instance *m, double size)
 {
     (void)m, (void)size;
+    return OK;
 }
+#endif
 #endif
 
 static bool fit(Instance *m, const char *function, unsigned where, const double x[], size_t n)
@@ -81,7 +85,7 @@ Status instance_get_rates(Instance *m, const char *function, double x[], size_t 
     if (!fit(m, function, READABLE, x, n) || (n && instance_evaluate(m) != OK))
         return ERROR;
     if (n)
-        memcpy(x, m->now.values + FIRST_OUTPUT + 1, n * sizeof *x);
+        memcpy(x, m->now.values + FIRST_OUTPUT + N_BODIES, n * sizeof *x);
     return OK;
 }
 

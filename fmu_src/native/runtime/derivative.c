@@ -1,6 +1,7 @@
 #include "derivative.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "memory.h"
 
@@ -21,7 +22,8 @@ Status instance_derivative(Instance *m, const char *function, const uint32_t unk
         (n_knowns && !instance_has(m, function, "the seed", seed)) ||
         (n_unknowns && !instance_has(m, function, "the array of sensitivities", result)))
         return ERROR;
-    double direction[N_INPUTS + N_STATES] = {0.0}, change[N_OUTPUTS];
+    double *direction = m->seed, *change = m->change;
+    memset(m->seed, 0, sizeof m->seed);
     for (size_t i = 0; i < n_knowns; i++) {
         if (!isfinite(seed[i]))
             return refuse_derivative(m, function, knowns[i]);
@@ -47,7 +49,8 @@ Status instance_adjoint(Instance *m, const char *function, const uint32_t unknow
         if (!isfinite(seed[i]))
             return refuse_derivative(m, function, unknowns[i]);
     for (size_t j = 0; j < n_knowns; j++) {
-        double direction[N_INPUTS + N_STATES] = {0.0}, change[N_OUTPUTS];
+        double *direction = m->seed, *change = m->change;
+        memset(m->seed, 0, sizeof m->seed);
         direction[knowns[j] - FIRST_INPUT] = 1.0;
         joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), memory_after(m), direction, change);
         result[j] = 0.0;

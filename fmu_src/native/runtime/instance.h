@@ -51,7 +51,7 @@ struct Reporter {
 /* What a joint with memory went through. */
 typedef struct {
     double memory[2][N_MEMORY + 1]; /* before and after the way to the accepted inputs; one more, for C */
-    double inputs[N_INPUTS];        /* accepted */
+    double knowns[N_PATH];          /* accepted: values from FIRST_KNOWN on */
     unsigned last;                  /* 1: memory[1] is the one after, else memory[0] */
     unsigned accepted;              /* 0: no inputs are, and memory[last] is the only one */
 } Path;
@@ -74,6 +74,7 @@ typedef struct {
     State kept;              /* to go back to where a step is refused */
     double tried[N_MEMORY + 1]; /* memory after the way of the last evaluation */
     double tabulated[N_PARAMETERS]; /* parameters of the tables */
+    double seed[N_INPUTS + N_STATES], change[N_OUTPUTS]; /* of a derivative */
     Joint *joint;
     bool dirty;              /* outputs are not those of the present inputs and parameters */
     bool parameters_changed; /* perhaps: a parameter was set since the last evaluation */

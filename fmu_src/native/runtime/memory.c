@@ -10,7 +10,7 @@ void memory_accept(Instance *m)
         return; /* they are accepted already */
     path->last = 1u - path->last;
     memcpy(path->memory[path->last], m->tried, sizeof m->tried);
-    memcpy(path->inputs, m->now.values + FIRST_INPUT, sizeof path->inputs);
+    memcpy(path->knowns, m->now.values + FIRST_KNOWN, sizeof path->knowns);
     path->accepted = 1;
 }
 

@@ -14,8 +14,8 @@ static inline bool memory_rests(const Instance *m)
 {
     const Path *path = &m->now.path;
     bool rests = N_MEMORY && path->accepted;
-    for (size_t i = 0; i < N_INPUTS && rests; i++)
-        rests = m->now.values[FIRST_INPUT + i] == path->inputs[i];
+    for (size_t i = 0; i < N_PATH && rests; i++)
+        rests = m->now.values[FIRST_KNOWN + i] == path->knowns[i];
     return rests;
 }
 

@@ -110,7 +110,7 @@ static void pass(Cursor *c, State *s)
     if (N_MEMORY) {
         pass_doubles(c, s->path.memory[0], N_MEMORY);
         pass_doubles(c, s->path.memory[1], N_MEMORY);
-        pass_doubles(c, s->path.inputs, N_INPUTS);
+        pass_doubles(c, s->path.knowns, N_PATH);
         pass_word(c, &s->path.last);
         pass_word(c, &s->path.accepted);
     }

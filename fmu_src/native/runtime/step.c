@@ -90,9 +90,13 @@ static Status step_moving(Instance *m, double size, double end)
 {
     State *now = &m->now;
     m->kept = *now;
-    if (instance_evaluate(m) != OK)
+    if (instance_accept(m) != OK)
         return ERROR;
-    instance_advance(m, size);
+    if (instance_advance(m, size) != OK) {
+        *now = m->kept;
+        m->dirty = true;
+        return ERROR;
+    }
     now->values[0] = end;
     m->dirty = true;
     const bool sloping = has_slopes(now);

@@ -9,10 +9,17 @@
 
 /* Systems define these two in model.h. */
 #ifndef N_STATES
-#define N_STATES 0 /* continuous states: the first outputs; the rate of each is the output after it */
+#define N_STATES 0 /* continuous states: the first outputs, positions of bodies, then their speeds; then the
+                    * accelerations, so that the rate of each is the output N_BODIES after it */
 #endif
+#define N_BODIES (N_STATES / 2)
 #ifndef MOVES
 #define MOVES 0 /* 1: outputs change with time, while inputs rest */
+#endif
+
+/* Systems whose steps of co-simulation are implicit define it: implicit.c has them. */
+#ifndef IMPLICIT
+#define IMPLICIT 0
 #endif
 
 /* Joints that remember the path of their inputs define it too. */
@@ -40,7 +47,9 @@ enum {
     FIRST_INPUT = 1,
     FIRST_OUTPUT = FIRST_INPUT + N_INPUTS,
     FIRST_PARAMETER = FIRST_OUTPUT + N_OUTPUTS,
-    N_VALUES = FIRST_PARAMETER + N_PARAMETERS
+    N_VALUES = FIRST_PARAMETER + N_PARAMETERS,
+    FIRST_KNOWN = MOVES ? 0 : FIRST_INPUT, /* what a path goes along: inputs; of what moves, time and states too */
+    N_PATH = FIRST_OUTPUT + N_STATES - FIRST_KNOWN
 };
 
 extern const Variable variables[N_VALUES]; /* by value reference; [0] is the time */

@@ -1,0 +1,150 @@
+"""A system as the builders take it: components in the order of their evaluation, and what feeds them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, make_dataclass, replace
+from typing import Any, NamedTuple
+
+from jointfmu.joints.model import Model, Ramp, Variable
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity.declaration import group
+
+SYSTEM = "system"
+"""What stands for the kind of joint in the model of a system."""
+LAGS = ("lag_a", "lag_b")
+"""Parameters of bodies that only a master of separate FMUs needs."""
+
+
+class Feed(NamedTuple):
+    """An output that feeds an input."""
+
+    component: str
+    output: str
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """A load, joint or body.
+
+    model : of a body without LAGS
+    feeds : {input: what feeds it}; None: nothing, it is zero. Inputs without an entry are the system's
+    start : {input of the system: start value} where it is not zero
+    """
+
+    name: str
+    model: Model
+    parameters: ParameterFile
+    feeds: Mapping[str, Feed | None]
+    start: Mapping[str, float]
+
+    @property
+    def free(self) -> list[Variable]:
+        """Inputs that are the system's."""
+        return [v for v in self.model.inputs if v.name not in self.feeds]
+
+    @property
+    def exposed(self) -> list[str]:
+        """Its parameters that are the system's."""
+        return [*self.model.parameter_fields()]
+
+
+@dataclass(frozen=True, slots=True)
+class Assembly:
+    """A system.
+
+    components : loads, then joints, then bodies: each takes from those before it, and the states of bodies
+    stop, interval : of the default experiment [s]
+    """
+
+    name: str
+    doc: str
+    components: Sequence[Component]
+    stop: float
+    interval: float
+
+    @property
+    def bodies(self) -> list[Component]:
+        """Components with states."""
+        return [part for part in self.components if part.model.states]
+
+    @property
+    def inputs(self) -> list[tuple[Component, Variable]]:
+        """Inputs of the system, by component."""
+        return [(part, v) for part in self.components for v in part.free]
+
+    @property
+    def outputs(self) -> list[tuple[Component, Variable]]:
+        """Outputs: places, speeds, accelerations of all bodies; then those of loads and joints."""
+        bodies = self.bodies
+        moving = [(part, part.model.outputs[k]) for k in range(3) for part in bodies]
+        return moving + [
+            (part, v) for part in self.components if not part.model.states for v in part.model.outputs
+        ]
+
+    def model(self) -> Model:
+        """What is exported; variables are called COMPONENT.VARIABLE."""
+        sets = [(p.name, type(p.parameters.values), group(p.model.doc)) for p in self.components]
+        hidden = [
+            f"{p.name}.{name}"
+            for p in self.components
+            for name in sorted({*p.parameters.flat} - {*p.exposed})
+        ]
+        return Model(
+            name=self.name,
+            joint=SYSTEM,
+            doc=self.doc,
+            parameters=make_dataclass("SystemParameters", sets, frozen=True, kw_only=True),
+            spring=lambda values: values,
+            inputs=[named(part, v) for part, v in self.inputs],
+            outputs=[named(part, v) for part, v in self.outputs],
+            evaluate=_not_in_python,
+            outside=(),
+            ramp=Ramp("", self.stop, self.interval, self.interval),
+            dependencies=self._dependencies(),
+            hidden=hidden,
+            states=2 * len(self.bodies),
+            moves=True,
+            rest=_not_in_python if any(p.model.rest for p in self.components) else None,
+            evolve=_not_in_python if any(p.model.rest for p in self.components) else None,
+        )
+
+    def parameters(self, model: Model) -> ParameterFile:
+        """Of all components, in the form of a joint's."""
+
+        def every(of: str) -> dict[str, Any]:
+            return {
+                f"{p.name}.{name}": value
+                for p in self.components
+                for name, value in getattr(p.parameters, of).items()
+            }
+
+        values = model.parameters(**{p.name: p.parameters.values for p in self.components})
+        starts = {f"{part.name}.{v.name}": part.start.get(v.name, v.start) for part, v in self.inputs}
+        return ParameterFile(SYSTEM, self.name, values, every("origins"), every("sources"), starts)
+
+    def _dependencies(self) -> dict[str, list[str]]:
+        """{output: inputs of the system and states that it depends on}."""
+        found: dict[str, dict[str, None]] = {}
+        for part in self.bodies:
+            for v in part.model.outputs[:2]:
+                found[f"{part.name}.{v.name}"] = {f"{part.name}.{v.name}": None}
+        for part in self.components:
+            states = {v.name for v in part.model.outputs[: part.model.states]}
+            for v in part.model.outputs[part.model.states :]:
+                reached: dict[str, None] = {}
+                for name in part.model.depends(v.name):
+                    feed = part.feeds.get(name)
+                    if name in states or name not in part.feeds:
+                        reached[f"{part.name}.{name}"] = None
+                    elif feed:
+                        reached |= found[f"{feed.component}.{feed.output}"]
+                found[f"{part.name}.{v.name}"] = reached
+        return {name: [*reached] for name, reached in found.items()}
+
+
+def named(part: Component, v: Variable) -> Variable:
+    """A variable of a component with the component's name before its own."""
+    return replace(v, name=f"{part.name}.{v.name}", doc=f"{v.doc} ({part.name})")
+
+
+def _not_in_python(*given: object) -> Any:
+    raise NotImplementedError("a system is evaluated in C alone")

@@ -1,0 +1,255 @@
+/* Steps of co-simulation of a system of bodies: collocation at the begin, the middle and the end of a step (Lobatto
+ * IIIA of order 4: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5), which is symmetric and
+ * A-stable. Newton's method takes the exact tangents of the joints. Each step is made whole and in two halves; their
+ * difference decides its size, so that every communication step is right. What the joints remember goes on from half
+ * step to half step. */
+#include <math.h>
+#include <string.h>
+
+#include "continuous.h"
+#include "elementary.h"
+#include "memory.h"
+#include "system.h"
+
+#define TOLERANCE 1e-6 /* of the speeds in a step, of the largest in it */
+#define CONVERGED 1e-4 /* of that, Newton's last correction */
+#define LEAST_SPEED 1e-6 /* of the nominal speed: what is slower counts as that */
+#define LEAST_STEP 1e-9 /* of the communication step */
+#define WORTH 0.1 /* a correction that shrinks by less asks for new tangents */
+#define MOST_GROWTH 4.0
+enum { MOST_ITERATIONS = 12, MIDDLE = 0, END = 1, X = FIRST_OUTPUT, V = X + N_BODIES, A = V + N_BODIES };
+
+/* From accelerations at begin, middle and end of a step of size 1 to the speed, and to the place. */
+static const double SPEEDS[2][3] = {{5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0}, {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}};
+static const double PLACES[2][3] = {{1.0 / 16.0, 1.0 / 12.0, -1.0 / 48.0}, {1.0 / 6.0, 1.0 / 3.0, 0.0}};
+static const double TIMES[2] = {0.5, 1.0};
+
+/* A step: places, speeds and accelerations at its begin, time, size. */
+typedef struct {
+    const double *from, *memory;
+    double time, size;
+} Step;
+
+/* Values at a stage for the present accelerations, without the outputs after them. */
+static void place(Instance *m, const Step *s, int stage)
+{
+    Work *w = &m->joint->work;
+    const double h = s->size, *p = PLACES[stage], *q = SPEEDS[stage], *k = w->accelerations;
+    double *at = w->at[stage];
+    at[0] = s->time + TIMES[stage] * h;
+    for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
+        at[i] = m->now.values[i] + m->now.slopes[i - FIRST_INPUT] * (at[0] - m->now.values[0]);
+    for (size_t i = 0; i < N_BODIES; i++) {
+        const double x = s->from[i], v = s->from[N_BODIES + i], a = s->from[2 * N_BODIES + i];
+        at[X + i] = x + h * (TIMES[stage] * v + h * (p[0] * a + p[1] * k[i] + p[2] * k[N_BODIES + i]));
+        at[V + i] = v + h * (q[0] * a + q[1] * k[i] + q[2] * k[N_BODIES + i]);
+    }
+}
+
+static bool evaluate(Instance *m, const Step *s, int stage, double *after)
+{
+    double *at = m->joint->work.at[stage];
+    Text ignored;
+    text_clear(&ignored);
+    place(m, s, stage);
+    bool finite = joint_evaluate(m->joint, at + FIRST_INPUT, s->memory, after, at + FIRST_OUTPUT, &ignored);
+    for (size_t i = 0; i < N_BODIES; i++)
+        finite = finite && fabs(at[A + i]) < INFINITY;
+    return finite;
+}
+
+/* Rows of Newton's matrix at a stage that was just evaluated. */
+static void differentiate(Instance *m, const Step *s, int stage)
+{
+    Work *w = &m->joint->work;
+    const double h = s->size;
+    for (size_t j = 0; j < N_BODIES; j++) {
+        for (size_t i = 0; i < N_BODIES; i++)
+            for (int r = 0; r < 2; r++)
+                w->matrix[stage * N_BODIES + i][r * N_BODIES + j] = i == j && r == stage;
+        for (int speed = 0; speed < 2; speed++) {
+            memset(w->seed, 0, sizeof w->seed);
+            w->seed[N_INPUTS + speed * N_BODIES + j] = 1.0;
+            joint_derivative(m->joint, w->at[stage] + FIRST_INPUT, s->memory, NULL, w->seed, w->change);
+            for (size_t i = 0; i < N_BODIES; i++) {
+                const double slope = w->change[2 * N_BODIES + i];
+                for (int r = 0; r < 2; r++)
+                    w->matrix[stage * N_BODIES + i][r * N_BODIES + j] -=
+                        slope * (speed ? h * SPEEDS[stage][1 + r] : h * h * PLACES[stage][1 + r]);
+            }
+            if (!speed)
+                w->stiff[j] = fabs(w->change[2 * N_BODIES + j]);
+        }
+    }
+}
+
+/* L and U of the matrix in its place, rows exchanged. */
+static bool factorize(Work *w)
+{
+    for (size_t k = 0; k < N_STATES; k++) {
+        size_t best = k;
+        for (size_t i = k + 1; i < N_STATES; i++)
+            if (fabs(w->matrix[i][k]) > fabs(w->matrix[best][k]))
+                best = i;
+        w->pivot[k] = (unsigned short)best;
+        for (size_t j = 0; j < N_STATES && best != k; j++) {
+            const double other = w->matrix[k][j];
+            w->matrix[k][j] = w->matrix[best][j];
+            w->matrix[best][j] = other;
+        }
+        const double top = w->matrix[k][k];
+        if (!(fabs(top) > 0.0 && fabs(top) < INFINITY))
+            return false;
+        for (size_t i = k + 1; i < N_STATES; i++) {
+            const double part = w->matrix[i][k] / top;
+            w->matrix[i][k] = part;
+            for (size_t j = k + 1; j < N_STATES && part != 0.0; j++)
+                w->matrix[i][j] -= part * w->matrix[k][j];
+        }
+    }
+    return true;
+}
+
+/* `rest` becomes the solution. */
+static void solve(Work *w)
+{
+    double *b = w->rest;
+    for (size_t k = 0; k < N_STATES; k++) {
+        const double other = b[w->pivot[k]];
+        b[w->pivot[k]] = b[k];
+        b[k] = other;
+    }
+    for (size_t i = 0; i < N_STATES; i++)
+        for (size_t j = 0; j < i; j++)
+            b[i] -= w->matrix[i][j] * b[j];
+    for (size_t i = N_STATES; i-- > 0;) {
+        for (size_t j = i + 1; j < N_STATES; j++)
+            b[i] -= w->matrix[i][j] * b[j];
+        b[i] /= w->matrix[i][i];
+    }
+}
+
+/* One step by Newton's method: places, speeds, accelerations at its end, and what is remembered there.
+ * false: it does not converge, or the joints refuse the way. */
+static bool step(Instance *m, const Step *s, double *to, double *after)
+{
+    Work *w = &m->joint->work;
+    double *k = w->accelerations, last = INFINITY;
+    bool tangents = true;
+    for (size_t i = 0; i < N_BODIES; i++)
+        k[i] = k[N_BODIES + i] = s->from[2 * N_BODIES + i];
+    for (int n = 0; n < MOST_ITERATIONS; n++) {
+        for (int stage = MIDDLE; stage <= END; stage++) {
+            if (!evaluate(m, s, stage, after))
+                return false;
+            for (size_t i = 0; i < N_BODIES; i++)
+                w->rest[stage * N_BODIES + i] = w->at[stage][A + i] - k[stage * N_BODIES + i];
+            if (tangents)
+                differentiate(m, s, stage);
+        }
+        if (tangents && !factorize(w))
+            return false;
+        solve(w);
+        double size = 0.0;
+        for (size_t i = 0; i < N_STATES; i++) {
+            k[i] += w->rest[i];
+            size = fmax(size, s->size * fabs(w->rest[i]) / w->scale[i % N_BODIES]);
+        }
+        if (size <= CONVERGED * TOLERANCE) {
+            if (!evaluate(m, s, END, after))
+                return false;
+            memcpy(to, w->at[END] + X, (N_STATES + N_BODIES) * sizeof *to);
+            return true;
+        }
+        tangents = !(size < WORTH * last);
+        last = size;
+    }
+    return false;
+}
+
+/* Difference of two ends over what is allowed; the error of the second, of order 4, is a fifteenth of it. */
+static double error_of(const Work *w, const double *whole, const double *halves)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < N_BODIES; i++) {
+        const double speed = fabs(whole[N_BODIES + i] - halves[N_BODIES + i]);
+        const double way = sqrt(w->stiff[i]) * fabs(whole[i] - halves[i]);
+        most = fmax(most, (speed + way) / w->scale[i]);
+    }
+    return most / (15.0 * TOLERANCE);
+}
+
+/* Size of a step up to the next corner of a load. */
+static double until_event(Instance *m, double time, double size)
+{
+#if N_EVENTS
+    double *times = m->joint->work.times;
+    joint_events(m->joint, times);
+    for (size_t i = 0; i < N_EVENTS; i++)
+        if (times[i] > time + 1e-9 * size && times[i] < time + size)
+            size = times[i] - time;
+#else
+    (void)m, (void)time;
+#endif
+    return size;
+}
+
+static Status refuse(const Instance *m, double time, double size)
+{
+    Text text;
+    text_clear(&text);
+    text_add(&text, "the motion cannot be followed at ");
+    text_number(&text, time, 10);
+    text_add(&text, " s: Newton's method leaves ");
+    text_number(&text, m->joint->work.rest[0], 3);
+    text_add(&text, " of the first acceleration in steps of ");
+    text_number(&text, size, 3);
+    text_add(&text, " s; expected loads that the joints can carry");
+    return instance_refuse(m, "the step", text.line);
+}
+
+Status instance_advance(Instance *m, double size)
+{
+    Work *w = &m->joint->work;
+    State *now = &m->now;
+    double *from = w->states[0], *whole = w->states[1], *half = w->states[2], *halves = w->states[3];
+    double *memory = w->memory[0], *between = w->memory[1], *after = w->memory[2], *aside = w->memory[3];
+    double done = 0.0, next = now->last_size > 0.0 ? now->last_size : size;
+    memcpy(from, now->values + X, (N_STATES + N_BODIES) * sizeof *from);
+    memcpy(memory, now->path.memory[now->path.last], sizeof w->memory[0]);
+    memcpy(between, memory, sizeof w->memory[0]);
+    while (size - done > 1e-12 * size) {
+        const double time = now->values[0] + done;
+        const bool last = next >= (1.0 - 1e-6) * (size - done);
+        double h = until_event(m, time, last ? size - done : fmin(next, 0.5 * (size - done)));
+        const bool cut = last || h < next;
+        for (size_t i = 0; i < N_BODIES; i++) {
+            const double least = LEAST_SPEED * nominals[N_BODIES + i];
+            w->scale[i] = fmax(least, fmax(fabs(from[N_BODIES + i]), h * fabs(from[2 * N_BODIES + i])));
+        }
+        const Step one = {from, memory, time, h};
+        const Step first = {from, memory, time, 0.5 * h};
+        bool ok = step(m, &one, whole, aside) && step(m, &first, half, after);
+        const Step second = {half, after, time + 0.5 * h, 0.5 * h};
+        ok = ok && step(m, &second, halves, aside);
+        const double error = ok ? error_of(w, whole, halves) : INFINITY;
+        const double factor = !ok ? 0.25 : error > 1e-4 ? 0.9 * same_pow(error, -0.2) : MOST_GROWTH;
+        if (error > 1.0 && (h > LEAST_STEP * size || !ok)) {
+            if (!(h > LEAST_STEP * size))
+                return refuse(m, time, h);
+            next = h * fmin(fmax(factor, 0.1), 0.8);
+            continue;
+        }
+        done += h;
+        memcpy(from, halves, sizeof w->states[0]);
+        memcpy(between, after, sizeof w->memory[0]); /* the way to the end is that of the second half */
+        memcpy(memory, aside, sizeof w->memory[0]);
+        const double grown = h * fmin(fmax(factor, 0.2), MOST_GROWTH);
+        next = cut ? fmax(next, grown) : grown;
+    }
+    memcpy(now->values + X, from, N_STATES * sizeof *from);
+    memcpy(now->path.memory[now->path.last], between, sizeof w->memory[0]);
+    now->path.accepted = 0;
+    now->last_size = next;
+    return OK;
+}

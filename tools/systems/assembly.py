@@ -1,0 +1,37 @@
+"""A system's file as the builders of one FMU take it."""
+
+from dataclasses import replace
+
+from jointfmu_fmu_src.partners import parameters as partner_parameters
+from jointfmu_fmu_src.system.assembly import LAGS, Assembly, Component, Feed
+
+from .system import System
+from .wiring import ends, model_of, wires
+
+LEAST_INTERVAL = 1e-3
+"""Communication step [s] of the default experiment, where the system's own is shorter: it need not be."""
+
+
+def assembly(system: System) -> Assembly:
+    """Components in the order of their evaluation, with what feeds them.
+
+    Raises ValueError as `wiring.ends`.
+    """
+    feeds: dict[str, dict[str, Feed | None]] = {name: {} for name in system.components}
+    for wire in wires(system):
+        feeds[wire.target][wire.input] = Feed(wire.source, wire.output)
+    for one, other in ends(system):
+        if one.joint and one.component and other.component is None:  # held by the ground
+            feeds[one.component.name] |= {one.members[m]: None for m in one.members if m != one.flow}
+    parts = []
+    for name, part in system.components.items():
+        model = model_of(part)
+        if model.states:
+            model = replace(model, hidden=LAGS)
+        file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
+        start = {v.name: file.start(v.name) for v in model.inputs} | part.state
+        parts.append(Component(name, model, file, feeds[name], start))
+    parts.sort(key=lambda part: (part.model.states > 0, not part.model.moves))
+    return Assembly(
+        system.name, system.description, parts, system.stop_time, max(system.interval, LEAST_INTERVAL)
+    )
