@@ -50,9 +50,7 @@ def _partner_page(model: Model, parameters: ParameterFile) -> str:
     return plain_page(model, parameters, asset(model, "page.html"), terminals(model))
 
 
-def plain_page(
-    model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()
-) -> str:
+def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
     """A page of the variables alone, of the template `page`."""
     return template(page, Path(__file__).parent).render(
         model=model,

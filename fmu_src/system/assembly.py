@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from jointfmu.joints.model import Model, Ramp, Variable
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import flat_fields
 from jointfmu.quantity.declaration import group
 
 SYSTEM = "system"
@@ -86,7 +87,8 @@ class Assembly:
         hidden = [
             f"{p.name}.{name}"
             for p in self.components
-            for name in sorted({*p.parameters.flat} - {*p.exposed})
+            for name, _ in flat_fields(type(p.parameters.values))
+            if name not in p.exposed
         ]
         return Model(
             name=self.name,

@@ -15,7 +15,9 @@ _SHARED = ("text", "elementary", "elementary_tables")
 """Files that components have in common with the system."""
 _LAYERS = (*COMMON, "fmi2", "fmi3", *_SHARED)
 _FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
-_DEFINITION = re.compile(r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M)
+_DEFINITION = re.compile(
+    r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
+)
 _WARNINGS = 32
 """Bits of what a host was warned of."""
 
@@ -54,7 +56,9 @@ def _part(part: Component) -> dict[str, str]:
 
 def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     """The same files with a prefix before their names, and before what they define for each other."""
-    names = sorted({name for file, text in files.items() if file.endswith(".c") for name in _DEFINITION.findall(text)})
+    names = sorted(
+        {name for file, text in files.items() if file.endswith(".c") for name in _DEFINITION.findall(text)}
+    )
     defined = "".join(f"#define {name} {prefix}{name}\n" for name in names)
     head = f'#include "{prefix}names.h"\n'
     found = {f"{prefix}names.h": defined}
@@ -120,7 +124,8 @@ def _components(assembly: Assembly, prefixes: Mapping[str, str]) -> str:
         place["warnings"] += len(model.outside)
     if place["warnings"] > _WARNINGS:
         raise ValueError(
-            f"{assembly.name}: its joints have {place['warnings']} warnings; allowed are {_WARNINGS} in one FMU"
+            f"{assembly.name}: its joints have {place['warnings']} warnings; "
+            f"allowed are {_WARNINGS} in one FMU"
         )
     return (
         '#include "system.h"\n\n'

@@ -20,7 +20,10 @@ from .code import sources
 
 
 def build_system(
-    assembly: Assembly, out: Path, versions: Sequence[str] = ("2", "3"), platforms: Sequence[str] = tuple(TARGETS)
+    assembly: Assembly,
+    out: Path,
+    versions: Sequence[str] = ("2", "3"),
+    platforms: Sequence[str] = tuple(TARGETS),
 ) -> list[Path]:
     """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`; equal content gives equal files.
 
@@ -41,7 +44,10 @@ def build_system(
         built = libraries(model.name, files, units, platforms)
         own = {path: text for path, text in files.items() if path in units or path.endswith(".h")}
         members = {f"sources/{path}": text.encode() for path, text in own.items()}
-        members |= {"documentation/index.html": page, "documentation/licenses/license.txt": licence().encode()}
+        members |= {
+            "documentation/index.html": page,
+            "documentation/licenses/license.txt": licence().encode(),
+        }
         members |= binaries(model.title, built, version)
         if version == "2":
             members["modelDescription.xml"] = fmi2_xml(model, parameters, data.token, units)

@@ -49,13 +49,18 @@ static void place(Instance *m, const Step *s, int stage)
 static bool evaluate(Instance *m, const Step *s, int stage, double *after)
 {
     double *at = m->joint->work.at[stage];
-    Text ignored;
-    text_clear(&ignored);
+    Work *w = &m->joint->work;
+    text_clear(&w->why);
     place(m, s, stage);
-    bool finite = joint_evaluate(m->joint, at + FIRST_INPUT, s->memory, after, at + FIRST_OUTPUT, &ignored);
+    if (!joint_evaluate(m->joint, at + FIRST_INPUT, s->memory, after, at + FIRST_OUTPUT, &w->why))
+        return false;
     for (size_t i = 0; i < N_BODIES; i++)
-        finite = finite && fabs(at[A + i]) < INFINITY;
-    return finite;
+        if (!(fabs(at[A + i]) < INFINITY)) {
+            text_add(&w->why, variables[A + i].name);
+            text_add(&w->why, " is not finite");
+            return false;
+        }
+    return true;
 }
 
 /* Rows of Newton's matrix at a stage that was just evaluated. */
@@ -152,8 +157,10 @@ static bool step(Instance *m, const Step *s, double *to, double *after)
         solve(w);
         double size = 0.0;
         for (size_t i = 0; i < N_STATES; i++) {
+            const double own = s->size * fabs(w->rest[i]) / w->scale[i % N_BODIES];
             k[i] += w->rest[i];
-            size = fmax(size, s->size * fabs(w->rest[i]) / w->scale[i % N_BODIES]);
+            w->worst = own > size ? i : w->worst;
+            size = fmax(size, own);
         }
         if (size <= CONVERGED * TOLERANCE) {
             if (!evaluate(m, s, END, after))
@@ -196,15 +203,23 @@ static double until_event(Instance *m, double time, double size)
 
 static Status refuse(const Instance *m, double time, double size)
 {
+    const Work *w = &m->joint->work;
     Text text;
     text_clear(&text);
     text_add(&text, "the motion cannot be followed at ");
     text_number(&text, time, 10);
-    text_add(&text, " s: Newton's method leaves ");
-    text_number(&text, m->joint->work.rest[0], 3);
-    text_add(&text, " of the first acceleration in steps of ");
+    text_add(&text, " s with steps of ");
     text_number(&text, size, 3);
-    text_add(&text, " s; expected loads that the joints can carry");
+    text_add(&text, " s: ");
+    if (w->why.length) {
+        text_add(&text, w->why.line);
+    } else {
+        text_add(&text, "Newton's method still changes ");
+        text_add(&text, variables[A + w->worst % N_BODIES].name);
+        text_add(&text, " by ");
+        text_number(&text, w->rest[w->worst], 3);
+    }
+    text_add(&text, "; expected inputs and parameters with which a motion is possible");
     return instance_refuse(m, "the step", text.line);
 }
 

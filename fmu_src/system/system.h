@@ -44,6 +44,8 @@ typedef struct {
     double accelerations[2 * N_BODIES];
     double memory[4][N_MEMORY + 1];
     double times[N_EVENTS + 1];
+    size_t worst; /* number of the acceleration that Newton's method changed most */
+    Text why;     /* of the last evaluation, if it was refused */
 } Work;
 
 struct Joint {

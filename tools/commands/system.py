@@ -1,4 +1,4 @@
-"""`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives and a Modelica model."""
+"""`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives, a Modelica model, one FMU."""
 
 import argparse
 import json
@@ -18,6 +18,9 @@ def add(commands: Commands) -> None:
     make = command(commands, "system", _system, text)
     make.add_argument("file", metavar="FILE", help=f"a system's file (TOML), or {', '.join(names())}")
     make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+    make.add_argument(
+        "--fmu", action="store_true", help="one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
+    )
     make.add_argument("--csv", type=Path, metavar="FILE", help="run it and write all connected outputs")
     make.add_argument(
         "--plot",
@@ -38,9 +41,15 @@ def _system(args: argparse.Namespace) -> int:
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
+        from ..systems.assembly import assembly
 
+        whole = assembly(found) if args.fmu else None
         model = library.system_text(found)
         built = ssp.build_systems(args.out, [found])
+        if whole:
+            from jointfmu_fmu_src.system.fmu import build_system
+
+            built += build_system(whole, args.out)
     except ImportError as error:
         raise without_package(error, "build a system") from None
     written = args.out / "modelica" / f"{model_name(found)}.mo"

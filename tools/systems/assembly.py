@@ -15,7 +15,7 @@ LEAST_INTERVAL = 1e-3
 def assembly(system: System) -> Assembly:
     """Components in the order of their evaluation, with what feeds them.
 
-    Raises ValueError as `wiring.ends`.
+    Raises ValueError as `wiring.ends`, and for a system without a body.
     """
     feeds: dict[str, dict[str, Feed | None]] = {name: {} for name in system.components}
     for wire in wires(system):
@@ -31,6 +31,10 @@ def assembly(system: System) -> Assembly:
         file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
         start = {v.name: file.start(v.name) for v in model.inputs} | part.state
         parts.append(Component(name, model, file, feeds[name], start))
+    if not any(part.model.states for part in parts):
+        raise ValueError(
+            f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
+        )
     parts.sort(key=lambda part: (part.model.states > 0, not part.model.moves))
     return Assembly(
         system.name, system.description, parts, system.stop_time, max(system.interval, LEAST_INTERVAL)

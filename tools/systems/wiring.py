@@ -90,6 +90,7 @@ def ends(system: System) -> list[tuple[End, End]]:
                 f"{component.name} is connected to nothing; allowed is a flange of a body or joint"
             )
     _check_loops(found)
+    _check_held(system, found)
     return found
 
 
@@ -160,6 +161,19 @@ def _check_pair(one: End, other: End) -> None:
         raise ValueError(f"{said}; allowed is a joint's flange on a body's")
     elif one.members.keys() != other.members.keys():
         raise ValueError(f"{said}; allowed are two that turn or two that shift")
+
+
+def _check_held(system: System, connections: Sequence[tuple[End, End]]) -> None:
+    """Refuse a joint that nothing moves."""
+    moved = {
+        one.component.name for one, other in connections if one.joint and one.component and other.component
+    }
+    moved |= {other.component.name for one, other in connections if other.joint and other.component}
+    for name in system.joints:
+        if name not in moved:
+            raise ValueError(
+                f'{name}: all its flanges are on "{GROUND}"; allowed is a joint with a flange on a body'
+            )
 
 
 def _check_loops(connections: Sequence[tuple[End, End]]) -> None:
