@@ -11,8 +11,8 @@
 #include "memory.h"
 #include "system.h"
 
-#define TOLERANCE 1e-6 /* of the speeds in a step, of the largest in it */
-#define CONVERGED 1e-4 /* of that, Newton's last correction */
+#define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it */
+#define CONVERGED 1e-2 /* of that, Newton's last correction */
 #define LEAST_SPEED 1e-6 /* of the nominal speed: what is slower counts as that */
 #define LEAST_STEP 1e-9 /* of the communication step */
 #define WORTH 0.1 /* a correction that shrinks by less asks for new tangents */
@@ -134,15 +134,26 @@ static void solve(Work *w)
     }
 }
 
-/* One step by Newton's method: places, speeds, accelerations at its end, and what is remembered there.
- * false: it does not converge, or the joints refuse the way. */
+/* First guess of the accelerations: those of the parabola through begin, middle and end of a step, at its parts
+ * `middle` and `end`. */
+static void guess(Work *w, const double *begin, const double *known, double middle, double end)
+{
+    const double at[2] = {middle, end};
+    for (int stage = MIDDLE; stage <= END; stage++)
+        for (size_t i = 0; i < N_BODIES; i++) {
+            const double c = at[stage], a = begin[2 * N_BODIES + i];
+            const double last = known[N_BODIES + i] - a, first = 4.0 * (known[i] - a) - last;
+            w->accelerations[stage * N_BODIES + i] = a + c * (first + c * (last - first));
+        }
+}
+
+/* One step by Newton's method from a first guess: places, speeds, accelerations at its end, and what is remembered
+ * there. false: it does not converge, or the joints refuse the way. */
 static bool step(Instance *m, const Step *s, double *to, double *after)
 {
     Work *w = &m->joint->work;
     double *k = w->accelerations, last = INFINITY;
     bool tangents = true;
-    for (size_t i = 0; i < N_BODIES; i++)
-        k[i] = k[N_BODIES + i] = s->from[2 * N_BODIES + i];
     for (int n = 0; n < MOST_ITERATIONS; n++) {
         for (int stage = MIDDLE; stage <= END; stage++) {
             if (!evaluate(m, s, stage, after))
@@ -244,9 +255,19 @@ Status instance_advance(Instance *m, double size)
         }
         const Step one = {from, memory, time, h};
         const Step first = {from, memory, time, 0.5 * h};
-        bool ok = step(m, &one, whole, aside) && step(m, &first, half, after);
         const Step second = {half, after, time + 0.5 * h, 0.5 * h};
-        ok = ok && step(m, &second, halves, aside);
+        for (size_t i = 0; i < N_STATES; i++)
+            w->accelerations[i] = from[2 * N_BODIES + i % N_BODIES];
+        bool ok = step(m, &one, whole, aside);
+        if (ok) {
+            memcpy(w->known, w->accelerations, sizeof w->known);
+            guess(w, from, w->known, 0.25, 0.5);
+            ok = step(m, &first, half, after);
+        }
+        if (ok) {
+            guess(w, from, w->known, 0.75, 1.0);
+            ok = step(m, &second, halves, aside);
+        }
         const double error = ok ? error_of(w, whole, halves) : INFINITY;
         const double factor = !ok ? 0.25 : error > 1e-4 ? 0.9 * same_pow(error, -0.2) : MOST_GROWTH;
         if (error > 1.0 && (h > LEAST_STEP * size || !ok)) {

@@ -41,7 +41,7 @@ typedef struct {
     double scale[N_BODIES]; /* of the speeds */
     double stiff[N_BODIES]; /* square of the angular frequency of each body alone [1/s2] */
     double states[4][N_STATES + N_BODIES];
-    double accelerations[2 * N_BODIES];
+    double accelerations[2 * N_BODIES], known[2 * N_BODIES]; /* at the middle and the end of a step */
     double memory[4][N_MEMORY + 1];
     double times[N_EVENTS + 1];
     size_t worst; /* number of the acceleration that Newton's method changed most */

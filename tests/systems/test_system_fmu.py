@@ -54,7 +54,7 @@ def test_description_is_valid(joint, version):
 @pytest.mark.parametrize("step", [1e-3, 1e-2, 0.1])
 @pytest.mark.parametrize("version", ["2", "3"])
 def test_any_step_is_as_right_as_model_exchange(joint, version, step):
-    """The bound of 0.5 % is the one that users were promised; a lag of one step of 1 ms misses it tenfold."""
+    """The bound of 0.5 % is the one that docs/systems.md promises."""
     expected = exchange(joint[version], DRIVE, 2.0, 1e-9, 1e-3)
     found = run(joint[version], DRIVE, step, 2.0, fmi_type="CoSimulation")
     assert found["drive.tau"][-1] != 0.0

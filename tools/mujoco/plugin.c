@@ -134,7 +134,7 @@ static void read_path(Instance *m, const mjtNum *state)
     Path *path = &m->now.path;
     memcpy(path->memory[0], state, N_MEMORY * sizeof *state);
     memcpy(path->memory[1], state + N_MEMORY, N_MEMORY * sizeof *state);
-    memcpy(path->inputs, state + 2 * N_MEMORY, sizeof path->inputs);
+    memcpy(path->knowns, state + 2 * N_MEMORY, sizeof path->knowns);
     path->accepted = state[PATH - 1] != 0.0;
     path->last = 1;
 }
@@ -144,7 +144,7 @@ static void write_path(const Instance *m, mjtNum *state)
     const Path *path = &m->now.path;
     memcpy(state, path->memory[1u - path->last], N_MEMORY * sizeof *state);
     memcpy(state + N_MEMORY, path->memory[path->last], N_MEMORY * sizeof *state);
-    memcpy(state + 2 * N_MEMORY, path->inputs, sizeof path->inputs);
+    memcpy(state + 2 * N_MEMORY, path->knowns, sizeof path->knowns);
     state[PATH - 1] = path->accepted;
 }
 #endif
