@@ -108,6 +108,15 @@ def thread_source(column: str) -> str:
 
 
 @cache
+def embedding() -> list[tuple[float, tuple[float, ...]]]:
+    """Greatest Rz [m] of the faces, ascending, and embedding [m] of thread, head or nut, and interface."""
+    stated = dict(_document("bolts")[1]["embedding"])
+    size = factor(stated.pop("unit"), "m")
+    stated.pop("source")
+    return sorted((float(Rz) * size, tuple(v * size for v in row)) for Rz, row in stated.items())
+
+
+@cache
 def classes() -> dict[str, dict[str, tuple[float, float]]]:
     """{property class: {yield, proof: stress [Pa] up to and above M16}}."""
     stated = _document("bolts")[1]["classes"]

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from . import tables
 from .tables import Thread
 
 E_BOLT = 205e9
@@ -109,6 +110,16 @@ def assembly_preload(thread: Thread, yield_strength: float, friction: float = FR
     d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
     twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * friction)
     return float(stress_area(thread) * USE * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
+
+
+def embedding(Rz: float, interfaces: int, tapped: bool) -> float:
+    """f_Z [m], by which thread, head and nut and the interfaces of the parts come closer (Table 5).
+
+    Rz : of the roughest face [m]; beyond the table its last row
+    """
+    rows = tables.embedding()
+    thread, seat, interface = next((row for most, row in rows if most >= Rz), rows[-1][1])
+    return thread + (1 if tapped else 2) * seat + interfaces * interface
 
 
 def shank_length(thread: Thread, grip: float, head: str, tapped: bool) -> float:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 
 from .sparse import Cholesky
@@ -169,7 +169,7 @@ class States:
         """Motions (6) of side 2 into slip and opening along and about all axes, and of all at once."""
         joint, K = self.spring.joint, np.diag(self.stiffness())
         radius = np.sqrt(self.spring.shape.share @ np.sum(self.spring.shape.position**2, axis=1))
-        clamping = joint.n_bolts * self.preload
+        clamping = joint.n_bolts * float(working_preload(joint, self.preload))
         load = clamping * np.array([joint.mu, joint.mu, 1.0, radius, radius, joint.mu * radius])
         unit = load / K
         for axis in range(6):

@@ -873,5 +873,5 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     memcpy(dx + X_RATES + 3, seed + OMEGA, 3 * sizeof *dx);
     outputs_seed(x, joint->c, result);
     if (ELASTIC)
-        whole_bolt_rates(joint, seed, result + N_INTERFACE_OUTPUTS);
+        whole_bolt_rates(joint, inputs, seed, result + N_INTERFACE_OUTPUTS);
 }

@@ -35,6 +35,8 @@ def _tightening(g: Graph) -> None:
     preload, moment = symbols("v", 2)
     doc = "preload, moment -> mean pressure, pressure that the moment adds"
     g.add_with_seed("bolt_pressures", doc, [preload, moment], law.bolt_pressures(g.joint, preload, moment))
+    doc = "preload -> what embedding leaves of it"
+    g.add_with_seed("working_preload", doc, [preload], [law.working_preload(g.joint, preload)])
     doc = "equal, tilt, bolt_pressures -> pressure of a node at tightening"
     pressure = law.shaped_pressure(equal, tilt, mean, shift)
     g.add_with_seed("shaped_pressure", doc, [equal, tilt, mean, shift], [pressure], fixed=2)

@@ -473,8 +473,10 @@ void whole_bolts(const Joint *joint, const double *inputs, double *out)
     if (!ELASTIC)
         return;
     const Kind *kind = &joint->kind;
+    double left;
+    working_preload(inputs + INPUT_PRELOAD, joint->c, &left);
     for (int b = 0; b < (int)data.n_bolts; b++)
-        out[b] = inputs[INPUT_PRELOAD] + inputs[INPUT_MOMENT] * data.bolts[b][2] +
+        out[b] = left + inputs[INPUT_MOMENT] * data.bolts[b][2] +
                  kind->bolt * stretched(kind, b, inputs, kind->amplitude);
 }
 
@@ -530,12 +532,14 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
     dx[SUM_LOOP_ENERGY] += energy / kind->area;
 }
 
-void whole_bolt_rates(const Joint *joint, const double *seed, double *result)
+void whole_bolt_rates(const Joint *joint, const double *inputs, const double *seed, double *result)
 {
     if (!ELASTIC)
         return;
     const Kind *kind = &joint->kind;
+    double left;
+    working_preload_seed((const double[]){inputs[INPUT_PRELOAD], seed[INPUT_PRELOAD]}, joint->c, &left);
     for (int b = 0; b < (int)data.n_bolts; b++)
-        result[b] = seed[INPUT_PRELOAD] + seed[INPUT_MOMENT] * data.bolts[b][2] +
+        result[b] = left + seed[INPUT_MOMENT] * data.bolts[b][2] +
                     kind->bolt * stretched(kind, b, seed, kind->amplitude_rate);
 }

@@ -18,7 +18,7 @@ void whole_bolts(const Joint *joint, const double *inputs, double *out);
 void whole_rates(Joint *joint, const double *inputs, const double *memory, const double *after, const double *seed);
 /* Rates of what `whole_sums` and `whole_bolts` give. */
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx);
-void whole_bolt_rates(const Joint *joint, const double *seed, double *result);
+void whole_bolt_rates(const Joint *joint, const double *inputs, const double *seed, double *result);
 
 /* In bolted_joint.c: the joint at given amplitudes, and the derivative of a patch's traction. */
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);

@@ -113,6 +113,26 @@ def test_a_bolt_by_hand():
     assert tapped == pytest.approx(expected, rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("Rz", "tapped", "printed"),
+    [(6.3, False, 9.5), (16.0, False, 11.0), (16.0, True, 8.0), (100.0, False, 14.0), (400.0, False, 14.0)],
+)
+def test_embedding_of_table_5(Rz, tapped, printed):
+    """VDI 2230, part 1, Table 5, load along the bolt: thread, head and nut and one interface, in um."""
+    assert vdi2230.embedding(Rz * 1e-6, 1, tapped) * 1e6 == pytest.approx(printed)
+
+
+def test_embedding_takes_of_the_preload(capsys):
+    """9.5 um over the compliances of bolt and members; all that is told is at what it leaves."""
+    found = facts_of(capsys, *PLATE, *FACES, *LOAD)
+    loss = 9.5e-6 / (1.0 / found["bolt_stiffness"] + 1.0 / found["member_stiffness"])
+    assert found["embedding"] == pytest.approx(loss)
+    assert found["slip_force"] == pytest.approx(0.15 * 4.0 * (30e3 - loss))
+    whole = facts_of(capsys, *PLATE, *FACES, *LOAD, "--embedding", "0")
+    assert whole["slip_force"] == pytest.approx(0.15 * 4.0 * 30e3)
+    assert found["p_mean"] / whole["p_mean"] == pytest.approx(1.0 - loss / 30e3)
+
+
 # Layouts
 
 
@@ -148,7 +168,8 @@ def test_any_layout_makes_a_file_that_loads(capsys, tmp_path, layouts):
     file = load(path)
     assert found["written"] == [str(path)]
     assert (file.law, file.values.n_bolts) == ("roughness", len(file.values.pattern.x))
-    K = file.start("preload") * file.values.n_bolts / (GAMMA * file.values.h)
+    left = file.start("preload") - file.values.embedding
+    K = left * file.values.n_bolts / (GAMMA * file.values.h)
     assert found["facts"]["K_zz"]["value"] == pytest.approx(K, rel=0.05)  # p/(gamma h), and few spots
     # every number says where it comes from
     assert all(file.sources[name] for name in file.flat)
@@ -288,6 +309,8 @@ def test_a_scan_gives_height_and_slope(capsys, tmp_path):
         (["--bearing", "13"], "--bearing = 13 mm is outside (13.5, inf) mm"),
         (["--preload", "-1"], "--preload = '-1' is outside (0, inf)"),
         (["--preload", "nan"], "--preload = 'nan' is no number"),
+        (["--preload", "2kN"], "embedding takes 2643 N of a preload of 2000 N: expected less than all"),
+        (["--embedding", "-1"], "embedding = -1 N is outside [0, inf)"),
         (["--material", "unobtainium"], "material 'unobtainium' is unknown, allowed are steel,"),
         (["--material", "steel", "steel", "steel"], "--material has 3 values"),
         (["--Rq", "1"], "--Ra beside --Rq: expected one statement of the roughness"),
@@ -379,8 +402,9 @@ def test_friction_of_which_nothing_is_said_has_a_range(capsys, tmp_path):
     low, high = file.ranges["mu"]
     assert low < file.flat["mu"] < high
     assert "VDI 2230" in file.sources["mu"]
-    assert facts["slip_force_low"] == pytest.approx(low * 4 * 30e3)
-    assert facts["slip_force_high"] == pytest.approx(high * 4 * 30e3)
+    left = 30e3 - facts["embedding"]
+    assert facts["slip_force_low"] == pytest.approx(low * 4 * left)
+    assert facts["slip_force_high"] == pytest.approx(high * 4 * left)
     # under the same shear a small loop loses as 1/mu: within what partial slip adds at a tenth of gross slip
     ratio = facts["loss_factor_low"] / facts["loss_factor_high"]
     assert ratio == pytest.approx(high / low, rel=0.1)

@@ -42,8 +42,9 @@ def made(tmp_path_factory):
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(whole, "whole_joint", watched)
-                command = ["new", "bolted-joint", *words, "--preload", str(preload), "--out", str(path)]
-                assert cli.main([*command, "--json"]) == 0
+                loss = [] if "--embedding" in words else ["--embedding", "0"]
+                stated = [*words, *loss, "--preload", str(preload), "--out", str(path)]
+                assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load(path)
             spring = BoltedJointSpring.of(file.values)
             found[words] = SimpleNamespace(path=path, file=file, spring=spring, fe=seen["last"].compliances)
@@ -135,6 +136,20 @@ def test_a_load_at_the_faces_hardly_reaches_the_bolts(made):
     assert shares[0] < 0.5 * shares[1]
 
 
+def test_embedding_takes_of_the_preload(made):
+    """All is as under the preload that is left; of a preload that is no larger nothing is."""
+    joint = made(*FOUR, preload=15e3)
+    lost = BoltedJointSpring.of(replace(joint.file.values, embedding=800.0))
+    motion = (2e-7, 0.0, 1e-7, 1e-6, 0.0, 0.0)
+    expected, _ = at(joint.spring, *motion, preload=14.2e3, moment=20.0)
+    found, _ = at(lost, *motion, preload=15e3, moment=20.0)
+    assert found == expected
+    none, _ = at(lost, *STILL, preload=700.0)
+    assert none["p_max"] == none["K_xx"] == none["F_bolt[1]"] == 0.0
+    page = report.whole_joint(Course(KINDS["bolted_joint"].models[0], replace(joint.file, values=lost.joint)))
+    assert "14.2 kN in each bolt" in page[0].text
+
+
 def test_a_moment_changes_the_bolts_by_their_rows(made):
     spring = made(*FOUR, preload=15e3).spring
     forces = [at(spring, *STILL, preload=15e3, moment=100.0)[0][f"F_bolt[{j}]"] for j in (1, 2, 3, 4)]
@@ -190,7 +205,7 @@ def test_a_step_depends_on_inputs_and_memory_alone(made):
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_is_the_package(made, tmp_path, flavour):
     """Ways through slip, opening and tilt: both find the equilibrium to 1e-13 of all forces."""
-    joint = made(*FOUR, preload=15e3)
+    joint = made(*FOUR, "--embedding", "800", preload=15e3)
     assert (
         cli.main(
             [

@@ -88,7 +88,8 @@ class Places:
 def evaluate(
     parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m).
+    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m)
+    that embedding has left.
 
     The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
     values : by structured name, numbers or samples (n); samples of the pattern go one by one
@@ -157,8 +158,11 @@ def _evaluate(
 
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
-    """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]."""
-    spring, rest = BoltedJointSpring.of_nodes(replace(interface_alone(joint), memory=False)), (0.0, 0.0, 0.0)
+    """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]
+    that embedding has left.
+    """
+    alone = replace(interface_alone(joint), memory=False, embedding=0.0)
+    spring, rest = BoltedJointSpring.of_nodes(alone), (0.0, 0.0, 0.0)
     states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     return curves | {"approach": approach(spring, loads)}

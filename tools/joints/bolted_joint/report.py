@@ -8,7 +8,7 @@ from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.outputs import bolt_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
@@ -74,10 +74,11 @@ def whole_joint(course: Course) -> list[Figure]:
     assert isinstance(spring, BoltedJointSpring)
     preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
     found = compliances(spring, preload, moment)
-    opening = opening_load(preload, found.bolt_force[:, 2])
-    limit = joint.mu * joint.n_bolts * preload
+    left = float(working_preload(joint, preload))
+    opening = opening_load(left, found.bolt_force[:, 2])
+    limit = joint.mu * joint.n_bolts * left
     panel = _bolt_forces(spring, preload, moment, opening * found.whole[2])
-    text = _text(found, preload, moment) + (
+    text = _text(found, left, moment) + (
         f" It takes {_told(opening, 'N')} along z to open the interface everywhere, by these stiffnesses, "
         f"and {_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
         "it loses is under Loops."
@@ -103,12 +104,12 @@ def _rows(found: Compliances, spring: BoltedJointSpring) -> list[tuple[str, ...]
     return rows
 
 
-def _text(found: Compliances, preload: float, moment: float) -> str:
+def _text(found: Compliances, tension: float, moment: float) -> str:
     share = found.parts[0] / found.whole
     most = float(np.max(share))
     matters = "it has a say in the stiffness" if most >= MATTERS else "the stiffness hardly knows of it"
     return (
-        f"Small motions of the attachments about the tightened state, {_told(preload, 'N')} in each bolt"
+        f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
         + ". The last three columns are parts of the compliance, by the energy stored. The interface has "
         f"{share[2]:.1%} of it along z and at most {most:.1%} in any direction: {matters}. Of a force along "

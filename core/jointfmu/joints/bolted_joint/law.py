@@ -12,7 +12,7 @@ from ...contact.laws.zhao2018 import Zhao2018
 from ...mechanics.footprint.bolts import BoltPattern, PressureSource
 from ...mechanics.footprint.plate import BoltedPlate
 from ...mechanics.footprint.shape import MergedShape, NodalField, PressureShape
-from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity
+from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
 from .bodies import ElasticBodies, RigidBodies
 
 Array = NDArray[np.float64]
@@ -34,6 +34,9 @@ class Bolts:
     )
     row_distance: float = quantity("m", "distance L_a of the two bolt rows", gt=0.0)
     bolt_stiffness: float = quantity("N/m", "stiffness of each bolt", ge=0.0, default=0.0)
+    embedding: float = quantity(
+        "N", "preload that each bolt loses by embedding (VDI 2230)", ge=0.0, default=0.0
+    )
     memory: bool = choice(
         True, False, doc="friction with partial slip and memory; without it an elastic joint"
     )
@@ -172,9 +175,15 @@ def node_pressure(joint: Bolted, equal: Number, tilt: Number, preload: Number, m
     return shaped_pressure(equal, tilt, *bolt_pressures(joint, preload, moment))
 
 
+def working_preload(joint: Bolted, preload: Number) -> Number:
+    """Force [N] that embedding leaves of a bolt's preload (...) [N]: none of one that is no larger."""
+    return where(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
+
+
 def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
     """What `equal` and `tilt` of the pressure shape stand for [Pa]."""
-    return preload * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
+    left = working_preload(joint, preload)
+    return left * joint.n_bolts / joint.A_0, moment / joint.row_distance / joint.A_0
 
 
 def shaped_pressure(equal: Number, tilt: Number, mean: Number, shift: Number) -> Number:
@@ -184,8 +193,8 @@ def shaped_pressure(equal: Number, tilt: Number, mean: Number, shift: Number) ->
 
 def row_forces(joint: Bolted, preload: float, moment: float) -> tuple[float, float]:
     """Bolt forces [N] of the two rows under a moment."""
-    shift = moment / (joint.row_distance * joint.row_bolts)
-    return preload + shift, preload - shift
+    shift, left = moment / (joint.row_distance * joint.row_bolts), float(working_preload(joint, preload))
+    return left + shift, left - shift
 
 
 def shear_ratio(joint: Bolted) -> Number:

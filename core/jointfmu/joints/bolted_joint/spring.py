@@ -27,7 +27,7 @@ from .contact import (
     over_plane,
     shear_sums,
 )
-from .law import Bolted, interface_alone, pressures, shear_ratio
+from .law import Bolted, interface_alone, pressures, shear_ratio, working_preload
 from .outputs import STRETCHES, bolt_force, outputs
 from .trials import Memory, Trial, Trials, Way, told
 from .whole import Whole
@@ -337,7 +337,7 @@ class BoltedJointSpring:
         self, preload: float, moment: float, place: Place, amplitude: Array
     ) -> dict[str, Number]:
         """Working force [N] of each bolt of elastic sides."""
-        given = preload + moment * self.modes.lever
+        given = working_preload(self.joint, preload) + moment * self.modes.lever
         forces = given + self.joint.bolt_stiffness * self.whole.stretch(place, amplitude)
         return {bolt_force(j): force for j, force in enumerate(forces)}
 

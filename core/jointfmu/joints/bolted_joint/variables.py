@@ -8,7 +8,7 @@ from typing import Any
 from ...quantity import Number, where
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .contact import Place
-from .law import Bolted, BoltedJoint
+from .law import Bolted, BoltedJoint, working_preload
 from .outputs import bolt_force
 from .spring import BoltedJointSpring
 
@@ -34,14 +34,14 @@ def _evaluate(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
 
 def _row_moment(joint: Any, preload: Number) -> Number:
     """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
-    return preload * joint.row_distance * joint.row_bolts
+    return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
 
 
 def _whole(model: Model, joint: Bolted) -> Model:
     """With the forces of the bolts where the sides are elastic; then all outputs follow all motions."""
     if not joint.elastic:
         return model
-    meaning = "working force of bolt {}: preload, what the moment adds, and its share of the load"
+    meaning = "working force of bolt {}: preload less embedding, what the moment adds, its share of the load"
     forces = [Variable(bolt_force(j), "N", meaning.format(j + 1), 1e4) for j in range(round(joint.n_bolts))]
     inputs = ("preload", "moment", *_PLACE[2:])
     known = {

@@ -50,6 +50,11 @@ NEW = Drawing(
         ),
         Option(name="preload", text="force of each bolt [N] (default: VDI 2230)", metavar="F"),
         Option(
+            name="embedding",
+            text="preload that each bolt loses by embedding [N] (default: VDI 2230, Table 5)",
+            metavar="F",
+        ),
+        Option(
             name="property_class",
             text="of the bolts, for the default of the preload (default: 8.8)",
             choices=("8.8", "10.9", "12.9"),

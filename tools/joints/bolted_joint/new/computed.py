@@ -30,13 +30,14 @@ T = TypeVar("T")
 @dataclass(frozen=True, slots=True)
 class Plates:
     """Two plates with their bolts: layers and density [kg/m3] of side 1 and 2, bearing [m] the diameter under
-    head and nut, preload [N] of each bolt."""
+    head and nut, preload [N] of each bolt and tension [N] that embedding leaves of it."""
 
     plate: BoltedPlate
     layers: tuple[ClampedPart, ...]
     bearing: float
     density: tuple[float, ...]
     preload: float
+    tension: float
 
     def assembly(self, file: ParameterFile) -> "Assembly":
         """The bodies. Raises ValueError for heads that overlap or leave the plate."""
@@ -69,8 +70,8 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
         from ....fem.bolted_contact import BoltedContact
         from ....fem.joint_file import with_solution
 
-        solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.preload)
-        return with_solution(file, solution, plates.preload)
+        solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
+        return with_solution(file, solution, plates.tension)
 
     return _with_packages("--field computed", solved)
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
@@ -77,16 +77,22 @@ def joint(given: Given) -> NewJoint:
     )
     _put_plate(sheet, plate, one, hole_source)
     _put_bolts(sheet, plate, one, thread)
+    loss = _embedding(sheet, given, one, heights)
     mass = plate.area * one.layers[0].thickness * faces.materials(given)[0].numbers["density"].value
     sheet.put("mass", mass, "estimate", "mass of the plate of side 1; what vibrates")
     preload, warnings = _preload(sheet, given, thread)
+    if not loss < preload:
+        raise ValueError(
+            f"embedding takes {loss:.4g} N of a preload of {preload:.4g} N: expected less than all; state "
+            "--embedding or more --preload"
+        )
     for choice in ("critical_area", "spot_stiffness"):
         default = {"critical_area": "continuity", "spot_stiffness": "hertz"}[choice]
         sheet.put(choice, default, "estimate", "nearest to the roughness of the surfaces, docs/validity.md")
     name = f"plate {given['plate']} with {given['bolts']}"
     file = sheet.file(name, None if law == "roughness" else heights.stated)
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
-    plates = Plates(plate, one.layers, one.bearing, density, preload)
+    plates = Plates(plate, one.layers, one.bearing, density, preload, preload - loss)
     if given["field"] == "computed":
         file = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
@@ -215,6 +221,22 @@ def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[st
     )
 
 
+def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights) -> float:
+    """Put the preload [N] that a bolt loses by embedding."""
+    if given["embedding"] is not None:
+        loss = number("embedding", given["embedding"], "N", "N", None)
+        sheet.stated("embedding", loss)
+        return loss
+    way = vdi2230.embedding(heights.Rz, 1, bool(given["tapped"]))
+    loss = way / (1.0 / one.bolt + 1.0 / one.members)
+    text = (
+        f"VDI 2230: {way * 1e6:.3g} um (Table 5: thread, {'head' if given['tapped'] else 'head and nut'}, "
+        f"one interface, Rz {heights.Rz * 1e6:.2g} um, load along the bolt) over delta_S + delta_P"
+    )
+    sheet.put("embedding", loss, "estimate", text)
+    return loss
+
+
 LOSS_AT = 0.1
 """Shear over mu times the normal force [1] at which the loss factor is told."""
 
@@ -225,13 +247,14 @@ def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str
     The loss factor is that of a loop of the interface between rigid sides, under the same shear force.
     """
     joint = file.values
-    shear = LOSS_AT * joint.mu * joint.n_bolts * preload
+    left = float(working_preload(joint, preload))
+    shear = LOSS_AT * joint.mu * joint.n_bolts * left
     slip, loss = "shear force at which all of the interface slips", f"loss factor at {shear:.3g} N of shear"
     low, high = file.ranges.get("mu", (joint.mu, joint.mu))
     facts = {}
     for name, mu in (("", joint.mu), ("_low", low), ("_high", high))[: 3 if high > low else 1]:
         text = f"; with mu = {mu:g}"
-        facts[f"slip_force{name}"] = (mu * joint.n_bolts * preload, "N", slip + text)
+        facts[f"slip_force{name}"] = (mu * joint.n_bolts * left, "N", slip + text)
         facts[f"loss_factor{name}"] = (_loss_factor(replace(joint, mu=mu), preload, shear), "1", loss + text)
     return facts
 
@@ -258,7 +281,12 @@ def _facts(
     bolts = values.n_bolts * one.bolt
     K = float(state["K_zz"]) - bolts
     facts = {
-        "preload": (preload, "N", "force of each bolt"),
+        "preload": (preload, "N", "force of each bolt as it is tightened"),
+        "embedding": (
+            values.embedding,
+            "N",
+            f"of it that embedding takes, {values.embedding / preload:.1%}; stiffness and slip lack it",
+        ),
         "p_mean": (float(state["p_mean"]), "Pa", "mean pressure on the plate"),
         "p_max": (float(state["p_max"]), "Pa", "greatest pressure, beside a bolt"),
         "h": (float(file.flat.get("h", np.nan)), "m", "rms height of both faces together"),

@@ -43,7 +43,7 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
         )
     parts = found.compliances
     rows = {f"whole_K_{named(name)}": _row(one, name, attached) for name, one in parts.items()}
-    rows |= _load(parts["z"], plates.preload, attached) | _share(parts, sides == "rigid")
+    rows |= _load(parts["z"], plates.tension, attached) | _share(parts, sides == "rigid")
     return Whole(file if sides == "rigid" else found.file, rows, [])
 
 
