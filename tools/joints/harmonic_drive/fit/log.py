@@ -5,7 +5,7 @@ residuals. The load on the teeth, which some of that decides, is fixed in each o
 of each log, or every third row of a table, are predicted by a fit to the rest.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -39,15 +39,22 @@ FIRST = {LOSS: 0.05, BACK: 0.05, WARM[0]: 0.02, WARM[1]: 0.01}
 LEAST_PART = 1e-3
 """Of where the fit starts [1], below which a parameter is none."""
 LEVEL = 0.95
+SMALL = 1e-4
+"""Step in the logarithms [1] over which what follows from them is taken as straight."""
 
 
 @dataclass(frozen=True, slots=True)
 class FittedLog:
-    """A fit to samples: the drive, the solution, and what is linear."""
+    """A fit to samples.
+
+    linear     : (k) what is linear beside the drive's friction
+    covariance : (k, k) of these
+    """
 
     drive: Drive
     solution: Solution
     linear: Array
+    covariance: Array
     rotor: float
 
     def torque(self, samples: Samples) -> tuple[Array, Array]:
@@ -57,6 +64,16 @@ class FittedLog:
         load = beside.load(samples, self.linear, ratio, self.rotor)
         braked = filtered(self.drive, samples, load)
         return braked, braked + beside.matrix @ self.linear + beside.known
+
+    def load(self, samples: Samples) -> tuple[Array, Array]:
+        """Load (n) [N.m] of the teeth, and (k, n) its changes by k independent standard deviations."""
+        ratio = abs(self.drive.ratio)
+        beside = Linear.of(samples, ratio)
+        found = beside.load(samples, self.linear, ratio, self.rotor)
+        variances, ways = np.linalg.eigh(self.covariance)
+        ends = self.linear + np.sqrt(np.maximum(variances, 0.0))[:, None] * ways.T
+        changes = [beside.load(samples, end, ratio, self.rotor) - found for end in ends]
+        return found, np.reshape(changes, (len(changes), found.size))
 
     def unloaded(self, dq: Array, temperature: float) -> Array:
         """Friction (n) [N.m] without load at speeds of the joint [rad/s] and a temperature [K]."""
@@ -103,12 +120,13 @@ def fit(
             "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss and "
             "stiffness, is off by the rotor's share"
         )
+    intervals = _intervals(whole.solution)
     if turned:
         more, why = _link(file, turned[0], whole, free)
         left += why
         if more is not None:
             found, pictures = _both(found, more[0]), [*pictures, more[1]]
-    intervals = _intervals(whole.solution)
+            intervals |= _intervals(more[0])
     result = fitted(file, found.values, "calibration", label, _span(samples))
     for name, (low, high) in intervals.items():
         text = f"{result.sources[name]}; {100.0 * LEVEL:g} % interval {low:.4g} to {high:.4g}"
@@ -134,12 +152,10 @@ def _link(
     names = [name for name in own if name in file.flat and (not free or name in free)]
     if file.law != "catalogue" or not names:
         return None, ["stiffness and hysteresis are found with a start of the law catalogue"]
-    ratio = abs(whole.drive.ratio)
-    load = log.sensed
+    load, spread = log.sensed, np.zeros((0, log.q.size))
     if not np.all(np.isfinite(load)):
-        load = Linear.of(log, ratio).load(log, whole.linear, ratio, whole.rotor)
-    note = f"{', '.join(names)} have no intervals: the load under which they are found is taken as known"
-    return log_link.fit(file, names, log_link.wind_up(log, ratio), -load), [note]
+        load, spread = whole.load(log)
+    return log_link.fit(file, names, log_link.wind_up(log, abs(whole.drive.ratio)), -load, -spread), []
 
 
 def _both(one: Solution, other: Solution) -> Solution:
@@ -245,7 +261,21 @@ def _fitted(file: ParameterFile, samples: Samples, wanted: Sequence[str], rotor:
         solution = solve(unknowns(changed, wanted, least), residuals, nuisances=len(beside.names))
         linear = beside.found(rest(solution.values))
         changed = file.with_values(solution.values, "calibration", "fit")
-    return FittedLog(changed.values, solution, linear, rotor)
+    own = solution.noise**2 * np.linalg.pinv(beside.matrix.T @ beside.matrix)
+    follows = _deviations(solution, lambda values: beside.found(rest(values)))
+    return FittedLog(changed.values, solution, linear, own + follows.T @ follows, rotor)
+
+
+def _deviations(solution: Solution, of: Callable[[Mapping[str, float]], Array]) -> Array:
+    """(k, m) how a function (m) of the values goes with each of their k independent standard deviations."""
+    variances, ways = np.linalg.eigh(solution.covariance)
+    rows, there = [], of(solution.values)
+    for deviation, way in zip(np.sqrt(np.maximum(variances, 0.0)), ways.T, strict=True):
+        moved = {
+            n: v * float(np.exp(SMALL * d)) for (n, v), d in zip(solution.values.items(), way, strict=True)
+        }
+        rows.append((of(moved) - there) * deviation / SMALL)
+    return np.array(rows)
 
 
 def _first(file: ParameterFile, samples: Samples, linear: Array) -> dict[str, float]:

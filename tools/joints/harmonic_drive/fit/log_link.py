@@ -5,8 +5,10 @@ torque of the hysteresis follows the measured wind-up; where the drive has its z
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -34,8 +36,12 @@ def wind_up(samples: Samples, ratio: float) -> Array:
     return np.asarray(angle - angle.mean())
 
 
-def fit(file: ParameterFile, names: Sequence[str], phi: Array, tau: Array) -> tuple[Solution, Picture]:
+def fit(
+    file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, spread: Array
+) -> tuple[Solution, Picture]:
     """Fit names of LINES and hysteresis_loss to a path of wind-ups (n) [rad] under torques (n) [N.m].
+
+    spread : (k, n) changes of the torques by k independent standard deviations; they widen the covariance
 
     Raises RuntimeError if the fit finds no end.
     """
@@ -43,10 +49,10 @@ def fit(file: ParameterFile, names: Sequence[str], phi: Array, tau: Array) -> tu
     start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
     path = phi - phi[0]
 
-    def angle(values: Mapping[str, float]) -> Array:
+    def angle(values: Mapping[str, float], torque: Array = tau) -> Array:
         """Wind-up (n) [rad] by the law, less its mean."""
         spring = HarmonicDriveSpring.of(file.with_values(values, "calibration", "fit").values)
-        found = spring.curve.odd_inverse(tau - _friction(spring, path))
+        found = spring.curve.odd_inverse(torque - _friction(spring, path))
         return np.asarray(found - np.mean((found - phi)[SETTLED:]))
 
     bounds = {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}
@@ -54,6 +60,9 @@ def fit(file: ParameterFile, names: Sequence[str], phi: Array, tau: Array) -> tu
         unknowns(start, names, bounds), lambda values: (phi - angle(values))[SETTLED:], nuisances=1
     )
     law = angle(solution.values)
+    for change in spread:
+        moved = np.linalg.lstsq(solution.jacobian, (angle(solution.values, tau + change) - law)[SETTLED:])[0]
+        solution = replace(solution, covariance=solution.covariance + np.outer(moved, moved))
     labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
     picture = Picture(tau, phi / ARCMIN, (phi - law) / ARCMIN, (tau, law / ARCMIN), labels)
     return solution, picture
@@ -64,8 +73,22 @@ def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
     sliders = spring.hysteresis
     if not sliders.acts:
         return np.zeros(path.size)
-    found, memory, none = np.empty(path.size), hysteresis.MEMORY.rest(), np.zeros(())
-    for n, place in enumerate(path):
+    places, sampled = _with_turns(path)
+    found, memory, none = np.empty(places.size), hysteresis.MEMORY.rest(), np.zeros(())
+    for n, place in enumerate(places):
         slid = sliders.moved(memory, place)
         memory, found[n] = sliders.after(slid, place, none), slid.traction
-    return found
+    return found[sampled]
+
+
+def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
+    """A path (n) with the vertices of the parabolas where it turns between samples, and where these are."""
+    before, after = np.diff(path)[:-1], np.diff(path)[1:]
+    turns = np.flatnonzero(before * after < 0.0)
+    one, two = before[turns], after[turns]
+    late = 0.5 * (one + two) / (one - two)  # in steps after the sample
+    vertex = path[turns + 1] + 0.25 * (one + two) * late
+    # the vertex lies on the side of the sample to which `late` points
+    at = turns + 1 + (late > 0.0)
+    sampled = np.arange(path.size) + np.searchsorted(at, np.arange(path.size), side="right")
+    return np.insert(path, at, vertex), sampled
