@@ -41,7 +41,7 @@ FINE = 20
 def made(options: str, folder: Path) -> ParameterFile:
     """The joint of a drawing, its bolts without stiffness."""
     path = folder / "plate.toml"
-    words = f"new bolted-joint {options} --material steel --Ra 0.8 --out {path}"
+    words = f"new bolted-joint {options} --embedding 0 --material steel --Ra 0.8 --out {path}"
     with redirect_stdout(StringIO()):
         if cli.main(words.split()):
             raise SystemExit(f"{words} failed")
