@@ -4,7 +4,7 @@ import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
@@ -90,7 +90,7 @@ def _check(args: argparse.Namespace) -> None:
         check_writable(args.vtu)
 
 
-def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes") -> dict[str, Any]:
+def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes") -> dict[str, object]:
     rows = zip(modes.frequency.tolist(), even.frequency.tolist(), strict=True)
     return {
         "assembly": name,
