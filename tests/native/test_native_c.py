@@ -32,7 +32,7 @@ HOSTS = Path(__file__).parent
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
 COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
-"""{name: command}; the last one comes with the package and builds the FMUs: it is clang, and warns as that."""
+"""{name: command}; the last comes with the package and builds the FMUs: it is clang, and warns as that."""
 SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "undefined"}
 """The first that is installed is taken. Zig has no runtime of the address sanitizer."""
 PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
