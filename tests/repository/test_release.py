@@ -26,10 +26,10 @@ def test_the_description_leads_to_the_address_that_is_given() -> None:
     show = [sys.executable, "setup.py", "--quiet", "--url", "--long-description"]
     given = os.environ | {"JOINTFMU_URL": "https://example.org/joints/"}
     said = subprocess.run(show, cwd=ROOT, env=given, capture_output=True, text=True, timeout=100, check=True)
-    links = re.findall(r"\]\((?!#)(\S+)\)", said.stdout)
+    links = re.findall(r"\]\((?!#)([^)\s]+)\)", said.stdout)
     assert len(links) > 10
     assert all(link.startswith("https://") for link in links), links
-    pictures = re.findall(r"!\[[^\]]*\]\((\S+)\)", said.stdout)
+    pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", said.stdout)
     for link in (*links, *pictures):
         path = re.sub(r"https://example\.org/joints/(blob|raw)/HEAD/", "", link)
         assert ("/raw/" in link) == (link in pictures), link
