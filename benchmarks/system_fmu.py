@@ -3,9 +3,9 @@
     python benchmarks/system_fmu.py
 
 For each shipped system: the largest difference of an output from model exchange (CVode, tight), over its
-largest value, of the FMU at communication steps of 1 ms and 10 ms, and of the archive at the system's interval.
-Then the times of runs: of the archive at its interval, and at the longest of its halves with which the outputs
-are within 0.5 % as well, over those of the FMU. All include loading; the archive's include unpacking.
+largest value, of the FMU at communication steps of 1 ms and 10 ms, and of the archive at the system's
+interval. Then the times of runs: of the archive at its interval, and at the longest of its halves with which
+the outputs are within 0.5 % as well, over those of the FMU. All include loading; the archive's unpacking too.
 """
 
 import platform
@@ -29,7 +29,7 @@ WATCHED = {
     "six_axis_robot": ("shoulder_link.w", "elbow_drive.tau2", "hand_link.phi"),
 }
 EXCHANGE = {"robot_joint": (1e-9, 1e-4), "bolted_column": (1e-8, 1e-6), "six_axis_robot": (1e-9, 1e-4)}
-"""Relative tolerance, and interval [s]: fmpy tells of a completed step once in each, and friction turns there."""
+"""Relative tolerance, and interval [s]: fmpy tells of completed steps once in each: friction turns there."""
 STEPS = (1e-3, 1e-2)
 WITHIN = 5e-3
 HALVINGS = 6
