@@ -125,7 +125,7 @@ def second(model: str, inertia: str = "", unit: str = "") -> str:
         ([("[experiment]", "[experiments]")], "has no section [experiment], expected a system's file"),
         ([("value = 2.0, unit", "value = -2.0, unit")], "experiment.stop_time = -2 s is outside (0, inf)"),
         (
-            [("J = { value = 0.05", "l = { value = 0.05")],
+            [('J = { value = 0.05, unit = "kg.m2"', 'lag_a = { value = 0.05, unit = "1"')],
             "link.J is not stated, expected the moment of inertia",
         ),
         ([("[link]", "[motor]")], "is no valid TOML (Cannot declare ('motor',) twice"),
