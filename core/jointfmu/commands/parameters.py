@@ -105,7 +105,7 @@ def _cells(row: dict[str, Any]) -> tuple[str, ...]:
     return (row["name"], _shown(row["default"]), row["unit"] or "", allowed, row["meaning"])
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, tuple):
