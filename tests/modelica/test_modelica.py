@@ -516,8 +516,8 @@ def reference(
     rtol: float = 1e-9,
     method: str = "DOP853",
 ) -> np.ndarray:
-    """solve_ivp from edge to edge of the load, so that it passes over none; where sliders slip and stick a method
-    of a lower order does less in vain."""
+    """solve_ivp from edge to edge of the load, so that it passes over none; where sliders slip and stick a
+    method of a lower order does less in vain."""
     out, state = [], np.array(start)
     last = float(times[-1]) * (1.0 + 1e-12)
     ends = [0.0, *sorted(edge for edge in edges if edge < last), last]
