@@ -381,6 +381,67 @@ def test_frequency_and_damping_over_the_amplitude(tmp_path):
     assert found.second_picture is not None
 
 
+@pytest.mark.slow
+def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
+    """No beam is a joint alone: stated or fitted in series the joint is found, without it it is not."""
+    true = measurements.file("bolted_joint", measurements.JOINT)
+    joint, series = loop.rest_stiffness(true.values, PRELOAD), 0.5
+    law = loop.first_loading(true.values, PRELOAD, series * joint)[0]
+    alone = loop.first_loading(true.values, PRELOAD)[0]
+    motion = np.geomspace(1e-8, 3e-6, 20)
+    both = motion + alone.friction(motion) / (series * joint)
+    np.testing.assert_allclose(law.friction(both), alone.friction(motion), rtol=1e-4)  # between its nodes
+    frequency, damping = Oscillator(law, measurements.MASS).free(np.geomspace(1e-7, 1e-5, 25))
+    noise = np.random.default_rng(1)
+    frequency, damping = (
+        x * np.exp(s * noise.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
+    )
+    heads = "displacement [um], frequency [Hz], damping [1]"
+    path = write(tmp_path, heads, 1e6 * np.geomspace(1e-7, 1e-5, 25), frequency, damping)
+    start = measurements.file("bolted_joint", {"surface.D": measurements.JOINT["surface.D"]})
+
+    def fitted(*more, **given):
+        return loop.fit(
+            path, start, ["mu", "surface.G", *more], preload=PRELOAD, modal_mass=measurements.MASS, **given
+        )
+
+    stated, found, rigid = fitted(series_stiffness=series * joint), fitted("series_stiffness"), fitted()
+    for one in (stated, found):
+        for name, deviation in one.solution.deviations.items():
+            want = measurements.JOINT.get(name, series * joint)
+            assert abs(np.log(one.solution.values[name] / want)) < 4.0 * deviation, name
+        assert one.facts["shear_stiffness"][0] == pytest.approx(joint, rel=0.02)
+    assert rigid.facts["shear_stiffness"][0] < 0.5 * joint
+    with pytest.raises(ValueError, match="the data show joint and structure together"):
+        fitted(series_stiffness=0.1 * joint)
+
+
+@pytest.mark.slow
+def test_a_fit_that_says_nothing_is_not_written_without_force(tmp_path, monkeypatch, capsys):
+    """Each reason: area, nothing determined, a height that no surface has, bounds reached by all."""
+    run, motion, force = joint_loops()
+    found = loop.fit(write(tmp_path, TURNS, run, 1e6 * motion, force), preload=PRELOAD)
+    assert found.doubt() is None
+    area = found.facts["loop_area"]
+    other = replace(found, facts=found.facts | {"loop_area_law": (2.1 * area[0], *area[1:])})
+    assert "allowed is a factor of 2" in other.doubt()
+    known, names = found.solution, tuple(u.name for u in found.solution.unknowns)
+    assert "ended on a bound" in replace(found, solution=replace(known, at_bound=names)).doubt()
+    loose = replace(known, jacobian=1e-9 * known.jacobian, covariance=1e6 * np.eye(len(names)))
+    assert "determine none" in replace(found, solution=loose).doubt()
+    high = replace(known, values={**known.values, "h": 1.41})
+    assert "no roughness is as high" in replace(found, solution=high).doubt()
+
+    monkeypatch.setattr(loop, "fit", lambda *_, **__: replace(found, solution=high))
+    out = tmp_path / "f.toml"
+    asked = ["fit", "loop", str(tmp_path / "bad.csv"), "--preload", str(PRELOAD), "--out", str(out)]
+    assert cli.main(asked) == 1
+    assert "the fit says nothing of the joint" in capsys.readouterr().err
+    assert not out.exists()
+    assert cli.main([*asked, "--force"]) == 0
+    assert out.exists()
+
+
 def test_runs_of_their_own_size_have_their_own_noise():
     run, motion, force = joint_loops()
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
@@ -428,6 +489,7 @@ def test_titles_as_people_write_them(tmp_path, titles):
     assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]
 
 
+@pytest.mark.slow
 def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
     """A record of an elastic bar: its loop has no area but noise."""
     monkeypatch.chdir(tmp_path)
