@@ -54,12 +54,12 @@ def curves(joint):
     return replace(simple, damping=np.array(whole)), simple
 
 
-def by_masing(joint):
-    """States at AMPLITUDES[TURNS], and the mode there by Masing's rules."""
+def by_masing(joint, turns=TURNS):
+    """States at AMPLITUDES[turns], and the mode there by Masing's rules."""
     states = joint.backbone(AMPLITUDES)
     ratios = [damping(*pair) for pair in zip(masing(states), states, strict=True)]
     columns = [s.q for s in states], [frequency(s) for s in states], ratios
-    return states[TURNS], Curves(*(np.array(values)[TURNS] for values in columns))
+    return states[turns], Curves(*(np.array(values)[turns] for values in columns))
 
 
 def linear(structure, found):
@@ -127,7 +127,8 @@ def with_form():
         carries = area[np.searchsorted(force, 0.9 * force[-1])] / area[-1]
         f = joint.beam.frequency
         row(name, f"{f:.1f}", f"{100 * (f / small - 1):+.2f}", f"{carries:.2f}")
-    beside({name: by_masing(rubbing(joint, friction))[1] for name, joint in found.items()}, "curved", small)
+    curves_ = {name: by_masing(rubbing(joint, friction), slice(None))[1] for name, joint in found.items()}
+    beside(curves_, "curved", small)
 
 
 def main():
