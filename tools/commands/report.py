@@ -16,9 +16,7 @@ def add(commands: Commands) -> None:
         "write a page about one joint: curves, loops, friction, sources of its numbers, how far to trust it"
     )
     make = command(commands, "report", _report, text)
-    make.add_argument(
-        "file", type=Path, metavar="FILE", help="parameter file (TOML), or a name"
-    )
+    make.add_argument("file", type=Path, metavar="FILE", help="parameter file (TOML), or a name")
     make.add_argument("--fmu", metavar="NAME", help="which of the joint's FMUs (default: its first)")
     make.add_argument(
         "--out", type=Path, metavar="FILE", help="page to write (.html; default: FILE.html in this folder)"
