@@ -14,6 +14,7 @@ from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
+from jointfmu.progress import step
 
 from ....drawing.vdi2230 import ClampedPart
 from . import ATTACHED
@@ -69,6 +70,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
         from ....fem.bolted_contact import BoltedContact
         from ....fem.joint_file import with_solution
 
+        step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
         return with_solution(file, solution, plates.tension)
 
@@ -93,6 +95,7 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJ
         from ....fem.elastic_sides import elastic_bodies
         from ....fem.whole_joint import WholeJoint
 
+        step("members by finite elements")
         joint = WholeJoint.of(plates.assembly(file), attached)
         springs = _springs(file, plates.preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
