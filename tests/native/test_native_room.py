@@ -59,7 +59,7 @@ def counted(fmu, folder):
 
 
 def grown(unzipped, spans, step, steps):
-    """Allocations from the end of initialization on, over steps with random inputs out of {input: (low, high)}."""
+    """Allocations after initialization, over steps with random inputs out of {input: (low, high)}."""
     description = fmpy.read_model_description(str(unzipped))
     refs = {v.name: v.valueReference for v in description.modelVariables}
     fmu = fmpy.instantiate_fmu(str(unzipped), description, "CoSimulation")
