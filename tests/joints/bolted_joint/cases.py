@@ -66,7 +66,8 @@ BOLTED = Case(
         kinks=frozenset({"f_x", "f_y", "m_z", "slip", "K_xx", "K_yy", "K_rz", "E_loss"}),  # of single sliders
     ),
     tuning=Tuning(
-        base={"plastic_damping": True, "bolt_stiffness": 1e8, "damping": True},  # off, they are zero
+        # off, they are zero
+        base={"plastic_damping": True, "bolt_stiffness": 1e8, "embedding": 500.0, "damping": True},
         also={"memory": False},  # then shear lifts
         moved={"n_bolts": 9.0, "row_bolts": 2.0},  # whole numbers
         counted={"n_bolts": (8, 12), "row_bolts": (1, 4)},
