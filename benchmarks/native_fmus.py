@@ -7,8 +7,9 @@ along one on which the preload moves too, and at random over the table. A joint 
 way: the bolted joint has six degrees of freedom on the smooth trajectory, and one without tilt on the second.
  "x PassThrough" is the smooth cycle over that of an FMU that passes two inputs on to two
 outputs with the same runtime. "step" is doStep with changed inputs, "no change" with the inputs of the
-step before. With `--worst` only a million random steps of each are timed, one by one. "derivative" is one directional derivative of all outputs along all inputs, "start" goes from
-instantiation to the end of initialization. Medians. What is promised stands below with its target.
+step before. "derivative" is one directional derivative of all outputs along all inputs, "start" goes from
+instantiation to the end of initialization. Medians. What is promised stands below with its target. With
+`--worst` a million random steps of each are timed one by one instead.
 """
 
 import platform
@@ -234,7 +235,8 @@ def worst(folder: Path) -> None:
     for name, flavour, *rest in libraries(folder):
         if flavour == NATIVE[-1] and name not in PASS_THROUGH:
             found = native_times(host, name, flavour, *rest, repeats=0)
-            print(f"{name:28}" + "".join(f" {found[key] * 1e6:9.2f}" for key in ("median", "rare", "longest")))
+            times = [found[key] * 1e6 for key in ("median", "rare", "longest")]
+            print(f"{name:28}" + "".join(f" {time:9.2f}" for time in times))
 
 
 def report(times: dict[tuple[str, str], Times]) -> None:
