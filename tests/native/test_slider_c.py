@@ -134,7 +134,7 @@ def test_in_a_plane(library: CDLL) -> None:
         total, way = Sum(), (c_double * 2)(*shift)
         first = library.sliders_plane(SLIDERS, byref(s), way, out, byref(total))
         tried = trial(list(force), 1.0, K, list(shift[:, None]))
-        slid = slide(list(force), tried, before, after, K, kept[1])
+        slid = slide(list(force), 1.0, K, list(shift[:, None]), before, after, K, kept[1])
         size = 1.0 + float(np.hypot(*shift) * np.sum(K))
         close(moved, slid.force, size)
         sums = [np.sum(part) for part in (*slid.force, slid.loss)]

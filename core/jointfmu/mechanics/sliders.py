@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..quantity import Number, where
 from .curve import Curve
 from .footprint.reproducible import to_digits
-from .jenkins import Moved, Slid, Vector, compliance, slide, trial
+from .jenkins import Moved, Slid, Vector, compliance, slide
 
 Array = NDArray[np.float64]
 
@@ -396,8 +396,9 @@ def of_range(
 def on_way(force: Vector, start: Carried, end: Carried, way: Way) -> Slid:
     """Sliders after a way; the loss is right where the stiffness stays, else see `heat`."""
     ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
-    tried = trial(force, *carrying(*ends, way.change, way.rise, way.small), way.shift)
-    return slide(force, tried, start.limit, end.limit, end.stiffness, compliance(end.stiffness))
+    keeps, carries = carrying(*ends, way.change, way.rise, way.small)
+    springs = end.stiffness, compliance(end.stiffness)
+    return slide(force, keeps, carries, way.shift, start.limit, end.limit, *springs)
 
 
 def heat(

@@ -239,54 +239,53 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
     x[X_SMALL] = small_on(f, i, path->from, at);
 }
 
-/* Arguments of `slide_plane`, and its results. */
-enum { S_FORCE, S_KEEPS = 2, S_CARRIES, S_SHIFT, S_BEFORE = 6, S_AFTER, S_K, S_PER_K, N_SLIDE };
+/* Results of `slide_plane`. */
 enum { MOVED_FORCE, MOVED_TANGENT = 2, MOVED_LOSS = 5, MOVED_SLIP, N_MOVED };
 
-static inline void slider_on(const PatchPath *path, int k, const double gained[2], double part, const Pair *start,
-                             const Pair *end, double *x)
+/* Both sliders of a range side by side, at the end of a way and at the points between. */
+enum { AT_ONCE = 6 };
+typedef struct {
+    double x[AT_ONCE], y[AT_ONCE], keeps[AT_ONCE], carries[AT_ONCE], part[AT_ONCE], before[AT_ONCE], after[AT_ONCE],
+        K[AT_ONCE], per_K[AT_ONCE];
+} Sliding;
+
+static inline void slider_on(const PatchPath *path, int i, int at, const double gained[2], double part,
+                             const Pair *start, const Pair *end, Sliding *s)
 {
-    x[S_FORCE] = path->force[0][k];
-    x[S_FORCE + 1] = path->force[1][k];
-    x[S_KEEPS] = gained[0];
-    x[S_CARRIES] = gained[1];
-    x[S_SHIFT] = part * path->shift[0];
-    x[S_SHIFT + 1] = part * path->shift[1];
-    x[S_BEFORE] = start->limit[k % 2];
-    x[S_AFTER] = end->limit[k % 2];
-    x[S_K] = end->K;
-    x[S_PER_K] = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    const double per_K = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    for (int late = 0; late < 2; late++) {
+        const int k = 2 * at + late;
+        s->x[k] = path->force[0][2 * i + late];
+        s->y[k] = path->force[1][2 * i + late];
+        s->keeps[k] = gained[0];
+        s->carries[k] = gained[1];
+        s->part[k] = part;
+        s->before[k] = start->limit[late];
+        s->after[k] = end->limit[late];
+        s->K[k] = end->K;
+        s->per_K[k] = per_K;
+    }
 }
 
-/* The slider after it; most stick, which takes no root. */
-static inline void slide(const double *x, double *y)
+static inline void slide_all(int n, const double shift[2], const Sliding *restrict s, double (*restrict moved)[AT_ONCE])
 {
-    const double stick[] = {x[0], x[1], x[S_KEEPS], x[S_CARRIES], x[S_SHIFT], x[S_SHIFT + 1], x[S_AFTER]};
-    double tried[3];
-    stick_plane(stick, NULL, tried);
-    if (tried[2] > 0.0) {
+    const double u = shift[0], v = shift[1];
+    double e[3];
+    direction(shift, NULL, e);
+    const double e_x = e[0], e_y = e[1], way = e[2];
+    for (int k = 0; k < n; k++) {
+        const double part = s->part[k];
+        const double x[] = {s->x[k], s->y[k],    s->keeps[k],  s->carries[k], part * u, part * v, e_x, e_y,
+                            part * way, s->before[k], s->after[k], s->K[k],       s->per_K[k]};
+        double y[N_MOVED];
         slide_plane(x, NULL, y);
-        return;
+        for (int r = 0; r < N_MOVED; r++)
+            moved[r][k] = y[r];
     }
-    const double sticks[N_MOVED] = {tried[0], tried[1], x[S_K], 0.0, x[S_K]};
-    memcpy(y, sticks, sizeof sticks);
 }
 
 /* Arguments of `changing_loss`. */
 enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_BETWEEN, N_CHANGING = 12 };
-
-static inline void changing(const double *slider, const double *moved, const double shift[2], const Pair *start,
-                            const Pair *end, double *x)
-{
-    for (int d = 0; d < 2; d++) {
-        x[C_FORCE + d] = slider[S_FORCE + d];
-        x[C_MOVED + d] = moved[MOVED_FORCE + d];
-        x[C_SHIFT + d] = shift[d];
-    }
-    x[C_FIRST] = start->K;
-    x[C_LAST] = end->K;
-    x[C_SLIP] = moved[MOVED_SLIP];
-}
 
 /* The sliders of a range that changes. */
 static void move_range(const Foundation *f, int i, const PatchPath *path, Inner *inner, double *const moved[2],
@@ -295,28 +294,33 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Inner 
     const bool across = !stays(i, path->from, path->to);
     const Point *points = across ? inner_points(f, path, inner) : NULL;
     const Range r = range_on(f, i, path, points);
-    double x[N_CARRYING], gained[3][2];
-    gain(f, i, path, &r.start, &r.end, path->to, x);
-    carrying(x, NULL, gained[2]);
-    for (int p = 0; p < 2 && across; p++) {
-        gain(f, i, path, &r.start, &r.inner[p], &points[p], x);
-        carrying(x, NULL, gained[p]);
+    const int n = across ? 3 : 1;
+    double x[N_CARRYING], gained[2], y[N_MOVED][AT_ONCE];
+    Sliding s;
+    for (int at = 0; at < n; at++) {
+        const Pair *end = at > 0 ? &r.inner[at - 1] : &r.end;
+        gain(f, i, path, &r.start, end, at > 0 ? &points[at - 1] : path->to, x);
+        carrying(x, NULL, gained);
+        slider_on(path, i, at, gained, at > 0 ? lobatto[at - 1] : 1.0, &r.start, end, &s);
     }
-    for (int k = 2 * i; k < 2 * i + 2; k++) {
-        double slider[N_SLIDE], y[N_MOVED], there[N_MOVED], c[N_CHANGING] = {across}, loss;
-        slider_on(path, k, gained[2], 1.0, &r.start, &r.end, slider);
-        slide(slider, y);
-        changing(slider, y, path->shift, &r.start, &r.end, c);
-        for (int p = 0; p < 2 && across; p++) {
-            slider_on(path, k, gained[p], lobatto[p], &r.start, &r.inner[p], slider);
-            slide(slider, there);
-            c[C_BETWEEN] += there[0];
-            c[C_BETWEEN + 1] += there[1];
+    slide_all(2 * n, path->shift, &s, y);
+    for (int k = 0; k < 2; k++) {
+        double c[N_CHANGING] = {across}, loss;
+        for (int d = 0; d < 2; d++) {
+            c[C_FORCE + d] = path->force[d][2 * i + k];
+            c[C_MOVED + d] = moved[d][2 * i + k] = y[MOVED_FORCE + d][k];
+            c[C_SHIFT + d] = path->shift[d];
+            c[C_BETWEEN + d] = across ? y[MOVED_FORCE + d][2 + k] + y[MOVED_FORCE + d][4 + k] : 0.0;
         }
+        c[C_FIRST] = r.start.K;
+        c[C_LAST] = r.end.K;
+        c[C_SLIP] = y[MOVED_SLIP][k];
         changing_loss(c, NULL, &loss);
-        moved[0][k] = y[0];
-        moved[1][k] = y[1];
-        add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, r.start.K == r.end.K ? y[MOVED_LOSS] : loss}, shear);
+        const double *xx = &y[MOVED_TANGENT][k];
+        add(&(SliderSum){{y[0][k], y[1][k]},
+                         {xx[0], xx[AT_ONCE], xx[2 * AT_ONCE]},
+                         r.start.K == r.end.K ? y[MOVED_LOSS][k] : loss},
+            shear);
     }
 }
 

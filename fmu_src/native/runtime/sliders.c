@@ -102,7 +102,7 @@ double sliders_heat(int n, const Sliders *s, double shift)
 
 /* What sliders from the first at its limit on give. */
 typedef struct {
-    double reaches[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+    double reaches[MOST_SLIDERS], loss[MOST_SLIDERS];
 } Each;
 
 static inline void stick_all(int n, const double *restrict K, const double *restrict limit,
@@ -170,6 +170,8 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 /* In a plane */
 
+enum { P_FORCE, P_TANGENT = 2, P_LOSS = 5, N_PLANE = 7 }; /* results of slide_plane */
+
 static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
                                    const double *restrict q_x, const double *restrict q_y, double u, double v,
                                    double *restrict x, double *restrict y, double *restrict reaches)
@@ -184,21 +186,48 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
     }
 }
 
-static inline void slide_plane_all(int first, int n, const double *restrict K, const double *restrict per_K,
-                                   const double *restrict before, const double *restrict after,
-                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
-                                   double *restrict x, double *restrict y, Each *restrict each)
+/* Sliders at their limits, gathered side by side, and what they give. */
+typedef struct {
+    double K[MOST_SLIDERS], per_K[MOST_SLIDERS], before[MOST_SLIDERS], after[MOST_SLIDERS], x[MOST_SLIDERS],
+        y[MOST_SLIDERS];
+} Slipping;
+typedef struct {
+    double x[MOST_SLIDERS], y[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+} Slipped;
+
+static inline int gather(int first, int n, const Sliders *s, const double *reaches, int *at, Slipping *some)
 {
+    int i = 0;
     for (int k = first; k < n; k++) {
-        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, before[k], after[k], K[k], per_K[k]};
-        double b[7];
-        slide_plane(a, NULL, b);
-        x[k] = b[0];
-        y[k] = b[1];
-        each->xx[k] = b[2];
-        each->xy[k] = b[3];
-        each->yy[k] = b[4];
-        each->loss[k] = b[5];
+        at[i] = k;
+        some->K[i] = s->K[k];
+        some->per_K[i] = s->per_K[k];
+        some->before[i] = s->before[k];
+        some->after[i] = s->after[k];
+        some->x[i] = s->force[0][k];
+        some->y[i] = s->force[1][k];
+        i += reaches[k] > 0.0;
+    }
+    return i;
+}
+
+static inline void slide_some(int n, double u, double v, const Slipping *restrict s, Slipped *restrict to)
+{
+    const double shift[2] = {u, v};
+    double e[3];
+    direction(shift, NULL, e);
+    const double e_x = e[0], e_y = e[1], way = e[2];
+    for (int i = 0; i < n; i++) {
+        const double x[] = {s->x[i], s->y[i],      1.0,         s->K[i], u,          v, e_x, e_y,
+                            way,     s->before[i], s->after[i], s->K[i], s->per_K[i]};
+        double y[N_PLANE];
+        slide_plane(x, NULL, y);
+        to->x[i] = y[P_FORCE];
+        to->y[i] = y[P_FORCE + 1];
+        to->xx[i] = y[P_TANGENT];
+        to->xy[i] = y[P_TANGENT + 1];
+        to->yy[i] = y[P_TANGENT + 2];
+        to->loss[i] = y[P_LOSS];
     }
 }
 
@@ -218,20 +247,27 @@ static inline void add_forces(int n, const double *x, const double *y, Lanes *la
 
 int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
 {
-    Each each;
+    int at[MOST_SLIDERS];
+    double reaches[MOST_SLIDERS];
+    Slipping some;
+    Slipped to;
     Lanes lanes = {.x = {0.0}};
-    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], each.reaches);
-    const int first = first_at_limit(each.reaches, n);
-    slide_plane_all(first, n, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1],
-                    moved[0], moved[1], &each);
+    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
+    const int first = first_at_limit(reaches, n), slip = gather(first, n, s, reaches, at, &some);
+    slide_some(slip, shift[0], shift[1], &some, &to);
+    for (int k = first; k < n; k++)
+        lanes.xx[k % 2] += s->K[k];
+    memcpy(lanes.yy, lanes.xx, sizeof lanes.yy);
+    for (int i = 0; i < slip; i++) {
+        const int l = i % 2;
+        moved[0][at[i]] = to.x[i];
+        moved[1][at[i]] = to.y[i];
+        lanes.xx[l] += to.xx[i] - some.K[i];
+        lanes.xy[l] += to.xy[i];
+        lanes.yy[l] += to.yy[i] - some.K[i];
+        lanes.loss[l] += to.loss[i];
+    }
     add_forces(n, moved[0], moved[1], &lanes);
-    for (int k = first; k < n; k += 2)
-        for (int l = 0; l < 2; l++) {
-            lanes.xx[l] += each.xx[k + l];
-            lanes.xy[l] += each.xy[k + l];
-            lanes.yy[l] += each.yy[k + l];
-            lanes.loss[l] += each.loss[k + l];
-        }
     *sum = total(&lanes);
     return first;
 }
