@@ -60,7 +60,10 @@ class Graph:
         seed = symbols("seed", len(x) - fixed)
         slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), moving, ca.vertcat(*seed)))
         self.add(
-            f"{name}_seed", f"Derivative along a seed: {doc}, seed -> y of {name}", [*x, *seed], list(slope.nz)
+            f"{name}_seed",
+            f"Derivative along a seed: {doc}, seed -> y of {name}",
+            [*x, *seed],
+            list(slope.nz),
         )
 
     def settle(self) -> None:

@@ -46,7 +46,7 @@ def reaches(force: Vector, limit: Number) -> Number:
 
 
 _Returned = tuple[Vector, Vector, Number, Number]
-"""Forces, tangent, slip; size of the trial force."""
+"""Forces, tangent, slip, mean of the limit meanwhile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,35 +79,31 @@ def slide(
 ) -> Slid:
     """A slider after a straight path, see `trial`; its limit goes from `before` to `after`.
 
-    Along one direction the force returns to its limit. In a plane it turns towards the shift while it slips:
-    under constant load tan(angle/2) between both falls as exp(-K way/limit) (Krieg and Krieg 1977), within
-    WITHIN whatever the step. A force beyond a limit that fell returns to the centre. The heat is the mean of
-    the limit while it slips times the slip, exact for a stiffness that stays along one direction, of second
-    order for turning paths.
+    Along one direction the force returns to its limit, and the heat is the mean of the limit while it slips
+    times the slip: exact for a stiffness that stays. In a plane the force turns towards the shift while it
+    slips, tan(angle/2) between both falling as exp(-K way/limit) under constant load (Krieg and Krieg 1977):
+    met to the third order of the way, with its heat, and exactly where nothing turns.
 
     compliance : 1/stiffness, 0 without springs
     unit       : direction and size of a shift in a plane, where they are known
     """
     tried = trial(force, keeps, carries, shift)
     if len(tried) == 1:
-        moved, tangent, slip, size = _along(tried, after, stiffness)
-        work = where(tried[0] < 0.0, -force[0], force[0])
+        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
     else:
-        kept = [keeps * q for q in force]
         way = direction(shift) if unit is None else unit
-        moved, tangent, slip, size = _in_a_plane(kept, tried, carries, way, after, stiffness)
-        work = force[0] * tried[0] + force[1] * tried[1]
-    margin = np.maximum(before * size - work, 0.0)
-    onset = margin / np.maximum(margin + slip * size, NOTHING)
-    mean = 0.5 * (after + before + onset * (after - before))
+        moved, tangent, slip, mean = _in_a_plane(force, tried, carries, way, (before, after), stiffness)
     return Slid(moved, tangent, mean * (slip * compliance), slip)
 
 
-def _along(tried: Vector, limit: Number, stiffness: Number) -> _Returned:
+def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
     moved = np.minimum(np.maximum(tried[0], -limit), limit)
     slip = np.abs(tried[0] - moved)
     slips = slip > 0.0
-    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, 1.0
+    margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
+    onset = margin / np.maximum(margin + slip, NOTHING)
+    mean = 0.5 * (limit + before + onset * (limit - before))
+    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, mean
 
 
 def direction(shift: Vector) -> Vector:
@@ -117,30 +113,37 @@ def direction(shift: Vector) -> Vector:
 
 
 def _in_a_plane(
-    kept: Vector, tried: Vector, carries: Number, unit: Vector, limit: Number, stiffness: Number
+    force: Vector, tried: Vector, carries: Number, unit: Vector, limits: Vector, stiffness: Number
 ) -> _Returned:
-    """The kept force grows along the shift up to the circle of its limit, or of its own where that is larger.
+    """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
 
-    With c of it along the shift there and g = K way/limit of the rest, it ends along the trial force and more
-    of the shift: c (cosh g - 1) + limit (sinh g - g), by their series.
+    A turn by g = K way/limit so ends within g^3 of where a slipping force does, whatever the limit does on
+    the way. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by Hermite's rule, of
+    the angle between force and shift.
     """
-    square, own, squared = (x * x + y * y for x, y in (tried, kept, (limit, 0.0)))
+    (before, limit), (e_x, e_y, way) = limits, unit
+    square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
     size = np.sqrt(np.maximum(np.maximum(squared, square), NOTHING))
-    slips = beyond(tried, limit) > 0.0
-    *unit, way = unit
-    first = kept[0] * unit[0] + kept[1] * unit[1]
-    begin = np.sqrt(np.maximum(np.maximum(squared - own, 0.0) + first * first, NOTHING))
-    left = np.maximum(first + carries * way - begin, 0.0)
-    g = np.minimum(left / np.maximum(limit, NOTHING), MOST_TURNED)
-    g2 = g * g
-    more = g2 * (begin * (1 / 2 + g2 * (1 / 24)) + limit * (g * (1 / 6 + g2 * (1 / 120))))
-    ahead = [q + where(slips, more, 0.0) * e for q, e in zip(tried, unit, strict=True)]
-    inverse = 1.0 / np.sqrt(np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING))
-    n = [inverse * q for q in ahead]
+    slips, out = beyond(tried, limit) > 0.0, size - limit
+    margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
+    sum_ = margin + out * size
+    inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
+    per_limit, share = inverse * sum_, inverse * (limit * (out * size))
+    left = share * (carries * way)
+    g, beyond_it = left * per_limit, (square - squared) * per_limit * per_limit
+    more = where(slips, left * (0.25 * np.minimum(beyond_it, MOST_TURNED) - 1 / 12 * (g * g)), 0.0)
+    ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
+    size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
+    per_size = np.sqrt(size2) / size2
+    n = [per_size * q for q in ahead]
+    across = n[0] * e_y - n[1] * e_x
+    turned = left * across
+    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * per_limit / 12.0
     spent = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
     tangent = [stiffness - spent * n[0] * n[0], -spent * n[0] * n[1], stiffness - spent * n[1] * n[1]]
     moved = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
-    return moved, tangent, where(slips, size - limit, 0.0), size
+    mean = 0.5 * (before + limit + (1.0 - share) * (limit - before))
+    return moved, tangent, where(slips, out + hermite, 0.0), mean
 
 
 @dataclass(frozen=True, slots=True)

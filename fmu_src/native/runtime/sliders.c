@@ -186,48 +186,42 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
     }
 }
 
-/* Sliders at their limits, gathered side by side, and what they give. */
-typedef struct {
-    double K[MOST_SLIDERS], per_K[MOST_SLIDERS], before[MOST_SLIDERS], after[MOST_SLIDERS], x[MOST_SLIDERS],
-        y[MOST_SLIDERS];
-} Slipping;
+/* What sliders at their limits give. */
 typedef struct {
     double x[MOST_SLIDERS], y[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
 } Slipped;
 
-static inline int gather(int first, int n, const Sliders *s, const double *reaches, int *at, Slipping *some)
+/* Which they are, with another one after the last: a processor takes two at once. */
+static inline int at_limit(int n, const double *reaches, int *at)
 {
     int i = 0;
-    for (int k = first; k < n; k++) {
+    for (int k = 0; k < n; k++) {
         at[i] = k;
-        some->K[i] = s->K[k];
-        some->per_K[i] = s->per_K[k];
-        some->before[i] = s->before[k];
-        some->after[i] = s->after[k];
-        some->x[i] = s->force[0][k];
-        some->y[i] = s->force[1][k];
         i += reaches[k] > 0.0;
     }
+    at[i] = n - 1;
     return i;
 }
 
-static inline void slide_some(int n, double u, double v, const Slipping *restrict s, Slipped *restrict to)
+static inline void slide_some(int n, const int *restrict at, const double *restrict K, const double *restrict per_K,
+                              const double *restrict before, const double *restrict after, const double *restrict q_x,
+                              const double *restrict q_y, double u, double v, Slipped *restrict to)
 {
     const double shift[2] = {u, v};
     double e[3];
     direction(shift, NULL, e);
     const double e_x = e[0], e_y = e[1], way = e[2];
     for (int i = 0; i < n; i++) {
-        const double x[] = {s->x[i], s->y[i],      1.0,         s->K[i], u,          v, e_x, e_y,
-                            way,     s->before[i], s->after[i], s->K[i], s->per_K[i]};
-        double y[N_PLANE];
-        slide_plane(x, NULL, y);
-        to->x[i] = y[P_FORCE];
-        to->y[i] = y[P_FORCE + 1];
-        to->xx[i] = y[P_TANGENT];
-        to->xy[i] = y[P_TANGENT + 1];
-        to->yy[i] = y[P_TANGENT + 2];
-        to->loss[i] = y[P_LOSS];
+        const int k = at[i];
+        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, e_x, e_y, way, before[k], after[k], K[k], per_K[k]};
+        double b[N_PLANE];
+        slide_plane(a, NULL, b);
+        to->x[i] = b[P_FORCE];
+        to->y[i] = b[P_FORCE + 1];
+        to->xx[i] = b[P_TANGENT] - K[k];
+        to->xy[i] = b[P_TANGENT + 1];
+        to->yy[i] = b[P_TANGENT + 2] - K[k];
+        to->loss[i] = b[P_LOSS];
     }
 }
 
@@ -245,29 +239,26 @@ static inline void add_forces(int n, const double *x, const double *y, Lanes *la
     }
 }
 
-int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
+void sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
 {
-    int at[MOST_SLIDERS];
+    int at[MOST_SLIDERS + 1];
     double reaches[MOST_SLIDERS];
-    Slipping some;
     Slipped to;
     Lanes lanes = {.x = {0.0}};
     stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
-    const int first = first_at_limit(reaches, n), slip = gather(first, n, s, reaches, at, &some);
-    slide_some(slip, shift[0], shift[1], &some, &to);
-    for (int k = first; k < n; k++)
-        lanes.xx[k % 2] += s->K[k];
-    memcpy(lanes.yy, lanes.xx, sizeof lanes.yy);
+    const int slip = n > 0 ? at_limit(n, reaches, at) : 0;
+    slide_some(slip + slip % 2, at, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1], &to);
     for (int i = 0; i < slip; i++) {
-        const int l = i % 2;
         moved[0][at[i]] = to.x[i];
         moved[1][at[i]] = to.y[i];
-        lanes.xx[l] += to.xx[i] - some.K[i];
+    }
+    for (int i = 0; i < slip; i++) {
+        const int l = i % 2;
+        lanes.xx[l] += to.xx[i];
         lanes.xy[l] += to.xy[i];
-        lanes.yy[l] += to.yy[i] - some.K[i];
+        lanes.yy[l] += to.yy[i];
         lanes.loss[l] += to.loss[i];
     }
     add_forces(n, moved[0], moved[1], &lanes);
     *sum = total(&lanes);
-    return first;
 }
