@@ -60,7 +60,7 @@ class Joint:
         seen: dict[str, object] = {}
         real = whole.whole_joint
 
-        def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.WholeJoint:
+        def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
             joint = WholeJoint.of(plates.assembly(file), to)
             springs = computed._springs(file, plates.preload, joint)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2])

@@ -42,13 +42,23 @@ WIDE = "PassThrough4x9"
 """As many inputs and outputs as the harmonic drive has."""
 PASS_THROUGH = {"PassThrough": (2, 2), WIDE: (4, 9)}
 """{FMU that passes its inputs on: (inputs, outputs)}."""
-LOOPS = {f"{name}+loop": name for name in ("HarmonicDriveSpring", "HarmonicDriveCompliance")}
-"""The drive with hysteresis: {in the table: FMU}."""
 LOOP = {"hysteresis_loss": 3e-4}
+FRICTION = LOOP | {
+    "lost_motion": 1e-4,
+    "error_2": 1e-4,
+    "friction_coulomb": 0.03,
+    "friction_stribeck": 0.02,
+    "friction_viscous": 2e-4,
+    "load_loss": 0.1,
+}
+"""All that is off by default."""
+LOOPS = {f"{name}+loop": (name, LOOP) for name in ("HarmonicDriveSpring", "HarmonicDriveCompliance")}
+OTHERS = LOOPS | {"HarmonicDriveSpring+all": ("HarmonicDriveSpring", FRICTION)}
+"""The drive with hysteresis, with all: {in the table: (FMU, parameters)}."""
 RANGES = {name: dict(case.numbers.span) for name, case in CASES.items()} | {
     name: {f"u{i}": (-1, 1) for i in range(n)} for name, (n, _) in PASS_THROUGH.items()
 }
-RANGES |= {label: RANGES[name] for label, name in LOOPS.items()}
+RANGES |= {label: RANGES[name] for label, (name, _) in OTHERS.items()}
 """Inputs over the range of the tables."""
 HELD = ("preload", "moment")
 """Inputs that stay as they are along the trajectory: a joint is tightened once."""
@@ -119,24 +129,24 @@ def pass_through(name: str) -> dict[str, str]:
 
 
 def sources(name: str) -> dict[str, str]:
-    """C sources of an FMU with its default parameters, or of a loop."""
-    file = default(MODELS[LOOPS.get(name, name)].joint)
-    if name in LOOPS:
-        file = file.with_values(LOOP, "user", "benchmark")
-    return generate.sources(LOOPS.get(name, name), file)
+    """C sources of an FMU with its default parameters, or of one of OTHERS."""
+    own, changes = OTHERS.get(name, (name, {}))
+    file = default(MODELS[own].joint).with_values(changes, "user", "benchmark")
+    return generate.sources(own, file)
 
 
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
     """Name, flavour, library, token and number of outputs of every native FMU and pass-through."""
-    for name in (*MODELS, *LOOPS, *PASS_THROUGH):
-        model = MODELS.get(LOOPS.get(name, name))
+    for name in (*MODELS, *OTHERS, *PASS_THROUGH):
+        own = OTHERS.get(name, (name, {}))[0]
+        model = MODELS.get(own)
         outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
         files = sources(name) if model else pass_through(name)
         for flavour in NATIVE:
             units = compiler.exported(list(files), flavour[-1])
             file = folder / flavour / f"{name}.so"
             file.parent.mkdir(exist_ok=True)
-            made = compiler.libraries(LOOPS.get(name, name), files, units, [PLATFORM])
+            made = compiler.libraries(own, files, units, [PLATFORM])
             file.write_bytes(made[PLATFORM])
             yield name, flavour, file, generate.token(files), outputs
 
@@ -219,7 +229,7 @@ def report(times: dict[tuple[str, str], Times]) -> None:
     """Print the table."""
     print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
     print(" " * 36 + "".join(f" {unit:>13}" for *_, unit in COLUMNS.values()))
-    for name in (*MODELS, *LOOPS, *PASS_THROUGH):
+    for name in (*MODELS, *OTHERS, *PASS_THROUGH):
         for flavour in FLAVOURS:
             if found := times.get((name, flavour)):
                 print(f"{name:28} {flavour:7}" + "".join(f" {cell(found, key):>13}" for key in COLUMNS))
@@ -237,6 +247,8 @@ def report(times: dict[tuple[str, str], Times]) -> None:
 def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str, str, float]]:
     """FMU, what is measured, and the most it may take [s]."""
     drive = 1.5 * times[WIDE, flavour]["cycle_smooth"] + 30e-9
+    # 1.2 of what it was, over the plain drive, before temperature and two shares of the load
+    everything = 1.2 * 3.09 * times["HarmonicDriveSpring", flavour]["cycle_smooth"]
     return [
         ("BoltedJoint", "cycle_smooth", 6e-6),
         ("BoltedJoint", "cycle_straight", 2e-6),
@@ -244,6 +256,7 @@ def targets(times: dict[tuple[str, str], Times], flavour: str) -> list[tuple[str
         ("GearContact", "cycle_smooth", 150e-9),
         ("HarmonicDriveSpring", "cycle_smooth", drive),
         *((name, "cycle_smooth", 300e-9) for name in LOOPS),
+        ("HarmonicDriveSpring+all", "cycle_smooth", everything),
         *((name, "start", 1.5e-3) for name in MODELS),
     ]
 

@@ -53,6 +53,9 @@ def _run(args: Any, name: str) -> int:
         hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
         print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
+    except OverflowError:
+        print(f"{name}: a parameter is so large that numbers of the law exceed 1.8e308", file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from threading import RLock
-from typing import Any, TypeVar
+from typing import TypeVar
 
 T = TypeVar("T")
 
@@ -24,7 +24,7 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
     yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
 
 
-def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[Any]) -> list[T]:
+def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[object]) -> list[T]:
     """Results of a function for all jobs, in their order, with a bar.
 
     pool : processes that share several jobs; None: this one does them

@@ -24,6 +24,7 @@ from .beside import Beside
 from .course import Course
 from .figure import Figure, Panel, Series
 from .looks import script, style
+from .opening import opening
 
 MEANT = {
     "published": "printed in the paper",
@@ -81,6 +82,7 @@ def _page(model: Model, file: ParameterFile) -> str:
         file=file,
         version=__version__,
         figures=[(figure, as_json(figure.panels)) for figure in figures],
+        opening=opening(course, loops, stated(file)),
         beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
         drawings=drawings(model, course.spring),
         rows=rows,

@@ -20,8 +20,7 @@ from . import ATTACHED
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import Compliance
-    from ....fem.whole_joint import WholeJoint as Bodies
+    from ....fem.whole_joint import Compliance, WholeJoint
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -77,28 +76,28 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
 
 
 @dataclass(frozen=True, slots=True)
-class WholeJoint:
+class ComputedJoint:
     """The joint between its attachments: compliances by direction, and its parameters with elastic sides."""
 
     compliances: "dict[str, Compliance]"
     file: ParameterFile
 
 
-def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoint:
+def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJoint:
     """The whole joint at its preload: the plates move at their attachments.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
 
-    def solved() -> WholeJoint:
+    def solved() -> ComputedJoint:
         from ....fem.elastic_sides import elastic_bodies
-        from ....fem.whole_joint import WholeJoint as Bodies
+        from ....fem.whole_joint import WholeJoint
 
-        joint = Bodies.of(plates.assembly(file), attached)
+        joint = WholeJoint.of(plates.assembly(file), attached)
         springs = _springs(file, plates.preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
         bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], plates.preload)
-        return WholeJoint(linear.compliances(), with_bodies(file, bodies, attached))
+        return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
 
@@ -117,7 +116,7 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
     )
 
 
-def _springs(file: ParameterFile, preload: float, joint: "Bodies") -> Array:
+def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
     """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
 
     That of the nearest point of the joint's own contact, together as stiff as that.

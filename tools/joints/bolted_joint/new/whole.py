@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 Facts = dict[str, tuple[float, str, str]]
 
 
-class Whole(NamedTuple):
+class WholeFacts(NamedTuple):
     """Parameters of a joint, what is told of the whole, and warnings."""
 
     file: ParameterFile
@@ -25,7 +25,7 @@ class Whole(NamedTuple):
 _TURNS = ("rx", "ry", "rz")
 
 
-def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> Whole:
+def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> WholeFacts:
     """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
     cannot be computed.
 
@@ -38,13 +38,13 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
     except ValueError as error:
         if sides == "elastic":
             raise
-        return Whole(
+        return WholeFacts(
             file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
         )
     parts = found.compliances
     rows = {f"whole_K_{named(name)}": _row(one, name, attached) for name, one in parts.items()}
     rows |= _load(parts["z"], plates.tension, attached) | _share(parts, sides == "rigid")
-    return Whole(file if sides == "rigid" else found.file, rows, [])
+    return WholeFacts(file if sides == "rigid" else found.file, rows, [])
 
 
 def named(direction: str) -> str:
