@@ -21,8 +21,10 @@ AT_LIMIT = 1e-12
 """By which a force may be below its limit and count as at it [1]."""
 NOTHING = 1e-200
 """What divides in place of 0: square of a force or a shift, or force times force."""
+LARGEST = 1e100
+"""Of 1/limit, where there is none."""
 MOST_TURNED = 1e6
-"""Way over limit/stiffness [1] after which a force that slips is along the shift."""
+"""Square of a trial force over that of the limit [1], from which on a force that slips is along the shift."""
 
 
 def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vector:
@@ -128,7 +130,7 @@ def _in_a_plane(
     margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
-    per_limit, share = inverse * sum_, inverse * (limit * (out * size))
+    per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
     left = share * (carries * way)
     g, beyond_it = left * per_limit, (square - squared) * per_limit * per_limit
     more = where(slips, left * (0.25 * np.minimum(beyond_it, MOST_TURNED) - 1 / 12 * (g * g)), 0.0)
