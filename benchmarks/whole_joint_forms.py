@@ -188,7 +188,7 @@ class Lap:
         out = whole.motion(PRESS, 0.0, (0.0,) * 3, (0.0,) * 3)
         per = plate.E * plate.thickness * plate.width
         form = (1.0 / (beta * np.tanh(0.5 * reach)) + 0.5 * plate.length) / per
-        return 1.0 / float(out[AXES[0]]), linear.compliances()["x"].whole, form
+        return 1.0 / float(out[AXES[0]]), float(linear.compliances().whole[0]), form
 
 
 def lap() -> None:
