@@ -1,4 +1,4 @@
-"""A measured lapped beam whose surface, bolts and friction nobody stated: what the unknowns leave of a prediction.
+"""A measured lapped beam whose faces, bolts and friction nobody stated: what that leaves of a prediction.
 
 First frequency, its fall and the damping by friction over amplitude, as of benchmarks/brake_reuss.py, for
 SAMPLES draws of what is unknown, each from an interval that was chosen before any comparison. Prints the
@@ -54,7 +54,7 @@ def crown(height, lap):
 
 
 def predicted(one, preload, friction, Ra, modulus, height):
-    """Frequency of small motions [Hz], damping ratios at the measured accelerations, fall of the frequency."""
+    """Frequency [Hz] of small motions, damping ratios at the accelerations, fall of the frequency."""
     known, entries = measured("measured_beam"), data()
     one = replace(one, E=modulus)
     law = joint_law({"E": modulus, "nu": one.nu, "A_0": entries["A_0"], "Rq": 1.25 * Ra}, H=entries["H"])

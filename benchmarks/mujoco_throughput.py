@@ -2,9 +2,9 @@
 
     python benchmarks/mujoco_throughput.py [--hysteresis ARCMIN]
 
-4096 environments that fall from random poses, on two cores, the same step for all: the rigid arm; it with the
-friction of the drives' motors, each a constraint; joints elastic by plain MJCF, with and without that friction;
-by the plugin, which has it. Least processor times of rounds taken in turn; targets beside.
+4096 environments that fall from random poses, on two cores, the same step for all: the rigid arm; it with
+the friction of the drives' motors, each a constraint; joints elastic by plain MJCF, with and without that
+friction; by the plugin, which has it. Least processor times of rounds taken in turn; targets beside.
 """
 
 import argparse

@@ -43,10 +43,12 @@ def _interrupted(error: BaseException | None) -> bool:
 def _run(args: Any, name: str) -> int:
     """Run the command; what it refuses is one line."""
     from jointfmu.commands.common import option
+    from jointfmu.progress import told
     from jointfmu.quantity.refusal import Refusal
 
     try:
-        status = int(args.run(args))
+        with told(name):
+            status = int(args.run(args))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:

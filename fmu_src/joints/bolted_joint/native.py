@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import bodies, contact, law, outputs, spring, whole
+from jointfmu.joints.bolted_joint import bodies, contact, law, outputs, spring, trials, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
@@ -141,6 +141,7 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers |= {
         f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")
     }
+    numbers["WHOLE_DIFFERENCE"] = trials.DIFFERENCE
     return Definitions(counts, numbers)
 
 

@@ -18,6 +18,7 @@ from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
 from .bodies import MODES, Modes, RigidBodies
+from .compliances import Compliances
 from .contact import (
     Place,
     elastic_shear,
@@ -238,6 +239,10 @@ class BoltedJointSpring:
             sums |= self._whole_sums(at, place, amplitude, sums["loop_energy"])
         out = outputs(joint, sums, place.shift, place.turn, rates, np.max(at.derivatives[0]))
         return out | self._bolt_forces(preload, moment, place, amplitude), after
+
+    def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
+        """Of elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
+        return Compliances.of(self, preload, moment)
 
     @cached_property
     def whole(self) -> Whole:
