@@ -20,7 +20,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from .clamped import BoltedInterface, clamping
 from .contact import Array, ContactField
-from .reduction import Reduction, reduce
+from .reduction import MOST, Reduction, reduce
 
 FORCE_ERROR = 0.01
 """Largest difference of a field's force from the stated preload [1]."""
@@ -65,7 +65,8 @@ def with_field(
         raise ValueError(f"origin = {origin!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
-    patches = friction_patches(shape, PATCHES, reduction.shape)
+    begin = reduction.shape if shape.share.size > MOST else None
+    patches = friction_patches(shape, PATCHES, begin)
     lists = as_lists(reduction.shape) | as_lists(patches, PATCH)
     given: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     given["A_0"] = float(np.sum(field.area))

@@ -21,10 +21,8 @@ AT_LIMIT = 1e-12
 """By which a force may be below its limit and count as at it [1]."""
 NOTHING = 1e-200
 """What divides in place of 0: square of a force or a shift, or force times force."""
-LARGEST = 1e100
-"""Of 1/limit, where there is none."""
-MOST_TURNED = 1e6
-"""Square of a trial force over that of the limit [1], from which on a force that slips is along the shift."""
+LARGEST = 1e30
+"""Of 1/limit, where there is hardly any."""
 
 
 def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vector:
@@ -133,7 +131,7 @@ def _in_a_plane(
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
     left = share * (carries * way)
     g, beyond_it = left * per_limit, (square - squared) * per_limit * per_limit
-    more = where(slips, left * (0.25 * np.minimum(beyond_it, MOST_TURNED) - 1 / 12 * (g * g)), 0.0)
+    more = where(slips, left * (0.25 * beyond_it - 1 / 12 * (g * g)), 0.0)
     ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
     size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
     per_size = np.sqrt(size2) / size2

@@ -122,7 +122,7 @@ def test_a_field_that_is_a_bit_off_is_the_same():
 
 
 def test_patches_come_from_the_nodes(tmp_path):
-    """A ring under pure torsion has no lateral force, within 1e-3 of its friction, and its moment; the file
+    """A ring under pure torsion has its moment and no lateral force, within 4e-3 of its friction; the file
     keeps the patches, and those that do not balance are refused."""
     ring = patch_reduction.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
@@ -132,11 +132,12 @@ def test_patches_come_from_the_nodes(tmp_path):
     )
     joint = load(tmp_path / "ring.toml").values
     spring = BoltedJointSpring.of(joint)
+    assert spring.patches.share.tolist() == list(joint.pattern.patch_share)
     slides = spring.motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
     friction = joint.mu * PRELOAD * joint.n_bolts
-    assert np.hypot(slides["f_x"], slides["f_y"]) < 1e-3 * friction
+    assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
     arm = (ring.share * ring.equal) @ np.hypot(*ring.position.T)
-    assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
+    assert -slides["m_z"] == pytest.approx(friction * arm, rel=1e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
         replace(joint.pattern, patch_share=share)
