@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,13 @@ from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
 from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ..joint_parts import part
+
+if TYPE_CHECKING:
+    from ..fem.geometry import Assembly
 
 Array = NDArray[np.float64]
 Pressures = Callable[[Any, PressureShape, Array, Array], Array]
@@ -52,10 +56,13 @@ class Clamping:
     pressures   : node pressures (m, n) [Pa] of parameters, a shape (n), preloads (m) [N] per bolt and moments
                   (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
     shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
+    whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
+                  force [N] that tightens each bolt
     """
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
+    whole: Callable[[ParameterFile, "Assembly", float, str], ParameterFile]
 
 
 def clamped() -> dict[str, Clamping]:

@@ -85,7 +85,14 @@ class WholeJoint:
 
 
 def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoint:
-    """The whole joint at its preload: the plates move at their attachments.
+    """The whole joint of a drawing at its preload, see `whole_of`."""
+    return whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
+
+
+def whole_of(
+    file: ParameterFile, assembly: "Callable[[], Assembly]", preload: float, attached: str
+) -> WholeJoint:
+    """The whole joint under the force [N] of each bolt at tightening: the bodies move at their attachments.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -94,10 +101,10 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoin
         from ....fem.elastic_sides import elastic_bodies
         from ....fem.whole_joint import WholeJoint as Bodies
 
-        joint = Bodies.of(plates.assembly(file), attached)
-        springs = _springs(file, plates.preload, joint)
+        joint = Bodies.of(assembly(), attached)
+        springs = _springs(file, preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
-        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], plates.preload)
+        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload)
         return WholeJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
@@ -106,7 +113,7 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoin
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
     """The joint between elastic sides."""
     values = replace(file.values, sides="elastic", bodies=bodies)
-    source = f"finite elements of the plates between {ATTACHED[attached]}, reduced to modes"
+    source = f"finite elements of the bodies between {ATTACHED[attached]}, reduced to modes"
     names = [f"bodies.{item.name}" for item in fields(bodies)]
     stated = "the whole joint between what it connects; rigid: the interface alone"
     return replace(
