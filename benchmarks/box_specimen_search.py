@@ -16,7 +16,7 @@ import numpy as np
 from box_specimen import STATES, measured
 from jointfmu_tools.fem.contact import Interface, trace
 from jointfmu_tools.fem.elasticity import ElasticBody
-from jointfmu_tools.fem.modes import Modes, modes
+from jointfmu_tools.fem.modes import NaturalModes, modes
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from skfem import MeshHex, MeshQuad
@@ -92,11 +92,11 @@ class Box:
         normal = np.maximum(stiffness_curve(joint, pressure)[0], 1e3)
         return normal, float(shear_ratio(replace(joint, critical_area="continuity"))) * normal
 
-    def modes(self, joint: BoltedJoint, force: float) -> Modes:
+    def modes(self, joint: BoltedJoint, force: float) -> NaturalModes:
         """Six modes of two such halves."""
         return modes((self.body,), self.interface, *self.springs(joint, force))
 
-    def squares(self, joint: BoltedJoint, force: float, found: Modes) -> Array:
+    def squares(self, joint: BoltedJoint, force: float, found: NaturalModes) -> Array:
         """Rayleigh quotients (6) [1/s2] of given shapes."""
         normal, tangential = self.springs(joint, force)
         rows = [trace(self.body, self.interface, axis) for axis in range(3)]
@@ -127,7 +127,7 @@ def _opening(x: Array, y: Array, half: Array) -> NDArray[np.bool_]:
 
 def fit(joint: BoltedJoint, start: Array, target: Array) -> tuple[Array, Array]:
     """Lengths [m] near a start and the errors of the frequencies [1]; slopes by Rayleigh's quotient."""
-    known: dict[bytes, Modes] = {}
+    known: dict[bytes, NaturalModes] = {}
     force = STATES[0][0]
 
     def error(logs: Array) -> Array:

@@ -1,10 +1,10 @@
 """HTML pages from jinja templates."""
 
 from pathlib import Path
-from typing import Any
 
 import jinja2
 
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS
 from jointfmu.parameters import ParameterFile
 
@@ -35,6 +35,6 @@ def _number(value: float | str) -> str:
     return f"{value:.6g}"
 
 
-def law_terms(parameters: ParameterFile) -> dict[str, Any]:
+def law_terms(parameters: ParameterFile) -> dict[str, object]:
     """What the templates of joints ask of the law: its name, and `rough`, whether it is `roughness`."""
-    return {"law": parameters.law, "rough": parameters.law == "roughness", "few_spots": FEW_SPOTS}
+    return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS}

@@ -12,7 +12,7 @@ All numbers are in SI units, unless a drawing states them otherwise.
 
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "Fit",

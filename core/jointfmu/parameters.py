@@ -74,7 +74,7 @@ class ParameterFile:
         own = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
         return self.inputs.get(name, own.start if own else 0.0)
 
-    def with_values(self, changes: Mapping[str, Any], origin: str, source: str) -> "ParameterFile":
+    def with_values(self, changes: Mapping[str, object], origin: str, source: str) -> "ParameterFile":
         """The same file with some values changed; names and intervals are checked."""
         return replace(
             self,
@@ -146,7 +146,7 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
 
 
 def _height_of_law(
-    declared: Mapping[str, Any], values: Mapping[str, Any], heights: Mapping[str, float]
+    declared: Mapping[str, object], values: Mapping[str, Any], heights: Mapping[str, float]
 ) -> dict[str, float]:
     """{name: h [m]} of the law that takes one, where the file states it by its roughnesses alone.
 
@@ -189,7 +189,7 @@ def read_document(path: Path, expected: str) -> dict[str, Any]:
 def entries(
     path: Path,
     declared: Mapping[str, Field[Any]],
-    body: Mapping[str, Any],
+    body: Mapping[str, object],
     keys: tuple[str, ...] = ("value", "unit", "kind", "source"),
 ) -> tuple[dict[str, Any], dict[str, str], dict[str, str]]:
     """Values, origins and sources by structured name; every unit checked against the field `declared`."""
@@ -237,7 +237,7 @@ def _ranges(
     return found
 
 
-def _leaves(table: Mapping[str, Any], prefix: str) -> list[tuple[str, Any]]:
+def _leaves(table: Mapping[str, object], prefix: str) -> list[tuple[str, Any]]:
     leaves: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:

@@ -8,11 +8,12 @@ if (location.protocol === "file:") {
       frame.hidden = true
       document.body.appendChild(frame)
       const inside = frame.contentWindow
-      inside.postMessage = (data) => {
-        const event = new MessageEvent("message", { data })
-        this.dispatchEvent(event)
-        if (this.onmessage) this.onmessage(event)
-      }
+      inside.postMessage = (data) =>
+        later(() => {
+          const event = new MessageEvent("message", { data })
+          this.dispatchEvent(event)
+          if (this.onmessage) this.onmessage(event)
+        })
       inside.importScripts = (...names) => Promise.all(names.map((name) => load(frame, name)))
       load(frame, url).then(() => {
         this.frame = frame
@@ -20,13 +21,14 @@ if (location.protocol === "file:") {
       })
     }
     postMessage(data) {
-      if (this.frame) this.frame.contentWindow.dispatchEvent(new MessageEvent("message", { data }))
+      if (this.frame) later(() => this.frame.contentWindow?.dispatchEvent(new MessageEvent("message", { data })))
       else this.waiting.push(data)
     }
     terminate() {
       this.frame?.remove()
     }
   }
+  const later = (act) => setTimeout(act) // as between threads: never inside the call that sends
   const load = (frame, source) =>
     new Promise((resolve, reject) => {
       const script = frame.contentDocument.createElement("script")

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
@@ -54,7 +53,7 @@ def structures(model: Model) -> Iterator[tuple[Model, ParameterFile]]:
             yield own, chosen
 
 
-def _choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, Any]]:
+def _choices(model: Model, file: ParameterFile) -> Iterator[Mapping[str, object]]:
     """All values of the parameters that code depends on and that are choices."""
     code = split(model, file).code
     allowed = {

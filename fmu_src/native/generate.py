@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from jointfmu import __version__
 from jointfmu.joints import MODELS
@@ -83,7 +82,7 @@ def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
     return files | {path.name: path.read_text(encoding="utf-8") for path in sorted([*paths, *own])}
 
 
-def _model(model: Model, parameters: Any, memory: int) -> str:
+def _model(model: Model, parameters: object, memory: int) -> str:
     moving = f"#define N_STATES {model.states}\n#define MOVES 1\n" if model.moves else ""
     fields = list(model.parameter_fields())
     if "lag_a" in fields:

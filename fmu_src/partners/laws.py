@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, make_dataclass
 from math import comb
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ def _lag(flange: str) -> Any:
 class RotationalInertia:
     """An inertia under two torques, and under its weight."""
 
+    inertia: ClassVar[str] = "J"
     J: float = quantity("kg.m2", "moment of inertia about the axis", gt=0.0)
     m: float = quantity("kg", "mass on which the weight acts", ge=0.0)
     l: float = quantity("m", "from the axis to the centre of mass", ge=0.0)  # noqa: E741
@@ -42,6 +43,7 @@ class RotationalInertia:
 class TranslationalMass:
     """A mass under two forces."""
 
+    inertia: ClassVar[str] = "m"
     m: float = quantity("kg", "mass", gt=0.0)
     lag_a: float = _lag("a")
     lag_b: float = _lag("b")

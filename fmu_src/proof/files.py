@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
 from jointfmu import __version__
@@ -83,7 +83,7 @@ class _Related(NamedTuple):
 def archive(
     model: Model,
     parameters: ParameterFile,
-    models: Sequence[tuple[ParameterFile, Mapping[str, Any]]],
+    models: Sequence[tuple[ParameterFile, Mapping[str, object]]],
     experiments: Sequence[ReferenceExperiment],
     study: Mapping[str, str],
     native: bool,
@@ -166,7 +166,7 @@ def _experiment(
     return {path: content for path, content in written.items() if path not in there}
 
 
-def _parameter_set(model: Model, name: str, values: Mapping[str, Any]) -> bytes:
+def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> bytes:
     """An SSV file of parameters and inputs of a model."""
     units = {v.name: v.unit for v in model.inputs}
     units |= {n: item.metadata.get("unit", "") for n, item in model.parameter_fields().items()}

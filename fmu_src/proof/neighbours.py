@@ -23,7 +23,7 @@ INWARD = 0.02
 
 
 def neighbours(
-    model: Model, parameters: ParameterFile, taken: Callable[[str, Any], bool]
+    model: Model, parameters: ParameterFile, taken: Callable[[str, object], bool]
 ) -> Iterator[tuple[str, Any, str]]:
     """Name and value of a parameter, one at a time, and what it is near to.
 

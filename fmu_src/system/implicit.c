@@ -11,11 +11,14 @@
 #include "memory.h"
 #include "system.h"
 
-#define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it */
-#define CONVERGED 1e-2 /* of that, Newton's last correction */
+#define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it; a host may state less, down to: */
+#define LEAST_TOLERANCE 1e-10
+#define CONVERGED 1e-2 /* of the tolerance, what Newton's method may leave */
+#define ROUGHLY 1.0    /* the same of a whole step, whose error is compared with 15 tolerances */
 #define LEAST_SPEED 1e-6 /* of the nominal speed: what is slower counts as that */
 #define LEAST_STEP 1e-9 /* of the communication step */
-#define WORTH 0.1 /* a correction that shrinks by less asks for new tangents */
+#define MOST_STEPS 100000 /* tried in one communication step */
+#define WORTH 0.3 /* a correction that shrinks by less asks for new tangents */
 #define MOST_GROWTH 4.0
 enum { MOST_ITERATIONS = 12, MIDDLE = 0, END = 1, X = FIRST_OUTPUT, V = X + N_BODIES, A = V + N_BODIES };
 
@@ -24,10 +27,11 @@ static const double SPEEDS[2][3] = {{5.0 / 24.0, 1.0 / 3.0, -1.0 / 24.0}, {1.0 /
 static const double PLACES[2][3] = {{1.0 / 16.0, 1.0 / 12.0, -1.0 / 48.0}, {1.0 / 6.0, 1.0 / 3.0, 0.0}};
 static const double TIMES[2] = {0.5, 1.0};
 
-/* A step: places, speeds and accelerations at its begin, time, size. */
+/* A step: places, speeds and accelerations at its begin, time, size; rough: for the error alone. */
 typedef struct {
     const double *from, *memory;
     double time, size;
+    bool rough;
 } Step;
 
 /* Values at a stage for the present accelerations, without the outputs after them. */
@@ -63,29 +67,30 @@ static bool evaluate(Instance *m, const Step *s, int stage, double *after)
     return true;
 }
 
-/* Rows of Newton's matrix at a stage that was just evaluated. */
-static void differentiate(Instance *m, const Step *s, int stage)
+/* Tangents of the accelerations at the end of a step, which was evaluated last. */
+static void differentiate(Instance *m, const Step *s)
 {
     Work *w = &m->joint->work;
-    const double h = s->size;
-    for (size_t j = 0; j < N_BODIES; j++) {
+    for (size_t j = 0; j < N_STATES; j++) {
+        memset(w->seed, 0, sizeof w->seed);
+        w->seed[N_INPUTS + j] = 1.0;
+        joint_derivative(m->joint, w->at[END] + FIRST_INPUT, s->memory, NULL, w->seed, w->change);
         for (size_t i = 0; i < N_BODIES; i++)
-            for (int r = 0; r < 2; r++)
-                w->matrix[stage * N_BODIES + i][r * N_BODIES + j] = i == j && r == stage;
-        for (int speed = 0; speed < 2; speed++) {
-            memset(w->seed, 0, sizeof w->seed);
-            w->seed[N_INPUTS + speed * N_BODIES + j] = 1.0;
-            joint_derivative(m->joint, w->at[stage] + FIRST_INPUT, s->memory, NULL, w->seed, w->change);
-            for (size_t i = 0; i < N_BODIES; i++) {
-                const double slope = w->change[2 * N_BODIES + i];
-                for (int r = 0; r < 2; r++)
-                    w->matrix[stage * N_BODIES + i][r * N_BODIES + j] -=
-                        slope * (speed ? h * SPEEDS[stage][1 + r] : h * h * PLACES[stage][1 + r]);
-            }
-            if (!speed)
-                w->stiff[j] = fabs(w->change[2 * N_BODIES + j]);
-        }
+            w->tangents[i][j] = w->change[2 * N_BODIES + i];
     }
+}
+
+/* Newton's matrix of a step of a size, with the same tangents at both stages. */
+static void assemble(Work *w, double h)
+{
+    for (int stage = MIDDLE; stage <= END; stage++)
+        for (int r = MIDDLE; r <= END; r++) {
+            const double way = h * h * PLACES[stage][1 + r], speed = h * SPEEDS[stage][1 + r];
+            for (size_t i = 0; i < N_BODIES; i++)
+                for (size_t j = 0; j < N_BODIES; j++)
+                    w->matrix[stage * N_BODIES + i][r * N_BODIES + j] =
+                        (i == j && r == stage) - way * w->tangents[i][j] - speed * w->tangents[i][N_BODIES + j];
+        }
 }
 
 /* L and U of the matrix in its place, rows exchanged. */
@@ -147,24 +152,33 @@ static void guess(Work *w, const double *begin, const double *known, double midd
         }
 }
 
-/* One step by Newton's method from a first guess: places, speeds, accelerations at its end, and what is remembered
- * there. false: it does not converge, or the joints refuse the way. */
+/* One step by Newton's method from a first guess: places, speeds and accelerations at its end, and what is remembered
+ * there; of a rough one places and speeds. Tangents of another step serve as long as the corrections shrink. false: it
+ * does not converge, or the joints refuse the way. */
 static bool step(Instance *m, const Step *s, double *to, double *after)
 {
     Work *w = &m->joint->work;
+    const double precision = w->tolerance * (s->rough ? ROUGHLY : CONVERGED);
     double *k = w->accelerations, last = INFINITY;
-    bool tangents = true;
+    bool factorized = false;
     for (int n = 0; n < MOST_ITERATIONS; n++) {
         for (int stage = MIDDLE; stage <= END; stage++) {
             if (!evaluate(m, s, stage, after))
                 return false;
             for (size_t i = 0; i < N_BODIES; i++)
                 w->rest[stage * N_BODIES + i] = w->at[stage][A + i] - k[stage * N_BODIES + i];
-            if (tangents)
-                differentiate(m, s, stage);
         }
-        if (tangents && !factorize(w))
-            return false;
+        if (!w->tangents_known) {
+            differentiate(m, s);
+            w->tangents_known = true;
+            factorized = false;
+        }
+        if (!factorized) {
+            assemble(w, s->size);
+            if (!factorize(w))
+                return false;
+            factorized = true;
+        }
         solve(w);
         double size = 0.0;
         for (size_t i = 0; i < N_STATES; i++) {
@@ -173,13 +187,17 @@ static bool step(Instance *m, const Step *s, double *to, double *after)
             w->worst = own > size ? i : w->worst;
             size = fmax(size, own);
         }
-        if (size <= CONVERGED * TOLERANCE) {
-            if (!evaluate(m, s, END, after))
+        if (n > 0)
+            w->shrinks = size / last;
+        if (size * fmin(w->shrinks, 1.0) <= precision) {
+            if (s->rough)
+                place(m, s, END);
+            else if (!evaluate(m, s, END, after))
                 return false;
             memcpy(to, w->at[END] + X, (N_STATES + N_BODIES) * sizeof *to);
             return true;
         }
-        tangents = !(size < WORTH * last);
+        w->tangents_known = n == 0 || w->shrinks < WORTH;
         last = size;
     }
     return false;
@@ -191,10 +209,10 @@ static double error_of(const Work *w, const double *whole, const double *halves)
     double most = 0.0;
     for (size_t i = 0; i < N_BODIES; i++) {
         const double speed = fabs(whole[N_BODIES + i] - halves[N_BODIES + i]);
-        const double way = sqrt(w->stiff[i]) * fabs(whole[i] - halves[i]);
+        const double way = sqrt(fabs(w->tangents[i][i])) * fabs(whole[i] - halves[i]);
         most = fmax(most, (speed + way) / w->scale[i]);
     }
-    return most / (15.0 * TOLERANCE);
+    return most / (15.0 * w->tolerance);
 }
 
 /* Size of a step up to the next corner of a load. */
@@ -240,22 +258,30 @@ Status instance_advance(Instance *m, double size)
     State *now = &m->now;
     double *from = w->states[0], *whole = w->states[1], *half = w->states[2], *halves = w->states[3];
     double *memory = w->memory[0], *between = w->memory[1], *after = w->memory[2], *aside = w->memory[3];
+    w->tolerance = now->tolerance > 0.0 ? fmax(fmin(now->tolerance, TOLERANCE), LEAST_TOLERANCE) : TOLERANCE;
+    w->tangents_known = false; /* nothing is kept from step to step, so that a restored state goes on alike */
+    w->shrinks = 1.0;
     double done = 0.0, next = now->last_size > 0.0 ? now->last_size : size;
     memcpy(from, now->values + X, (N_STATES + N_BODIES) * sizeof *from);
     memcpy(memory, now->path.memory[now->path.last], sizeof w->memory[0]);
     memcpy(between, memory, sizeof w->memory[0]);
-    while (size - done > 1e-12 * size) {
+    for (int tried = 0; size - done > 1e-12 * size; tried++) {
         const double time = now->values[0] + done;
         const bool last = next >= (1.0 - 1e-6) * (size - done);
         double h = until_event(m, time, last ? size - done : fmin(next, 0.5 * (size - done)));
         const bool cut = last || h < next;
+        if (tried == MOST_STEPS) {
+            text_clear(&w->why);
+            text_add(&w->why, "more than 100000 of them are needed");
+            return refuse(m, time, h);
+        }
         for (size_t i = 0; i < N_BODIES; i++) {
             const double least = LEAST_SPEED * nominals[N_BODIES + i];
             w->scale[i] = fmax(least, fmax(fabs(from[N_BODIES + i]), h * fabs(from[2 * N_BODIES + i])));
         }
-        const Step one = {from, memory, time, h};
-        const Step first = {from, memory, time, 0.5 * h};
-        const Step second = {half, after, time + 0.5 * h, 0.5 * h};
+        const Step one = {from, memory, time, h, true};
+        const Step first = {from, memory, time, 0.5 * h, false};
+        const Step second = {half, after, time + 0.5 * h, 0.5 * h, false};
         for (size_t i = 0; i < N_STATES; i++)
             w->accelerations[i] = from[2 * N_BODIES + i % N_BODIES];
         bool ok = step(m, &one, whole, aside);
@@ -268,6 +294,7 @@ Status instance_advance(Instance *m, double size)
             guess(w, from, w->known, 0.75, 1.0);
             ok = step(m, &second, halves, aside);
         }
+        w->tangents_known &= ok;
         const double error = ok ? error_of(w, whole, halves) : INFINITY;
         const double factor = !ok ? 0.25 : error > 1e-4 ? 0.9 * same_pow(error, -0.2) : MOST_GROWTH;
         if (error > 1.0 && (h > LEAST_STEP * size || !ok)) {

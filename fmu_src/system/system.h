@@ -36,10 +36,13 @@ extern const unsigned short wires[N_WIRES];
 typedef struct {
     double at[2][FIRST_PARAMETER]; /* values at the middle and at the end of a step */
     double seed[N_INPUTS + N_STATES], change[N_OUTPUTS];
+    double tangents[N_BODIES][N_STATES]; /* of accelerations by places and speeds */
+    bool tangents_known;
+    double shrinks; /* by which a correction of Newton's method was smaller than the one before */
     double matrix[N_STATES][N_STATES], rest[N_STATES]; /* of Newton's method */
     unsigned short pivot[N_STATES];
     double scale[N_BODIES]; /* of the speeds */
-    double stiff[N_BODIES]; /* square of the angular frequency of each body alone [1/s2] */
+    double tolerance;       /* of them, relative */
     double states[4][N_STATES + N_BODIES];
     double accelerations[2 * N_BODIES], known[2 * N_BODIES]; /* at the middle and the end of a step */
     double memory[4][N_MEMORY + 1];

@@ -8,7 +8,7 @@ import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.export import columns, keywords, tables, writing
 from jointfmu_tools.export.units import SI, UNITS
-from jointfmu_tools.joints.bolted_joint.export import State
+from jointfmu_tools.joints.bolted_joint.export import Tightening
 from jointfmu_tools.joints.bolted_joint.export.pull import STRONGEST, pull_table
 from scipy.interpolate import PchipInterpolator
 
@@ -20,7 +20,7 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default
 
 MM = UNITS["mm-N-MPa-t"]
-STATE = State(9e3, 0.0)
+STATE = Tightening(9e3, 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -212,7 +212,7 @@ def test_series_stiffness_is_in_series(tmp_path):
     joint = default("bolted_joint").values
     P = np.array([1e4])
     K = float(preload.joint_stiffness(joint, P)[0])
-    assert preload.Measured("stiffness", P, P).predicted(joint, K, "normal") == pytest.approx([K / 2.0])
+    assert preload.PreloadCurve("stiffness", P, P).predicted(joint, K, "normal") == pytest.approx([K / 2.0])
 
 
 # Bad data

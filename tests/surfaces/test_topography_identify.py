@@ -388,7 +388,7 @@ def test_maps_without_any_chance_do_not_crash(shape):
 
 
 def test_a_million_points_take_seconds_where_no_range_is_straight():
-    """Roll-off at long waves, a low-pass at short ones, texture and noise: hundreds of windows are tried.
+    """Roll-off at long waves, a low-pass at short ones, texture, noise, gaps: hundreds of windows are tried.
 
     Processor time, of all threads: 2 s on the machine where this was written.
     """
@@ -398,6 +398,7 @@ def test_a_million_points_take_seconds_where_no_range_is_straight():
     z = np.fft.irfft2(amplitude * np.exp(2j * np.pi * rng.random(frequency.shape)), (n, n))
     z *= 1e-6 / z.std()
     z += 3e-7 * np.sin(2.0 * np.pi * np.arange(n) / 37.0)[:, None] + rng.normal(0.0, 2e-8, z.shape)
+    z[rng.random(z.shape) < 0.02] = np.nan
     start = time.process_time()
     identify([Areal(z=z, dx=1e-6, dy=1e-6, name="scan")])
     assert time.process_time() - start < 5.0

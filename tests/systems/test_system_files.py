@@ -35,8 +35,13 @@ def changed(folder: Path, *changes: tuple[str, str], text: str = TEXT) -> Path:
     return folder / "mine.toml"
 
 
-def second(model: str) -> str:
-    return f'[second]\nmodel = "{model}"\n\n[experiment]'
+def second(model: str, inertia: str = "", unit: str = "") -> str:
+    given = (
+        f'{inertia} = {{ value = 1.0, unit = "{unit}", kind = "user", source = "a test" }}\n'
+        if inertia
+        else ""
+    )
+    return f'[second]\nmodel = "{model}"\n{given}\n[experiment]'
 
 
 @pytest.mark.parametrize(
@@ -96,7 +101,10 @@ def second(model: str) -> str:
             "drive.flange2 and second.flange1 do not fit; allowed is a joint's flange on a body's",
         ),
         (
-            [("[experiment]", second("TranslationalMass")), (CHAIN, '["drive.flange2", "second.flange_a"],')],
+            [
+                ("[experiment]", second("TranslationalMass", "m", "kg")),
+                (CHAIN, '["drive.flange2", "second.flange_a"],'),
+            ],
             "drive.flange2 and second.flange_a do not fit; allowed are two that turn or two that shift",
         ),
         (
@@ -116,6 +124,11 @@ def second(model: str) -> str:
         ),
         ([("[experiment]", "[experiments]")], "has no section [experiment], expected a system's file"),
         ([("value = 2.0, unit", "value = -2.0, unit")], "experiment.stop_time = -2 s is outside (0, inf)"),
+        (
+            [('J = { value = 0.05, unit = "kg.m2"', 'lag_a = { value = 0.05, unit = "1"')],
+            "link.J is not stated, expected the moment of inertia",
+        ),
+        ([("[link]", "[motor]")], "is no valid TOML (Cannot declare ('motor',) twice"),
         ([("value = 0.05", "value = -0.05")], "link.J = -0.05 kg.m2 is outside (0, inf)"),
         ([("connect = [", "connect = [ 3,")], "connect = 3, expected pairs of ends"),
         ([("schema = 1", "schema = 7")], "schema = 7, allowed is 1"),

@@ -6,13 +6,15 @@ import sys
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
+from jointfmu.joints import KINDS
 from jointfmu.parameters import dump, load
+from jointfmu.progress import step
 
 from ..drawing.reading import number
 from ..fitting.procedure import FitOption, Procedure, procedures
@@ -72,16 +74,17 @@ def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
     procedure = choices[joint]
     start = load(args.params, joint) if args.params else None
     data = (args.file,) if procedure.file else ()
+    step(f"fit of the {KINDS[joint].title}")
     return _finish(args, procedure.run(*data, start, args.free, **_options(procedure, args)))
 
 
-def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, Any]:
+def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
     """Its options as its function takes them, numbers in SI units."""
     units = {option.unit_by for option in procedure.options}
     return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
 
 
-def _value(option: FitOption, args: argparse.Namespace) -> Any:
+def _value(option: FitOption, args: argparse.Namespace) -> object:
     value = getattr(args, option.name)
     if not option.unit or value is None:
         return value

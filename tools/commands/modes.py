@@ -4,7 +4,7 @@ import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
@@ -20,7 +20,7 @@ from .footprint.finite_elements import (
 )
 
 if TYPE_CHECKING:
-    from ..fem.modes import Modes
+    from ..fem.modes import NaturalModes
 
 MOST = 40
 """Most modes that are asked for."""
@@ -90,7 +90,9 @@ def _check(args: argparse.Namespace) -> None:
         check_writable(args.vtu)
 
 
-def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes") -> dict[str, Any]:
+def _document(
+    args: argparse.Namespace, name: str, modes: "NaturalModes", even: "NaturalModes"
+) -> dict[str, object]:
     rows = zip(modes.frequency.tolist(), even.frequency.tolist(), strict=True)
     return {
         "assembly": name,
@@ -102,7 +104,7 @@ def _document(args: argparse.Namespace, name: str, modes: "Modes", even: "Modes"
     }
 
 
-def _table(modes: "Modes", even: "Modes") -> Iterator[str]:
+def _table(modes: "NaturalModes", even: "NaturalModes") -> Iterator[str]:
     yield "mode   f [Hz]   with uniform pressure [Hz]"
     for i, (f, g) in enumerate(zip(modes.frequency, even.frequency, strict=True), 1):
         yield f"{i:4d} {f:8.2f} {g:15.2f}  {100.0 * (g / f - 1.0):+.2f} %"

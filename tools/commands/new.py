@@ -83,7 +83,7 @@ def _comment(made: "NewJoint") -> str:
     return "".join(["# Made by jointfmu new. Beside the parameters it computed:\n", *lines])
 
 
-def _document(args: argparse.Namespace, made: "NewJoint") -> dict[str, Any]:
+def _document(args: argparse.Namespace, made: "NewJoint") -> dict[str, object]:
     return {
         "joint": made.file.joint,
         "law": made.file.law,
@@ -109,11 +109,11 @@ def _table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespac
     return 0
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _materials() -> Iterator[dict[str, Any]]:
+def _materials() -> Iterator[dict[str, object]]:
     from ..drawing.tables import table
 
     for row in table("materials").values():
@@ -129,7 +129,7 @@ def _materials() -> Iterator[dict[str, Any]]:
         }
 
 
-def _finishes() -> Iterator[dict[str, Any]]:
+def _finishes() -> Iterator[dict[str, object]]:
     from ..drawing.tables import table
 
     for row in table("finishes").values():
@@ -145,7 +145,7 @@ def _finishes() -> Iterator[dict[str, Any]]:
         }
 
 
-def _bolts() -> Iterator[dict[str, Any]]:
+def _bolts() -> Iterator[dict[str, object]]:
     from ..drawing.tables import classes, threads
     from ..drawing.vdi2230 import assembly_preload, stress_area
 

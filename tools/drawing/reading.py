@@ -4,11 +4,9 @@ import math
 import re
 from collections.abc import Sequence
 
-from jointfmu.quantity.units import KELVIN_AT_ZERO, factor
+from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANTS, factor
 
 _TEMPERATURE = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
-OILS = (193.15, 473.15)
-"""Temperatures [K] between which a lubricant is one."""
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
 
 
@@ -39,14 +37,14 @@ def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) 
 def temperature(name: str, text: str) -> float:
     """A temperature [K] of the option `name`, stated in degC, or with K behind it.
 
-    Raises ValueError if it is none, or outside OILS.
+    Raises ValueError if it is none, or outside LUBRICANTS.
     """
     match = _TEMPERATURE.fullmatch(text.strip())
     if not match:
         raise ValueError(f"{flag(name)} = {text!r} is no temperature; expected 45, 45degC or 318.15K")
     kelvin = float(match[1]) + (0.0 if match[2] == "K" else KELVIN_AT_ZERO)
-    if not OILS[0] <= kelvin <= OILS[1]:
-        low, high = (end - KELVIN_AT_ZERO for end in OILS)
+    if not LUBRICANTS[0] <= kelvin <= LUBRICANTS[1]:
+        low, high = (end - KELVIN_AT_ZERO for end in LUBRICANTS)
         raise ValueError(
             f"{flag(name)} = {text!r} is {kelvin:g} K, outside [{low:g}, {high:g}] degC; kelvin are stated "
             "as 318.15K"

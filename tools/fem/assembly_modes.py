@@ -12,14 +12,14 @@ from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .elasticity import Array
 from .geometry import Assembly
-from .modes import Modes, modes
+from .modes import NaturalModes, modes
 
 REFINEMENT = 0.5
 """Of the meshes for frequencies of many states [1]; twice as fine ones lower those of the box specimen by
 less than 1 % (docs/finite_elements.md)."""
 
 
-def computed(solution: JointSolution, shear: float, count: int = 6) -> Modes:
+def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalModes:
     """Modes about the tightened state: every place of the contact has the stiffness of its pressure.
 
     shear : [1] tangential over normal stiffness of the interface
@@ -28,7 +28,9 @@ def computed(solution: JointSolution, shear: float, count: int = 6) -> Modes:
     return _on(solution.joint, solution.contact.stiffness, shear, count)
 
 
-def uniform(joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6) -> Modes:
+def uniform(
+    joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6
+) -> NaturalModes:
     """Modes if the total force [N] of the bolts were spread evenly over the contact."""
     area = joint.interface.area
     approach = law.inverse(np.asarray(force / area.sum()))
@@ -64,5 +66,5 @@ def frequencies(
     return np.array(rows)
 
 
-def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> Modes:
+def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> NaturalModes:
     return modes(joint.bodies, joint.interface, normal, shear * normal, count)

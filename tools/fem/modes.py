@@ -20,7 +20,7 @@ LEAST = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Modes:
+class NaturalModes:
     """Modes with strain, by rising frequency.
 
     frequency : (k) [Hz]
@@ -35,7 +35,7 @@ class Modes:
 
 def modes(
     bodies: tuple[ElasticBody, ...], interface: Interface, normal: Array, tangential: Array, count: int = 6
-) -> Modes:
+) -> NaturalModes:
     """The lowest modes with strain of the assembly, free on all sides.
 
     bodies     : side 1 and side 2, or side 2 alone if side 1 is its mirror image
@@ -58,7 +58,7 @@ def modes(
         raise RuntimeError(f"the contact leaves more than {RIGID} rigid motions: it does not hold the bodies")
     mass = sum(float(body.mass.sum()) / 3.0 for body in bodies) * (3 - len(bodies))
     last = RIGID + count
-    return Modes(frequency[RIGID:last], tuple(motion[1] for motion in motions[RIGID:last]), mass)
+    return NaturalModes(frequency[RIGID:last], tuple(motion[1] for motion in motions[RIGID:last]), mass)
 
 
 def _springs(

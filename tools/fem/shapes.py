@@ -3,11 +3,11 @@
 import numpy as np
 
 from .elasticity import Array, ElasticBody, Index
-from .modes import Modes
+from .modes import NaturalModes
 from .vtu import packed
 
 
-def vtu(bodies: tuple[ElasticBody, ...], modes: Modes) -> bytes:
+def vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:
     """Hexahedra of both bodies; at their corners one displacement [m] per mode, of 1 m at most.
 
     bodies : as in jointfmu_tools.fem.modes; a mirror image is drawn too

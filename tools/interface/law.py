@@ -51,7 +51,7 @@ class Law:
     parameters: Any
 
     @property
-    def values(self) -> dict[str, Any]:
+    def values(self) -> dict[str, object]:
         """{structured name: value [SI]}."""
         return flatten(self.parameters)
 
@@ -109,7 +109,7 @@ class Law:
         return figure
 
 
-def law(name: str, **parameters: Any) -> Law:
+def law(name: str, **parameters: object) -> Law:
     """An interface law: `roughness`, `zhao2018`, `hu2023` or `yu2022`.
 
     parameters : values [SI] by name, structured ones as `**{"surface.D": 1.42}`; others have the values of

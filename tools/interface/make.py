@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from jointfmu import plots
 from jointfmu.joints import KINDS, MODELS
@@ -73,7 +73,7 @@ def load(source: str | Path) -> Joint:
     )
 
 
-def made(drawing: Drawing, stated: Mapping[str, Any]) -> Joint:
+def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
     """The joint of a drawing. ValueError for an unknown or missing name, or a value that cannot be."""
     options = {option.name: option for option in drawing.options}
     if unknown := [name for name in stated if name not in options]:
@@ -94,7 +94,7 @@ def _named_as_in_python() -> Iterator[None]:
         raise ValueError(_FLAG.sub(lambda m: m[1].replace("-", "_"), str(error))) from None
 
 
-def _given(option: Option, value: Any) -> Any:
+def _given(option: Option, value: object) -> object:
     """A value as the command line has it: a number as text, (200, 100) as 200x100, a list as several."""
     if option.flag:
         return bool(value)
@@ -108,7 +108,7 @@ def _given(option: Option, value: Any) -> Any:
     return text
 
 
-def _text(value: Any, by: str) -> str:
+def _text(value: object, by: str) -> str:
     """A number, a text, or several with a sign between them."""
     if isinstance(value, list | tuple):
         return by.join(_text(v, by) for v in value)
@@ -125,7 +125,7 @@ def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Call
     drawing: Drawing = part(kind, "new").NEW  # type: ignore[union-attr]
     positional, keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
 
-    def make(*args: Any, **stated: Any) -> Joint:
+    def make(*args: object, **stated: object) -> Joint:
         bound = signature.bind(*args, **stated).arguments
         return made(drawing, bound)
 
@@ -215,7 +215,7 @@ def fit(
     joint: str | None = None,
     start: Joint | None = None,
     free: Sequence[str] | None = None,
-    **options: Any,
+    **options: object,
 ) -> Fit:
     """Fit a joint's parameters to a measurement or a catalogue row, as `jointfmu fit PROCEDURE` does.
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +16,7 @@ def run(
     inputs: Mapping[str, ArrayLike],
     *,
     time: ArrayLike | None = None,
-    settings: Mapping[str, Any] | None = None,
+    settings: Mapping[str, object] | None = None,
 ) -> Frame:
     """Run an FMU in co-simulation along points of its inputs; every output at every point.
 

@@ -6,7 +6,6 @@ from functools import partial
 from math import comb
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 from jinja2 import Environment
 from jointfmu_fmu_src.folders import asset
@@ -39,6 +38,8 @@ _FUNCTIONS = (
     "bend",
     "linear",
     "segment",
+    "limited",
+    "frictionLimit",
     "smoothStep",
     "loadDerivative",
     "stiffnessDerivative",
@@ -118,12 +119,12 @@ def _start(file: ParameterFile) -> list[WorkingPoint]:
     return [point] if point and point[0] > 0.0 else []
 
 
-def _order(names: Mapping[str, Any]) -> str:
+def _order(names: Mapping[str, object]) -> str:
     """The file package.order."""
     return "\n".join(names) + "\n"
 
 
-def _plain(shared: Environment, package: str, names: Sequence[str], **terms: Any) -> dict[str, str]:
+def _plain(shared: Environment, package: str, names: Sequence[str], **terms: object) -> dict[str, str]:
     """{class: text} of classes that nothing of a joint is filled in."""
     return {name: shared.get_template(f"{package}/{name}.mo").render(terms) for name in names}
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from jointfmu.parameters import ParameterFile
 
@@ -35,7 +34,7 @@ class ModelicaRecord:
         """Largest load of the table."""
         return float(self.table.rows[-1, 1])
 
-    def content(self, base: str) -> dict[str, Any]:
+    def content(self, base: str) -> dict[str, object]:
         """What the template of records needs; `base` is the record that it extends."""
         return {
             "name": self.name,

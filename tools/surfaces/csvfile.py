@@ -12,7 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.columns import Head, cells, check_length, content, head, number, rows, separator
+from jointfmu.files.columns import (
+    Head,
+    cells,
+    check_length,
+    content,
+    head,
+    number,
+    rows,
+    separator,
+    text_lines,
+)
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import measured, sizes
 
@@ -64,7 +74,7 @@ def read(path: Path, line: str) -> tuple[Heights, str]:
 def titles(path: Path) -> list[Head] | None:
     """Name and unit of two or three columns in the first line (x, z or x, y, z), if numbers are below it."""
     try:
-        lines = content(path)[:2]
+        lines = content(path, 2)
     except ValueError:
         return None  # no text: an instrument's
     mark = separator(lines[0][1]) if len(lines) == 2 else None
@@ -113,14 +123,15 @@ def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:
 def table(path: Path, above: int = 0) -> Array:
     """The numbers of a file below some lines (semicolon, tab, comma or blanks; # begins a comment); empty
     cells are NaN."""
-    lines = [(i, line.partition("#")[0]) for i, line in content(path)[above:]]
-    if not lines:
+    top = content(path, above + 1)
+    if len(top) <= above:
         raise ValueError(f"{path}: is no surface: it holds no numbers")
-    mark = separator(lines[0][1])
+    first, line = top[above]
+    mark = separator(line.partition("#")[0])
     with contextlib.suppress(ValueError):  # empty cells, rows of other lengths, words: row by row below
-        return np.loadtxt([line for _, line in lines], delimiter=mark, ndmin=2)
+        return np.loadtxt(text_lines(path)[first - 1 :], delimiter=mark, ndmin=2)
     values: list[Array] = []
-    for i, line in lines:
+    for i, line in ((i, line.partition("#")[0]) for i, line in content(path)[above:]):
         row = cells(line, mark) if mark else line.split()
         check_length(path, i, row, values[0].size if values else len(row))
         values.append(_numbers(path, i, row))
@@ -147,7 +158,9 @@ def columns(path: Path, values: Array, factors: list[float]) -> Heights:
     if (x.max() + 1) * (y.max() + 1) > 4 * x.size:
         raise ValueError(f"{path}: {x.size} points lie on no grid of x and y; resample them to one")
     heights = np.full((y.max() + 1, x.max() + 1), np.nan)
-    if np.unique(y * heights.shape[1] + x).size < x.size:
+    taken = np.zeros(heights.shape, dtype=bool)
+    taken[y, x] = True
+    if np.count_nonzero(taken) < x.size:
         raise ValueError(f"{path}: x and y repeat points; expected every point once")
     heights[y, x] = values[:, 2] * factors[2]
     return Areal(z=heights, dx=dx, dy=dy, name=str(path))

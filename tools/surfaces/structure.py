@@ -69,7 +69,10 @@ def _smoothed(
 
 def _mean_square(step: Array) -> float:
     total = float(np.einsum("ij,ij->", step, step) / step.size)
-    return total if np.isfinite(total) else float(np.nanmean(step**2))
+    if np.isfinite(total):
+        return total
+    known = step[np.isfinite(step)]
+    return float(np.einsum("i,i->", known, known) / known.size)
 
 
 def power_law(scale: Array, H: float) -> Array:

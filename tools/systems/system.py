@@ -228,6 +228,10 @@ def _component(path: Path, name: str, section: Any) -> Component:
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
         file, declared, inputs = None, dict(flat_fields(PARTNERS[model])), {}
+        needed = getattr(PARTNERS[model], "inertia", None)
+        if needed and needed not in section:
+            meant = declared[needed].metadata
+            raise ValueError(f"{name}.{needed} is not stated, expected the {meant['doc']} [{meant['unit']}]")
     else:
         joint = MODELS[model].joint
         given = joint_file(path.parent, name, joint, section)

@@ -5,7 +5,6 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,7 @@ class LoadRamp:
     step: float
 
 
-def one_run(fmu: str, drive: LoadRamp, index: int, settings: Mapping[str, Any]) -> dict[str, Any]:
+def one_run(fmu: str, drive: LoadRamp, index: int, settings: Mapping[str, object]) -> dict[str, object]:
     """One run, on a worker that has the FMU: its ramp. A refusal is a result, too."""
     path = FILES[fmu]
     entry = {"run": index, "parameters": dict(settings)}

@@ -6,7 +6,7 @@ import math
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -155,7 +155,7 @@ def _loops(args: argparse.Namespace) -> int:
     return 0
 
 
-def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, Any]:
+def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:
     """What was found as one JSON object; forces act on the joint, positive with the motion."""
     rows = found.rows()
     for row, loop in zip(rows, found.loops, strict=True):

@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -94,7 +95,7 @@ def read(
 
 def names(path: str | Path) -> list[str]:
     """Names of a file's columns, in lower case; none if it is empty. Raises ValueError as `read`."""
-    lines = content(Path(path))
+    lines = content(Path(path), 1)
     if not lines:
         return []
     return [head(cell)[0].lower() for cell in cells(lines[0][1], separator(lines[0][1]))]
@@ -109,19 +110,24 @@ def head(cell: str) -> Head:
     return cell.strip(), None
 
 
-def content(path: Path) -> list[tuple[int, str]]:
-    """Numbers and texts of a file's lines, without comments and empty ones.
+def content(path: Path, most: int | None = None) -> list[tuple[int, str]]:
+    """Numbers and texts of a file's lines (the first `most`), without comments and empty ones.
 
-    Raises ValueError, one line, if the file cannot be read or is no text.
+    Raises ValueError as `text_lines`.
     """
+    lines = enumerate(text_lines(path), 1)
+    told = ((i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#"))
+    return list(islice(told, most))
+
+
+def text_lines(path: Path) -> list[str]:
+    """All lines of a file. Raises ValueError, one line, if the file cannot be read or is no text."""
     try:
-        whole = path.read_text(encoding="utf-8-sig")
+        return path.read_text(encoding="utf-8-sig").splitlines()
     except OSError as error:
         raise ValueError(f"{path}: cannot be read ({error.strerror}); expected a CSV file") from None
     except UnicodeDecodeError:
         raise ValueError(f"{path}: is no text file; expected CSV (UTF-8)") from None
-    lines = enumerate(whole.splitlines(), 1)
-    return [(i, line) for i, line in lines if line.strip() and not line.lstrip().startswith("#")]
 
 
 def separator(line: str) -> str | None:

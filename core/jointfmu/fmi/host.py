@@ -89,7 +89,7 @@ class Instance:
         else:
             self.fmu.enterInitializationMode(startTime=start, stopTime=stop)
 
-    def set(self, values: Mapping[str, Any]) -> None:
+    def set(self, values: Mapping[str, object]) -> None:
         """Set variables of any type, one call each."""
         for name, value in values.items():
             getattr(self.fmu, f"set{self._type(name)}")([self.variables[name].valueReference], [value])

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,7 +130,7 @@ def _drive(
     md: "ModelDescription",
     inputs: Mapping[str, Array],
     time: Array,
-    settings: dict[str, Any],
+    settings: dict[str, object],
     source: str,
 ) -> RampResult:
     variables = {v.name: v for v in md.modelVariables}

@@ -8,7 +8,6 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
@@ -212,7 +211,7 @@ _FILES = {"Parameters": SSV, "Stimuli": CSV, "References": CSV}
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
 
 
-def _value(kind: str, value: str) -> Any:
+def _value(kind: str, value: str) -> float | int | bool | str:
     """The value of an SSV file: what its element's name says."""
     if kind == "Boolean":
         return _TRUTH[value]

@@ -133,5 +133,5 @@ def _answers(importer: str, tasks: Sequence[Mapping[str, Any]]) -> Iterator[dict
         yield {"error": f"{importer} ended with status {status}; the FMU's library may be broken"}
 
 
-def _shown(value: Any) -> str:
+def _shown(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -31,7 +31,7 @@ def kind(variable: "ScalarVariable") -> str:
     return KINDS[variable.type]
 
 
-def setting(variable: "ScalarVariable", given: Setting) -> Any:
+def setting(variable: "ScalarVariable", given: Setting) -> object:
     """A start value as the variable takes it. Raises ValueError for a foreign unit, or if it does not fit."""
     own = variable.unit or "1"
     if given.unit and given.unit != own:

@@ -98,7 +98,7 @@ def _beside(end: float, towards: float) -> float:
     return nextafter(end, towards)
 
 
-def is_symbol(value: Any) -> bool:
+def is_symbol(value: object) -> bool:
     """Whether a value is a symbol of a computer-algebra tool (CasADi)."""
     return type(value).__module__.startswith("casadi")
 

@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 
 @cache
-def _hints(cls: Any) -> dict[str, Any]:
+def _hints(cls: object) -> dict[str, object]:
     """Types of the fields of a class."""
     return get_type_hints(cls)
 
@@ -35,7 +35,7 @@ class Limit:
         return f"{self.name} = {value:g}{unit} is outside {self.interval}: {self.doc}"
 
 
-def check_limits(obj: Any, limits: Iterable[Limit]) -> None:
+def check_limits(obj: object, limits: Iterable[Limit]) -> None:
     """Raise ValueError for the first parameter of `obj` outside an interval that others decide."""
     units = {name: item.metadata["unit"] for name, item in flat_fields(type(obj)) if "unit" in item.metadata}
     values = flatten(obj)
@@ -65,7 +65,7 @@ def flat_fields(
 
 
 @cache
-def _every_field(cls: Any) -> tuple[tuple[str, Field[Any]], ...]:
+def _every_field(cls: Any) -> tuple[tuple[str, Field[object]], ...]:
     """`flat_fields` with all alternatives."""
     hints, found = _hints(cls), list[tuple[str, Field[Any]]]()
     for item in fields(cls):
@@ -89,7 +89,7 @@ def flatten(obj: Any) -> dict[str, Any]:
     return values
 
 
-def build(cls: type[T], values: Mapping[str, Any]) -> T:
+def build(cls: type[T], values: Mapping[str, object]) -> T:
     """Make the parameter set `cls` from {structured name: value}.
 
     Raises ValueError, one line, naming every unknown or missing name and every value that is no
@@ -110,7 +110,7 @@ def build(cls: type[T], values: Mapping[str, Any]) -> T:
     return assemble(cls, plain, lambda part, arguments: part(**arguments))
 
 
-def changed(obj: T, changes: Mapping[str, Any]) -> T:
+def changed(obj: T, changes: Mapping[str, object]) -> T:
     """A parameter set with some values changed, by structured name.
 
     Raises ValueError as `build`, and for names of an alternative that `obj` does not have.
@@ -125,7 +125,7 @@ def changed(obj: T, changes: Mapping[str, Any]) -> T:
 
 def assemble(
     cls: type[T],
-    values: Mapping[str, Any],
+    values: Mapping[str, object],
     make: Callable[[type[Any], dict[str, Any]], Any],
     prefix: str = "",
 ) -> T:
@@ -147,7 +147,7 @@ def assemble(
     return instance
 
 
-def _sections(item: Field[Any], own: Any) -> dict[str, type[Any]]:
+def _sections(item: Field[object], own: object) -> dict[str, type[object]]:
     """Names and classes that a group may have; `own` is the field's type."""
     return item.metadata["alternatives"] or {label(item): own}
 
@@ -167,7 +167,7 @@ def _section(sections: Iterable[str], prefix: str, names: Collection[str]) -> st
     return (present or list(spoken))[0]
 
 
-def _present(item: Field[Any], value: Any) -> str:
+def _present(item: Field[object], value: object) -> str:
     """Name of a group that is there."""
     alternatives = item.metadata["alternatives"].items()
     return next((name for name, cls in alternatives if isinstance(value, cls)), label(item))
@@ -183,7 +183,7 @@ def _instead(obj: Any, name: str) -> str:
     return next(name for name, item in sections.items() if head in item.metadata["alternatives"])
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> object:
     if isinstance(value, list | tuple):
         return tuple(float(number) for number in value)
     return float(value) if type(value) is int else value

@@ -184,6 +184,8 @@ UNITS: Mapping[str, Unit] = {
 CELSIUS = "degC"
 KELVIN_AT_ZERO = 273.15
 """The display unit of temperatures in FMUs, and its zero in K; files and pages have the SI unit."""
+LUBRICANTS = 193.15, 473.15
+"""Temperatures [K], -80 to 200 degrees C, between which a lubricant is one."""
 
 
 def display_unit(unit: str, typical: float) -> str:

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import Fmu, refused_line
+from conftest import Fmu, here_alone, refused_line
+from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.new import computed, whole
@@ -18,6 +19,8 @@ from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import interface_alone
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import dump, load
+
+pytestmark = pytest.mark.slow
 
 PRELOAD = 60e3
 M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]
@@ -200,26 +203,12 @@ def test_a_step_depends_on_inputs_and_memory_alone(made):
     np.testing.assert_array_equal(memory, kept)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("flavour", ["fmi2", "fmi3"])
 def test_the_fmu_is_the_package(made, tmp_path, flavour):
     """Ways through slip, opening and tilt: both find the equilibrium to 1e-13 of all forces."""
     joint = made(*FOUR, "--embedding", "800", preload=15e3)
-    assert (
-        cli.main(
-            [
-                "build",
-                "BoltedJoint",
-                "--flavour",
-                flavour,
-                "--params",
-                str(joint.path),
-                "--out",
-                str(tmp_path),
-            ]
-        )
-        == 0
-    )
+    with here_alone():
+        build(["BoltedJoint"], [flavour], joint.file, tmp_path)
     (path,) = tmp_path.rglob("BoltedJoint.fmu")
     rng, six = np.random.default_rng(3), np.zeros(6)
     unit, memory = np.array([1e-6, 1e-6, 5e-7, 1e-5, 1e-5, 2e-5]), joint.spring.at_rest()

@@ -22,13 +22,18 @@ def wound_up(fmu: Path, torque: float) -> float:
         return drive.get()[0]
 
 
-@pytest.mark.parametrize("dither", [0.0, 0.2])
-def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(fmu: Path, dither: float) -> None:
-    """0.7 of the limit hangs on a motor without current, which is shaken or not: 1e5 steps."""
-    most, step, steps, period = 0.05, 1e-4, 100_000, 500
+@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.2, 353.15)])
+def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
+    fmu: Path, dither: float, kelvin: float
+) -> None:
+    """0.7 of the limit hangs on a motor without current, which is shaken or not, cold or warm: 1e5 steps."""
+    warmer = kelvin - 293.15
+    most, step, steps, period = 0.05 * np.exp(-0.01 * warmer), 1e-4, 100_000, 500
     wound, phi, w = wound_up(fmu, 0.7 * 100.0 * most), 0.0, 0.0
     places = np.empty(steps)
-    with Slave(fmu, DRY | {"friction_viscous": 1e-3, "phi2": wound}, MOTION, ("tau1",)) as drive:
+    wet = 1e-3 * np.exp(0.023 * warmer)
+    start = DRY | {"friction_viscous": wet, "temperature": kelvin, "phi2": wound}
+    with Slave(fmu, start, MOTION, ("tau1",)) as drive:
         for k in range(steps):
             (torque,) = drive.get()
             w += step / MOTOR * (torque + dither * most * np.sin(2.0 * np.pi * k / period))

@@ -7,6 +7,8 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from conftest import Fmu
+from natives import close
 
 from jointfmu.joints.harmonic_drive import friction
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
@@ -102,8 +104,11 @@ def smooth(rng, size, t):
 
 @pytest.mark.slow  # 1000 trajectories of 1000 steps
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
-def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio):
-    """All friction on and the temperature moving. Work is that of both torques by the trapezium rule."""
+def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio, native, fmus):
+    """All friction on and the temperature moving. Work is that of both torques by the trapezium rule.
+
+    The first trajectory is that of every flavour too.
+    """
     law, rng = spring(**ALL, d=0.3, ratio=ratio), np.random.default_rng(24)
     t = np.linspace(0.0, 2.0, STEPS)
     phi1, w1 = smooth(rng, 0.6, t)
@@ -111,11 +116,13 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio)
     warmth = REFERENCE + smooth(rng, 40.0, t)[0]
     phi2, w2 = phi1 / ratio + wound, w1 / ratio + rise
     memory = np.broadcast_to(law.rest(), (RUNS, law.rest().size))
+    first = []
     work, wet, through, before, lost = np.zeros(RUNS), np.zeros(RUNS), np.zeros(RUNS), None, np.zeros(RUNS)
     for k in range(STEPS):
         out, memory = law.driven((phi1[k], w1[k], phi2[k], w2[k]), memory, warmth[k])
         assert np.all(out["E_loss"] >= lost)
         lost = out["E_loss"]
+        first.append({name: float(np.broadcast_to(x, RUNS)[0]) for name, x in out.items()})
         slope = (out["tau1"] + out["tau_friction"]) / out["tau"] if k else 0.0
         damped = 0.3 * (w2[k] - w1[k] * slope) ** 2 + w1[k] * viscous(law.joint, w1[k], warmth[k])
         torques = np.stack([out["tau1"], out["tau2"]])
@@ -131,3 +138,12 @@ def test_random_trajectories_make_heat_only_and_all_work_is_accounted_for(ratio)
     missing = np.abs(work - (stored(law, memory, out) - begun + lost - start + wet)) / through
     print(f"ratio {ratio:g}: median {np.median(missing):.1e}, largest {missing.max():.1e} of throughput")
     assert missing.max() < 1e-5
+    names = ("phi1", "w1", "phi2", "w2", "temperature")
+    rows = [dict(zip(names, row, strict=True)) for row in np.stack([phi1, w1, phi2, w2, warmth])[..., 0].T]
+    for folder in (native / "fmi2", native / "fmi3", fmus):
+        drive = Fmu(folder / "HarmonicDriveSpring.fmu")
+        drive.start(ALL | {"d": 0.3, "ratio": ratio} | rows[0])
+        for row, expected in zip(rows, first, strict=True):
+            assert drive.at(row) == close(expected)
+            drive.step()
+        drive.free()

@@ -50,13 +50,17 @@ def instance(native: Path, fmus: Path) -> Iterator[Any]:
 
 
 def path(name: str, given: Mapping[str, float] = LOOP) -> list[dict[str, float]]:
-    """Inputs along a path: both flanges turn, with speeds; or the torque of the same wind-ups."""
+    """Inputs along a path: both flanges turn, with speeds; or the torque of the same wind-ups.
+
+    With friction the temperature moves too.
+    """
     if name == COMPLIANCE:
         return [{"tau": 4e3 * phi} for phi in TURNS]
+    warmth = [{"temperature": 268.0 + 10.0 * k} if "friction_coulomb" in given else {} for k in range(8)]
     far = 30.0 if "friction_coulomb" in given else 3.0
     motor, output = far, 1.0 + far / given.get("ratio", 100.0)
     return [
-        {"phi1": motor * phi, "w1": 0.1 * k, "phi2": output * phi, "w2": -0.01 * k}
+        {"phi1": motor * phi, "w1": 0.1 * k, "phi2": output * phi, "w2": -0.01 * k} | warmth[k]
         for k, phi in enumerate(TURNS)
     ]
 
@@ -151,7 +155,7 @@ def test_derivatives_are_those_at_the_accepted_state(
 ) -> None:
     """Against central differences of trials, away from the point where the motion turns."""
     found, driven = begin(host(name, version), given), "tau" if name == COMPLIANCE else "phi2"
-    size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01}
+    size = {"tau": 1.0, "phi1": 0.1, "phi2": 1e-3, "w1": 1.0, "w2": 0.01, "temperature": 10.0}
     for inputs in path(name, given)[:-1]:
         found.set(inputs)
         found.step()

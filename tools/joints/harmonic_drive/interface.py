@@ -10,7 +10,7 @@ from ...interface.joint import Joint
 Array = NDArray[np.float64]
 
 
-class Drive(Joint):
+class DriveJoint(Joint):
     """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked.
 
     >>> import jointfmu
@@ -40,4 +40,4 @@ class Drive(Joint):
         return curve
 
 
-CLASS = Drive
+CLASS = DriveJoint

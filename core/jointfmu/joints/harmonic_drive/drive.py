@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -87,7 +86,7 @@ class Drive(ABC):
 
     @property
     @abstractmethod
-    def law(self) -> Any:
+    def law(self) -> object:
         """Its interface law; None if it has none."""
 
     @property

@@ -1,5 +1,6 @@
 """Inputs and outputs of the harmonic drive's models."""
 
+from ...quantity.units import LUBRICANTS
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .friction import REFERENCE
 from .kinematic_error import HARMONICS
@@ -73,7 +74,10 @@ MODELS = (
         evaluate=lambda s, v: s.motion(*_driven(v), v["temperature"]),
         rest=lambda s: s.rest(),
         evolve=lambda s, v, memory: s.driven(_driven(v), memory, v["temperature"]),
-        outside=(Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
+        outside=(
+            Outside("phi_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),
+            Outside("temperature", lambda j, end, v: LUBRICANTS, "no lubricant's; it is in kelvin"),
+        ),
         ramp=Ramp("phi2", 1.5e-3, 3e-6),
         loop=Loop("phi2", 1e-3, _LOSSY),
         dependencies={

@@ -35,6 +35,6 @@ record Beveloid_gear_of_Yu_2022 "beveloid gear of Yu 2022"
       4.44972721e-06, 65800, 1.112039019e+11, 1.669088414e+17, 1.669088414e+17]);
   annotation (Documentation(info="<html>
 <p>From the parameters beveloid gear of Yu 2022.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07.</p>
 </html>"));
 end Beveloid_gear_of_Yu_2022;

@@ -164,6 +164,6 @@ record Box_specimen_of_Zhao_2018_15_kN "box specimen of Zhao 2018, 15 kN per bol
       8.63586124e-06, 1079883.843, 2.828851693e+11, 5.932062533e+16, 5.932062533e+16]);
   annotation (Documentation(info="<html>
 <p>From the parameters box specimen of Zhao 2018, 15 kN per bolt.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
 </html>"));
 end Box_specimen_of_Zhao_2018_15_kN;

@@ -160,6 +160,6 @@ record Box_specimen_of_Zhao_2018_15_kN_4500_Nm "box specimen of Zhao 2018, 15 kN
       8.658946209e-06, 1079892.139, 2.823227817e+11, 5.911826264e+16, 5.911826264e+16]);
   annotation (Documentation(info="<html>
 <p>From the parameters box specimen of Zhao 2018, 15 kN per bolt and 4500 N m.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
 </html>"));
 end Box_specimen_of_Zhao_2018_15_kN_4500_Nm;

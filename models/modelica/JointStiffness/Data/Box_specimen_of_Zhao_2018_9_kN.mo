@@ -158,6 +158,6 @@ record Box_specimen_of_Zhao_2018_9_kN "box specimen of Zhao 2018, 9 kN per bolt"
       8.1553426e-06, 647925.4276, 1.798744114e+11, 3.999247739e+16, 3.999247739e+16]);
   annotation (Documentation(info="<html>
 <p>From the parameters box specimen of Zhao 2018, 9 kN per bolt.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07; where the force is below the one at tightening, relative to that.</p>
 </html>"));
 end Box_specimen_of_Zhao_2018_9_kN;

@@ -99,6 +99,6 @@ record CD_14_100_of_Hu_2023 "CD-14-100 of Hu 2023"
       0.00520019015, 30, 6721.242248, 5960.030909, 5960.030909]);
   annotation (Documentation(info="<html>
 <p>From the parameters CD-14-100 of Hu 2023.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07.</p>
 </html>"));
 end CD_14_100_of_Hu_2023;

@@ -152,6 +152,6 @@ record Gear_pair_of_Yu_2022_as_spur_wheels "gear pair of Yu 2022 as spur wheels"
       0.0004744497272, 65800, 139823968.8, 331790647.8, 331790647.8]);
   annotation (Documentation(info="<html>
 <p>From the parameters gear pair of Yu 2022 as spur wheels.</p>
-<p>Against the curve of jointfmu 0.1.0: relative error of load and stiffness at most 1e-07.</p>
+<p>Against the curve of jointfmu 1.0.0: relative error of load and stiffness at most 1e-07.</p>
 </html>"));
 end Gear_pair_of_Yu_2022_as_spur_wheels;

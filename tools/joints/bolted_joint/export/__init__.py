@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class State:
+class Tightening:
     """Working point."""
 
     preload: float = quantity("N", "the force of each bolt")
@@ -33,7 +33,7 @@ class State:
 
 
 def _springs(
-    joint: Bolted, state: State | None, mesh: "Mesh | None", placing: "Placing"
+    joint: Bolted, state: Tightening | None, mesh: "Mesh | None", placing: "Placing"
 ) -> "tuple[Springs, str]":
     from . import springs
 
@@ -54,7 +54,7 @@ def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
     return BoltedJointSpring.of_nodes(joint).curve, [more]
 
 
-def _pull(joint: Bolted, state: State | None, error: float) -> "LoadTable":
+def _pull(joint: Bolted, state: Tightening | None, error: float) -> "LoadTable":
     from .pull import pull_table
 
     if state is None:
@@ -64,7 +64,7 @@ def _pull(joint: Bolted, state: State | None, error: float) -> "LoadTable":
 
 _VARIABLES = KIND.variables
 EXPORTS = Exports(
-    state=State,
+    state=Tightening,
     springs=_springs,
     contact=_contact,
     curve=LoadCurve(

@@ -122,7 +122,7 @@ def fit(
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class PreloadCurve:
     """A curve over preload, ascending: `of` is stiffness [N/m] or frequency [Hz]."""
 
     of: str
@@ -136,7 +136,7 @@ class Measured:
         return K if self.of == "stiffness" else np.sqrt(K / joint.mass) / (2.0 * np.pi)
 
 
-def _measured(path: Path) -> Measured:
+def _measured(path: Path) -> PreloadCurve:
     """Read and check the file."""
     table = columns.read(path, COLUMNS, LEAST)
     preload = table.require("preload", COLUMNS)
@@ -161,11 +161,11 @@ def _measured(path: Path) -> Measured:
     slope = float(np.polyfit(np.log(preload), np.log(value), 1)[0])
     if slope <= 0.0:
         raise ValueError(f"{path}: the {given[0]} does not rise with the preload (power {slope:.2g})")
-    return Measured(given[0], preload, value)
+    return PreloadCurve(given[0], preload, value)
 
 
 def _stated(
-    start: ParameterFile, curve: Measured, modal_mass: float | None, series: float | None
+    start: ParameterFile, curve: PreloadCurve, modal_mass: float | None, series: float | None
 ) -> ParameterFile:
     """The start with what the user states about the test."""
     for name, value, unit in (("modal mass", modal_mass, "kg"), ("series stiffness", series, "N/m")):
@@ -181,7 +181,10 @@ def _stated(
 
 
 def _best_start(
-    file: ParameterFile, names: Sequence[str], curve: Measured, miss: Callable[[Mapping[str, float]], Array]
+    file: ParameterFile,
+    names: Sequence[str],
+    curve: PreloadCurve,
+    miss: Callable[[Mapping[str, float]], Array],
 ) -> list[Unknown]:
     """The unknowns at the best of some starting points."""
     wanted = unknowns(file, [name for name in names if name != SERIES], {})
@@ -207,7 +210,7 @@ def _best_start(
     return best
 
 
-def _facts(curve: Measured, solution: Solution) -> dict[str, tuple[float, str, str]]:
+def _facts(curve: PreloadCurve, solution: Solution) -> dict[str, tuple[float, str, str]]:
     power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),

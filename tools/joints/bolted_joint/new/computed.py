@@ -15,13 +15,14 @@ from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
+from jointfmu.progress import step
 
 from ....drawing.vdi2230 import ClampedPart
 from . import ATTACHED
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import WholeJoint as Bodies
+    from ....fem.whole_joint import WholeJoint
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -70,6 +71,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
         from ....fem.bolted_contact import BoltedContact
         from ....fem.joint_file import with_solution
 
+        step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
         return with_solution(file, solution, plates.tension)
 
@@ -77,35 +79,36 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
 
 
 @dataclass(frozen=True, slots=True)
-class WholeJoint:
+class ComputedJoint:
     """The joint between its attachments: its compliances, and its parameters with elastic sides."""
 
     compliances: Compliances
     file: ParameterFile
 
 
-def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> WholeJoint:
+def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJoint:
     """The whole joint of a drawing at its preload, see `whole_of`."""
     return whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
 
 
 def whole_of(
     file: ParameterFile, assembly: "Callable[[], Assembly]", preload: float, attached: str
-) -> WholeJoint:
+) -> ComputedJoint:
     """The whole joint under the force [N] of each bolt at tightening: the bodies move at their attachments.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
 
-    def solved() -> WholeJoint:
+    def solved() -> ComputedJoint:
         from ....fem.elastic_sides import elastic_bodies
-        from ....fem.whole_joint import WholeJoint as Bodies
+        from ....fem.whole_joint import WholeJoint
 
-        joint = Bodies.of(assembly(), attached)
+        step("members by finite elements")
+        joint = WholeJoint.of(assembly(), attached)
         springs = _springs(file, preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
         bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload)
-        return WholeJoint(linear.compliances(), with_bodies(file, bodies, attached))
+        return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
 
@@ -124,7 +127,7 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
     )
 
 
-def _springs(file: ParameterFile, preload: float, joint: "Bodies") -> Array:
+def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
     """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
 
     That of the nearest point of the joint's own contact, together as stiff as that.

@@ -11,7 +11,7 @@ from .computed import Plates, whole_joint
 Facts = dict[str, tuple[float, str, str]]
 
 
-class Whole(NamedTuple):
+class WholeFacts(NamedTuple):
     """Parameters of a joint, what is told of the whole, and warnings."""
 
     file: ParameterFile
@@ -19,7 +19,7 @@ class Whole(NamedTuple):
     warnings: list[str]
 
 
-def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> Whole:
+def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> WholeFacts:
     """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
     cannot be computed.
 
@@ -32,13 +32,13 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
     except ValueError as error:
         if sides == "elastic":
             raise
-        return Whole(
+        return WholeFacts(
             file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
         )
     parts = found.compliances
     rows = _stiffnesses(parts, attached) | _load(parts, plates.tension, attached)
     rows |= _share(parts, sides == "rigid")
-    return Whole(file if sides == "rigid" else found.file, rows, [])
+    return WholeFacts(file if sides == "rigid" else found.file, rows, [])
 
 
 def _stiffnesses(found: Compliances, attached: str) -> Facts:

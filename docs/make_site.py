@@ -1,0 +1,119 @@
+"""Write the site (Zensical, configured by mkdocs.yml): `python docs/make_site.py --out FOLDER`.
+
+Pages link to files of the repository, so they are laid out in a folder together with what the site carries
+along: linked files, README and CONTRIBUTING as pages, the laboratory, the reference of Python."""
+
+import argparse
+import posixpath
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from runpy import run_path
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).resolve().parent.parent
+CARRIED = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md"}
+"""{text of the repository: page of the site that shows it}."""
+LABORATORY = "laboratory/page.html"
+"""Place of the laboratory in the site."""
+REFERENCE = "reference.md"
+"""Place of the reference of Python in the site."""
+SITE = "site"
+"""Where mkdocs.yml puts the site."""
+_LINK = re.compile(r"(?<!!)\[([^\]]*)\]\(((?:\.\./)+[^)\s#]+)(#[^)\s]*)?\)")
+
+
+def place(source: str, target: str) -> str | None:
+    """Path in the repository that a page's link leads to, None if it stays in the pages."""
+    path = posixpath.normpath(posixpath.join("docs", posixpath.dirname(source), target))
+    return None if path.startswith("docs/") else path
+
+
+def address(path: str) -> str:
+    """Address in the site of a file of the repository."""
+    if path in CARRIED:
+        return CARRIED[path]
+    return f"files/{path}.txt" if path.endswith((".md", ".py")) else f"files/{path}"
+
+
+def carried(name: str) -> str:
+    """A text of the repository as a page in `docs`."""
+    text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
+    outside = r"\]\((?!https?:|#)([\w./-]+)\)"
+    return re.sub(
+        outside,
+        lambda link: link[0] if (ROOT / "docs" / link[1]).exists() else f"](../{link[1]})",
+        text,
+    )
+
+
+def laboratory() -> str:
+    """The page of the main job, else made here."""
+    made = ROOT / "dist" / "report" / "laboratory.html"
+    if made.is_file():
+        return made.read_text(encoding="utf-8")
+    from jointfmu_tools.laboratory.assemble import page
+
+    return page()
+
+
+def reference() -> str:
+    """What `docs/reference.py` writes; the folder of the pages is no package."""
+    return str(run_path(str(Path(__file__).with_name("reference.py")))["page"]())
+
+
+def led(markdown: str, source: str) -> tuple[str, set[str]]:
+    """A page whose links out of `docs` lead to what the site carries, and those files; a folder has no page
+    and loses its link."""
+    here, linked = posixpath.dirname(source) or ".", set()
+
+    def lead(match: re.Match[str]) -> str:
+        text, target, anchor = match.groups()
+        path = place(source, target)
+        if path is None or not (ROOT / path).exists():
+            return match[0]
+        if (ROOT / path).is_dir():
+            return str(text)
+        if path not in CARRIED:
+            linked.add(path)
+        return f"[{text}]({posixpath.relpath(address(path), here)}{anchor or ''})"
+
+    return _LINK.sub(lead, markdown), linked
+
+
+def lay_out(docs: Path) -> None:
+    """All that the generator reads, in the folder `docs`."""
+    shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    made = {LABORATORY: laboratory(), REFERENCE: reference()}
+    for place, text in (made | {page: carried(name) for name, page in CARRIED.items()}).items():
+        (docs / place).parent.mkdir(exist_ok=True)
+        (docs / place).write_text(text, encoding="utf-8")
+    for page in sorted(docs.rglob("*.md")):
+        text, linked = led(page.read_text(encoding="utf-8"), page.relative_to(docs).as_posix())
+        page.write_text(text, encoding="utf-8")
+        for path in linked:
+            copy = docs / address(path)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / path, copy)
+
+
+def build(out: Path) -> int:
+    """The site in the folder `out`; the status of the generator, which stops at links that lead nowhere."""
+    with TemporaryDirectory() as name:
+        work = Path(name)
+        lay_out(work / "docs")
+        shutil.copy(ROOT / "mkdocs.yml", work)
+        done = subprocess.run([sys.executable, "-m", "zensical", "build", "--strict"], cwd=work)
+        if done.returncode == 0:
+            shutil.copytree(work / SITE, out, dirs_exist_ok=True)
+        return done.returncode
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "dist/docs", metavar="FOLDER", help="default: dist/docs"
+    )
+    sys.exit(build(parser.parse_args().out))

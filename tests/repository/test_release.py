@@ -1,0 +1,36 @@
+"""What is published says one version, and leads to the address that is given."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from jointfmu import __version__
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_the_version_is_one() -> None:
+    for file, pattern in (
+        ("CITATION.cff", r"^version: (.+)$"),
+        ("CHANGELOG.md", r"^## \[(.+?)\]"),
+        ("models/modelica/JointStiffness/package.mo", r'^ +version="(.+)",$'),
+    ):
+        found = re.search(pattern, (ROOT / file).read_text(encoding="utf-8"), flags=re.MULTILINE)
+        assert found is not None
+        assert found[1] == __version__, file
+
+
+def test_the_description_leads_to_the_address_that_is_given() -> None:
+    show = [sys.executable, "setup.py", "--quiet", "--url", "--long-description"]
+    given = os.environ | {"JOINTFMU_URL": "https://example.org/joints/"}
+    said = subprocess.run(show, cwd=ROOT, env=given, capture_output=True, text=True, timeout=100, check=True)
+    links = re.findall(r"\]\((?!#)([^)\s]+)\)", said.stdout)
+    assert len(links) > 10
+    assert all(link.startswith("https://") for link in links), links
+    pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", said.stdout)
+    for link in (*links, *pictures):
+        path = re.sub(r"https://example\.org/joints/(blob|raw)/HEAD/", "", link)
+        assert ("/raw/" in link) == (link in pictures), link
+        assert path.startswith("https:") or (ROOT / path).exists(), link
