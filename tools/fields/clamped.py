@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,6 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ..joint_parts import part
-
-if TYPE_CHECKING:
-    from ..fem.geometry import Assembly
 
 Array = NDArray[np.float64]
 Pressures = Callable[[Any, PressureShape, Array, Array], Array]
@@ -62,7 +59,7 @@ class Clamping:
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
-    whole: Callable[[ParameterFile, "Assembly", float, str], ParameterFile]
+    whole: Callable[[ParameterFile, Any, float, str], ParameterFile]
 
 
 def clamped() -> dict[str, Clamping]:
