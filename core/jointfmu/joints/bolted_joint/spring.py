@@ -12,7 +12,7 @@ from ...mechanics.curve import Curve, approach_curve
 from ...mechanics.footprint.bolts import PressureSource, pressure_shape
 from ...mechanics.footprint.friction import friction_patches
 from ...mechanics.footprint.patches import few_points
-from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.footprint.shape import PATCHES, NodalField, PressureShape
 from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
@@ -37,8 +37,6 @@ Array = NDArray[np.float64]
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
-PATCHES = 22
-"""Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
 UNKNOWN, RESTING, ALONG, FREE = range(4)
 """How friction has moved so far, see `memory_of`."""
@@ -84,7 +82,8 @@ def points(pattern: PressureSource) -> PressureShape:
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
-    return friction_patches(pressure_shape(pattern), PATCHES)
+    stated = pattern.patches() if isinstance(pattern, NodalField) else None
+    return stated or friction_patches(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)
