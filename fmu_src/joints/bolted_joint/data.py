@@ -9,7 +9,7 @@ import numpy as np
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
 from jointfmu.joints.bolted_joint.law import Bolted
-from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PressureShape
+from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
 from jointfmu.mechanics.sliders import offsets
 from jointfmu.quantity import flatten
 
@@ -39,8 +39,8 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
     patches = spring.patches(joint.pattern)
     return {
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": DataTable(_rows(patches), spring.PATCHES),
-        "offsets": DataTable(offsets(patches.equal)[:, None], spring.PATCHES),
+        "patches": DataTable(_rows(patches), PATCHES),
+        "offsets": DataTable(offsets(patches.equal)[:, None], PATCHES),
         **_bodies(joint),
     }
 
@@ -55,7 +55,7 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
         places = spring.patches(joint.pattern).position
         modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
         lever = modes.lever
-        most = MODES, spring.POINTS, spring.PATCHES, len(modes.bolts)
+        most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
     x, y, z = modes.patch
     moved = {"opening": modes.opening, "patch_x": x, "patch_y": y, "patch_z": z, "stretch": modes.stretch}
     room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))

@@ -5,6 +5,7 @@ import casadi as ca
 from jointfmu.joints.bolted_joint import bodies, contact, law, outputs, spring, trials, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
+from jointfmu.mechanics.footprint.shape import PATCHES
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import ENERGY, Definitions, NativePart
@@ -144,4 +145,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, spring.memory_of(spring.PATCHES))
+PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, spring.memory_of(PATCHES))
