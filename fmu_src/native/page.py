@@ -1,5 +1,6 @@
 """The folder documentation: one page about the joint, its connection, law, limits and parameters."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -35,6 +36,21 @@ class _ParameterRow(NamedTuple):
     doc: str
     kind: str
     source: str
+
+
+_STIFFNESS = {"N.m/rad": "kg.m2", "N/m": "kg"}
+_BODIES = {"kg.m2": (0.01, 0.1, 1.0, 10.0), "kg": (1.0, 10.0, 100.0, 1000.0)}
+"""Inertias and masses of which the page states the largest stable steps, by unit."""
+
+
+class _StableSteps(NamedTuple):
+    """Stiffness at the end of the ramp; (inertia, step at once, step side by side [s]) of bodies on it."""
+
+    name: str
+    stiffness: float
+    unit: str
+    inertia: str
+    rows: Sequence[tuple[float, float, float]]
 
 
 def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
@@ -86,6 +102,7 @@ def _page(model: Model, parameters: ParameterFile) -> str:
         messages=_messages(model, spring, rest),
         figure=_figure(model, spring, rest),
         drawings=drawings(model, spring),
+        steps=_steps(model, spring, rest, parameters),
         style=chart.style(),
         script=chart.script("figures"),
         ramp_unit=next(v.unit for v in model.inputs if v.name == model.ramp.input),
@@ -105,6 +122,36 @@ def _rows(parameters: ParameterFile) -> list[_ParameterRow]:
         kind, source = parameters.origins.get(name, "user"), parameters.sources.get(name, "default choice")
         rows.append(_ParameterRow(name, value, meta.get("unit", ""), allowed, meta["doc"], kind, source))
     return rows
+
+
+def _steps(
+    model: Model, spring: Spring, rest: Mapping[str, float], parameters: ParameterFile
+) -> _StableSteps | None:
+    """Largest stable steps with a body on the joint, at the end of the ramp; None without motion as input.
+
+    A master that passes on the force before the body steps: 2 sqrt(J/K). One that steps all side by side with
+    `lag_b` = 1: (2 zeta)^(1/3) sqrt(J/K) = (d J)^(1/3)/K^(2/3), K the largest stiffness and d its damping.
+    """
+    stiffnesses = [v for v in model.outputs if v.unit in _STIFFNESS]
+    if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):
+        return None
+    unit = stiffnesses[0].unit
+    first, *others = (v.name for v in stiffnesses if v.unit == unit)
+    axes = [name for name in others if re.fullmatch(r"K_(.)\1", first) and re.fullmatch(r"K_(.)\1", name)]
+    found = evaluated(model, spring, {**rest, model.ramp.input: model.ramp.end})
+    K, name = max((found[name], name) for name in (first, *axes))
+    if not K > 0.0:
+        return None
+    d = float(parameters.flat.get("d", found.get(name.replace("K", "C", 1), 0.0)))
+    rows = [
+        (J, _short(2.0 * (J / K) ** 0.5), _short((d * J) ** (1.0 / 3.0) / K ** (2.0 / 3.0)))
+        for J in _BODIES[_STIFFNESS[unit]]
+    ]
+    return _StableSteps(name, _short(K), unit, _STIFFNESS[unit], rows)
+
+
+def _short(number: float) -> float:
+    return float(f"{number:.3g}")
 
 
 def _messages(model: Model, spring: Spring, rest: Mapping[str, float]) -> list[tuple[str, str, str]]:

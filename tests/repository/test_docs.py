@@ -204,7 +204,7 @@ TOOL_PAGES = [page for page in PAGES if page.parent.name == "tools" and page.nam
 @pytest.mark.parametrize("path", TOOL_PAGES, ids=shown)
 def test_a_tools_page_says_what_a_user_needs(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert len(TOOL_PAGES) == 9
+    assert len(TOOL_PAGES) == 11
     assert re.search(r"^\*(Not run|Run) here", text, flags=re.MULTILINE)  # what was tried
     for word in ("step size", "model exchange", "loop", "dist/"):
         assert word in text.lower(), word

@@ -10,7 +10,9 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.system.fmu import build_system
 from jointfmu_tools.systems.assembly import assembly
 from jointfmu_tools.systems.system import read, system, systems
+from scipy.interpolate import CubicSpline
 
+import jointfmu
 from jointfmu.fmi.host import opened, unpacked
 from jointfmu.proof.importers import IMPORTERS
 from jointfmu.proof.manifest import CO_SIMULATION
@@ -167,6 +169,34 @@ def test_a_saved_state_goes_on_alike(joint):
         assert onward() == first
         fmu.setFMUstate(fmu.deSerializeFMUstate(content))
         assert onward() == first
+
+
+def test_a_free_swing_without_losses_keeps_its_energy(joint):
+    """Motor against link; a host's tolerance tightens the steps, 1e-6 a second is what is asked for."""
+    off = {f"load.{name}_height": 0.0 for name in ("ramp", "pulse")} | {"link.m": 0.0}
+    off |= {"drive.d": 0.0, "drive.hysteresis_loss": 0.0, "link.phi": 1e-3}
+    outputs = ("motor.w", "link.w", "drive.phi_rel", "drive.tau")
+    drive = jointfmu.load("HarmonicDriveSpring").with_values({"d": 0.0})
+    turns = np.linspace(-2e-3, 2e-3, 4001)
+    torque = np.asarray(drive.evaluate("HarmonicDriveSpring", phi2=turns)["tau"])
+    stored = CubicSpline(turns, torque).antiderivative()
+    drifts = []
+    for tolerance in (None, 1e-9):
+        found = run(
+            joint["2"],
+            outputs,
+            1e-3,
+            1.0,
+            fmi_type="CoSimulation",
+            start_values=off,
+            relative_tolerance=tolerance,
+        )
+        energy = 0.5 * 1e-5 * found["motor.w"] ** 2 + 0.5 * 0.05 * found["link.w"] ** 2
+        energy += stored(found["drive.phi_rel"]) - stored(0.0)
+        assert np.ptp(found["drive.phi_rel"]) > 1.9e-3
+        drifts.append(np.abs(energy / energy[0] - 1.0).max())
+    assert drifts[1] < drifts[0] < 1e-3
+    assert drifts[1] < 1e-6
 
 
 def test_a_torque_on_the_link_is_held_by_the_drive(joint):
