@@ -11,6 +11,7 @@ from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
 from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ..joint_parts import part
@@ -52,10 +53,13 @@ class Clamping:
     pressures   : node pressures (m, n) [Pa] of parameters, a shape (n), preloads (m) [N] per bolt and moments
                   (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
     shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
+    whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
+                  force [N] that tightens each bolt
     """
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
+    whole: Callable[[ParameterFile, Any, float, str], ParameterFile]
 
 
 def clamped() -> dict[str, Clamping]:

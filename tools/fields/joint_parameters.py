@@ -26,8 +26,8 @@ FORCE_ERROR = 0.01
 """Largest difference of a field's force from the stated preload [1]."""
 MOMENT_PART = (0.5, 1.5)
 """What part of a stated moment [1] the pressures may balance; the rest is bolt forces."""
-_REPLACED = ("pattern.", "plate.", "field.")
-"""Groups of the file that the field replaces."""
+_REPLACED = ("pattern.", "plate.", "field.", "bodies.", "sides")
+"""Groups of the file that the field replaces; bodies are those of another contact."""
 
 
 def with_field(

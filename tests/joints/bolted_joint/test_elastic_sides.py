@@ -224,9 +224,9 @@ def test_the_fmu_is_the_package(made, tmp_path, flavour):
             least = {"f": 1e-5, "m": 1e-6}.get(name[0], 0.0)  # of 1e4 N, 1e3 N.m
             assert found == pytest.approx(float(expected[name]), rel=1e-8, abs=least), name
     before = fmu.get("f_x", "m_y")
-    fmu.set(dict.fromkeys(MOTIONS, 1.0))  # a turn by 1 rad
+    fmu.set({"s_rel_x": 1e6, "s_rel_z": -1e3})
     line = fmu.refused(fmu.step)
-    assert re.search(r"s_rel_x = 1, .*: the sides find no equilibrium beyond .* residual is .* N", line)
+    assert re.search(r"s_rel_x = 1e\+06, .*: the sides find no equilibrium beyond .* residual is .* N", line)
     fmu.set(dict(zip(MOTIONS, six, strict=True)))
     fmu.step()
     assert fmu.get("f_x", "m_y") == before
@@ -268,3 +268,63 @@ def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeyp
         with pytest.raises(ValueError, match=told):
             at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
     assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0
+
+
+# Of an assembly
+
+PLATE = """
+body = "plate"
+length = { value = 0.08, unit = "m", kind = "user", source = "test" }
+width = { value = 0.08, unit = "m", kind = "user", source = "test" }
+thickness = { value = 0.01, unit = "m", kind = "user", source = "test" }
+E = { value = 210e9, unit = "Pa", kind = "user", source = "test" }
+nu = { value = 0.3, unit = "1", kind = "user", source = "test" }
+density = { value = 7850.0, unit = "kg/m3", kind = "user", source = "test" }
+"""
+PLATES = f"""
+schema = 1
+assembly = "bolted"
+name = "two plates"
+[side1]{PLATE}
+[side2]{PLATE}
+[bolts]
+layout = "grid"
+rows = {{ value = 2.0, unit = "1", kind = "user", source = "test" }}
+columns = {{ value = 2.0, unit = "1", kind = "user", source = "test" }}
+row_spacing = {{ value = 0.05, unit = "m", kind = "user", source = "test" }}
+column_spacing = {{ value = 0.05, unit = "m", kind = "user", source = "test" }}
+hole_diameter = {{ value = 0.009, unit = "m", kind = "user", source = "test" }}
+head_diameter = {{ value = 0.0116, unit = "m", kind = "user", source = "test" }}
+"""
+
+
+@pytest.fixture
+def plates(tmp_path):
+    path = tmp_path / "plates.toml"
+    path.write_text(PLATES)
+    return path
+
+
+def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, capsys):
+    out = tmp_path / "whole.toml"
+    words = ["footprint", "compute", str(plates), "--attached", "faces"]
+    assert "--attached faces without --out" in refused_line(capsys, *words)
+    line = refused_line(capsys, *words, "--out", str(out))
+    assert "--attached faces without the stiffness of a bolt: expected bolt_stiffness above 0" in line
+    assert not out.exists()
+
+
+@pytest.mark.slow
+def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path):
+    """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
+    less than the interface has of the compliance; a field alone leaves no body behind."""
+    drawn, out = made(*FOUR, "--embedding", "800", preload=15e3), tmp_path / "whole.toml"
+    words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
+    assert cli.main([*words, "--refinement", "0.5", "--attached", "faces", "--out", str(out)]) == 0
+    spring = BoltedJointSpring.of(load(out).values)
+    assert spring.joint.elastic
+    found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
+    assert np.all((found.whole < before.whole) & (found.whole > 0.6 * before.whole))
+    assert found.bolts == pytest.approx(before.bolts, rel=1e-3)
+    assert cli.main([*words, "--refinement", "0.5", "--out", str(out)]) == 0
+    assert not load(out).values.elastic

@@ -12,6 +12,7 @@ from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
+from ...fields.clamped import clamping
 from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
 
 if TYPE_CHECKING:
@@ -32,6 +33,12 @@ def add(commands: Commands) -> None:
     sub.add_argument("--moment", type=float, metavar="M", help="bending moment about x [N.m] (default: 0)")
     sub.add_argument(
         "--out", type=Path, metavar="FILE", help="write the joint with this field, for FMUs (TOML)"
+    )
+    sub.add_argument(
+        "--attached",
+        choices=("faces", "edge", "heads"),
+        help="write the whole joint (sides = elastic) between these parts of the bodies: outer faces, edges "
+        "(side 1 at -x, side 2 at +x), or what lies under the heads (default: the interface alone)",
     )
     sub.add_argument("--field", type=Path, metavar="FILE", help="write the field (.csv, .vtu)")
     sub.add_argument("--plot", type=Path, metavar="FILE", help="draw the pressure (.png, .svg)")
@@ -59,6 +66,11 @@ def run(args: argparse.Namespace) -> int:
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
     _check(args)
+    if args.attached and not file.flat.get("bolt_stiffness", 0.0) > 0.0:
+        raise ValueError(
+            f"--attached {args.attached} without the stiffness of a bolt: expected bolt_stiffness above 0 "
+            "N/m in the file of --params"
+        )
     if args.field:
         results.check(args.field)
     file = with_assembly(file, assembly, whole=args.out is not None)
@@ -91,6 +103,8 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(f"--refine = {args.refine} is outside [1, {FINEST}]: number of meshes")
     if not COARSEST <= args.refinement <= 4.0:
         raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
+    if args.attached and not args.out:
+        raise ValueError(f"--attached {args.attached} without --out: expected the file for the whole joint")
     for path in filter(None, (args.out, args.field)):
         check_writable(path)
     if args.plot:
@@ -111,10 +125,14 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
-    """The joint with the field at the preload, and what a moment adds."""
+    """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
     from ...fem.joint_file import with_solution
 
-    return with_solution(file, solution, args.preload, args.moment or 0.0)
+    made = with_solution(file, solution, args.preload, args.moment or 0.0)
+    if not args.attached:
+        return made
+    preload = args.preload + made.values.embedding
+    return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached)
 
 
 def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:

@@ -1,13 +1,18 @@
 """How a bolted joint carries its bolts' forces under a pressure that comes as a field."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.footprint.shape import MergedShape, PressureShape
+from jointfmu.parameters import ParameterFile
 
 from ...fields.clamped import Array, Clamping
+
+if TYPE_CHECKING:
+    from ...fem.geometry import Assembly
 
 
 def _pressures(
@@ -17,4 +22,10 @@ def _pressures(
     return pressures(replace(joint, embedding=0.0), shape, preload, moment)
 
 
-FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio)
+def _whole(file: ParameterFile, assembly: "Assembly", preload: float, attached: str) -> ParameterFile:
+    from .new.computed import whole_of
+
+    return whole_of(file, lambda: assembly, preload, attached).file
+
+
+FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, whole=_whole)

@@ -87,7 +87,14 @@ class ComputedJoint:
 
 
 def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJoint:
-    """The whole joint at its preload: the plates move at their attachments.
+    """The whole joint of a drawing at its preload, see `whole_of`."""
+    return whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
+
+
+def whole_of(
+    file: ParameterFile, assembly: "Callable[[], Assembly]", preload: float, attached: str
+) -> ComputedJoint:
+    """The whole joint under the force [N] of each bolt at tightening: the bodies move at their attachments.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -97,10 +104,10 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJ
         from ....fem.whole_joint import WholeJoint
 
         step("members by finite elements")
-        joint = WholeJoint.of(plates.assembly(file), attached)
-        springs = _springs(file, plates.preload, joint)
+        joint = WholeJoint.of(assembly(), attached)
+        springs = _springs(file, preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
-        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], plates.preload)
+        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload)
         return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
@@ -109,7 +116,7 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJ
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
     """The joint between elastic sides."""
     values = replace(file.values, sides="elastic", bodies=bodies)
-    source = f"finite elements of the plates between {ATTACHED[attached]}, reduced to modes"
+    source = f"finite elements of the bodies between {ATTACHED[attached]}, reduced to modes"
     names = [f"bodies.{item.name}" for item in fields(bodies)]
     stated = "the whole joint between what it connects; rigid: the interface alone"
     return replace(
