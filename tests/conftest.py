@@ -1,18 +1,22 @@
 """Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
 import os
+import pickle
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from contextlib import contextmanager
+from functools import cache, partial
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
 from filelock import FileLock
 from hypothesis import settings
-from jointfmu_fmu_src.native.cache import COMPILER, compiler_cache
+from jointfmu_fmu_src.native.cache import CACHE, COMPILER, compiler_cache, parts
+from jointfmu_fmu_src.native.compiler import libraries
 
 from jointfmu.fmi.host import Instance
 
@@ -23,6 +27,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell's background job ignores it, and so would the commands that tests interrupt.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
 os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
 
 HERE = Path(__file__).parent
@@ -152,6 +157,42 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
             make(unfinished)
             unfinished.rename(folder)
     return folder
+
+
+@contextmanager
+def here_alone() -> Iterator[None]:
+    """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
+    from fmpy import platform_tuple
+    from jointfmu_fmu_src.native import kept
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(CACHE, str(parts() / "here"))
+        patch.setattr(kept, "libraries", partial(libraries, platforms=[platform_tuple]))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Bodies of the same plates are solved by finite elements once for all processes that share the tests."""
+    from jointfmu_tools.joints.bolted_joint.new import computed, whole
+
+    real = computed.whole_joint
+
+    def found(*asked: Any) -> Any:
+        if sys.modules.get("gmsh", sys) is None:  # a test hides it
+            return real(*asked)
+        name = f"whole-{sha256(repr(asked).encode()).hexdigest()[:16]}"
+        folder = made_once(
+            tmp_path_factory,
+            name,
+            lambda out: (out.mkdir(), (out / "joint").write_bytes(pickle.dumps(real(*asked)))),
+        )
+        return pickle.loads((folder / "joint").read_bytes())
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(computed, "whole_joint", found)
+        patch.setattr(whole, "whole_joint", found)
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Fmu, made_once
+from conftest import Fmu, here_alone, made_once
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.building import build
 from natives import Host, close
@@ -32,8 +32,9 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with fmi3/NAME.fmu and python/NAME.fmu."""
 
     def make_all(out: Path) -> None:
-        for name in NAMES:
-            build([name], ["fmi3", "python"], file_of(name), out)
+        with here_alone():
+            for name in NAMES:
+                build([name], ["fmi3", "python"], file_of(name), out)
 
     return made_once(tmp_path_factory, "roughness", make_all)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Fmu, made_once
+from conftest import Fmu, here_alone, made_once
 from fmpy.fmi2 import fmi2EventInfo
 from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.partners import parameters
@@ -29,9 +29,10 @@ Make = Callable[[str], Fmu]
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     def make(out: Path) -> None:
-        for name in ("ForceProfile", "TorqueProfile", "TranslationalMass"):
-            for version in "23":
-                build(name, parameters(name), out / f"fmi{version}", version)
+        with here_alone():
+            for name in ("ForceProfile", "TorqueProfile", "TranslationalMass"):
+                for version in "23":
+                    build(name, parameters(name), out / f"fmi{version}", version)
 
     return made_once(tmp_path_factory, "events", make)
 

@@ -39,7 +39,18 @@ def example(parser: argparse.ArgumentParser) -> str:
 
 
 HELPS = {sub.prog: example(sub) for sub in parsers(parser())}
-NEED = ("build", "modelica", "prove", "ramp", "ring", "system", "sweep", "footprint", "modes")
+NEED = (
+    "build",
+    "new bolted-joint",
+    "modelica",
+    "prove",
+    "ramp",
+    "ring",
+    "system",
+    "sweep",
+    "footprint",
+    "modes",
+)
 """Commands whose examples take long: they build FMUs or need them, solve finite elements or thin tables."""
 
 

@@ -7,6 +7,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from jointfmu_tools.joints.bolted_joint.new import whole
 
 import jointfmu
 
@@ -25,6 +26,13 @@ PLATE = {
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def plate(monkeypatch):
+    """Makes a bolted joint of PLATE, without the finite elements beside it."""
+    monkeypatch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
+    return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 
 def test_the_package_shows_its_interface_and_nothing_else():
@@ -50,7 +58,9 @@ def test_examples(name):
     assert doctest.testmod(import_module(f"jointfmu_tools.interface.{name}")).failed == 0
 
 
-@pytest.mark.parametrize("name", ["drive", "bolted_joint", "gear_contact", "gear_mesh"])
+@pytest.mark.parametrize(
+    "name", ["drive", pytest.param("bolted_joint", marks=pytest.mark.slow), "gear_contact", "gear_mesh"]
+)
 def test_examples_of_what_makes_joints(name):
     finder, runner = doctest.DocTestFinder(), doctest.DocTestRunner()
     (found,) = finder.find(getattr(jointfmu, name), name, module=False)
@@ -67,36 +77,33 @@ def test_a_drive_by_name_in_one_line():
     assert drive.torque(1e-3) == pytest.approx(14.0 + 50000 * (1e-3 - 14.0 / 31000), rel=4e-3)
 
 
-def test_a_joint_prints_its_numbers_with_units_and_sources():
-    plate = jointfmu.bolted_joint(**PLATE)
-    for text in (repr(plate), plate._repr_html_()):
+def test_a_joint_prints_its_numbers_with_units_and_sources(plate):
+    joint = plate()
+    for text in (repr(joint), joint._repr_html_()):
         for part in ("side1.E", "210", "GPa", "EN 1993-1-1", "inputs.preload", "30", "kN", "K_zz"):
             assert part in text
 
 
-def test_numbers_tuples_and_lists_are_what_the_drawing_has():
-    one = jointfmu.bolted_joint(**PLATE)
-    other = jointfmu.bolted_joint(
-        **PLATE | {"at": [(80, 30), (-80, 30), (-80, -30), (80, -30)], "grip": [20, 20], "Ra": "0.8 um"}
-    )
+def test_numbers_tuples_and_lists_are_what_the_drawing_has(plate):
+    one = plate()
+    other = plate(at=[(80, 30), (-80, 30), (-80, -30), (80, -30)], grip=[20, 20], Ra="0.8 um")
     assert other.values["plate.cone_diameter"] == pytest.approx(one.values["plate.cone_diameter"], rel=1e-12)
     assert sorted(other.values["plate.x"]) == pytest.approx(sorted(one.values["plate.x"]), rel=1e-12)
 
 
-def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest():
-    plate = jointfmu.bolted_joint(**PLATE)
-    far = plate.evaluate(s_rel_x=[0.0, 3e-7])
-    way = plate.follow(s_rel_x=[0.0, 3e-7, 0.0])
-    # from rest the pressure stays on the way, from the tightened state the sides change it a little
+def test_what_is_evaluated_is_what_is_followed_on_the_way_from_rest(plate):
+    joint = plate()
+    far = joint.evaluate(s_rel_x=[0.0, 3e-7])
+    way = joint.follow(s_rel_x=[0.0, 3e-7, 0.0])
     assert far["f_x"][1] == pytest.approx(way["f_x"][1], rel=1e-6)
     assert way["f_x"][2] > 0.0  # friction holds it back
     assert far.units["f_x"] == "N"
 
 
-def test_a_joint_is_saved_and_loaded():
-    plate = jointfmu.bolted_joint(**PLATE).with_values(mu=0.2, **{"inputs.preload": 20e3})
-    again = jointfmu.load(plate.save("plate.toml"))
-    assert again.values == plate.values
+def test_a_joint_is_saved_and_loaded(plate):
+    joint = plate().with_values(mu=0.2, **{"inputs.preload": 20e3})
+    again = jointfmu.load(joint.save("plate.toml"))
+    assert again.values == joint.values
     assert (again.values["mu"], again.values["inputs.preload"]) == (0.2, 20e3)
     assert again.file.origins["mu"] == "user"
 

@@ -509,16 +509,21 @@ def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Ar
 
 
 def reference(
-    right: Any, start: list[float], edges: list[float], times: np.ndarray, rtol: float = 1e-9
+    right: Any,
+    start: list[float],
+    edges: list[float],
+    times: np.ndarray,
+    rtol: float = 1e-9,
+    method: str = "DOP853",
 ) -> np.ndarray:
-    """solve_ivp from edge to edge of the load, so that it passes over none."""
+    """solve_ivp from edge to edge of the load, so that it passes over none; where sliders slip and stick a
+    method of a lower order does less in vain."""
     out, state = [], np.array(start)
-    ends = [0.0, *sorted(edges), float(times[-1]) * (1.0 + 1e-12)]
+    last = float(times[-1]) * (1.0 + 1e-12)
+    ends = [0.0, *sorted(edge for edge in edges if edge < last), last]
     for low, high in pairwise(ends):
         some = times[(times >= low) & (times < high)]
-        run = solve_ivp(
-            right, (low, high), state, "DOP853", rtol=rtol, atol=1e-5 * rtol, t_eval=[*some, high]
-        )
+        run = solve_ivp(right, (low, high), state, method, rtol=rtol, atol=1e-5 * rtol, t_eval=[*some, high])
         out.append(run.y[:, : some.size])
         state = run.y[:, -1]
     return np.concatenate(out, axis=1)
@@ -532,7 +537,7 @@ def edges_of(load: Any) -> list[float]:
 def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveSpring):
     v = {**system("robot_joint").values, "load.pulse_start": 0.02}  # and the ramp afterwards
     text = top("extends JointStiffness.Examples.RobotJoint(load(pulse_start=0.02));")
-    found = simulate(rumoca, text, 0.15, 1e-3, rtol=1e-7)
+    found = simulate(rumoca, text, 0.12, 1e-3, rtol=1e-7)
     slides = HarmonicDriveSpring.of(system("robot_joint").joints["drive"].file.values).hysteresis
     load = TorqueProfile(**{k.removeprefix("load."): x for k, x in v.items() if k.startswith("load.")})
     ramp = [load.ramp_start, load.ramp_start + load.ramp_duration]
@@ -551,7 +556,7 @@ def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveS
 
     edges = [*ramp, *edges_of(load)]
     times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0] * (4 + slides.limit.size), edges, times, 1e-6)
+    exact = reference(right, [0.0] * (4 + slides.limit.size), edges, times, 1e-6, "RK45")
     windup = exact[2] - exact[0] / drive.joint.ratio
     assert np.ptp(windup) > 8e-4  # the pulse is seen
     # of the layer in which a slider of the component ceases to stick, 1e-3 of its friction
@@ -574,7 +579,7 @@ def test_bolted_column_runs_as_the_package_says(rumoca: Any, bolted: BoltedJoint
         return [x[1], (pushed - x[2:].sum()) / v["column.m"], *sliding(x[2:], stiffness, limit, x[1])]
 
     times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0] * (2 + limit.size), edges_of(load), times, 1e-6)[0]
+    exact = reference(right, [0.0] * (2 + limit.size), edges_of(load), times, 1e-6, "RK45")[0]
     assert np.abs(exact).max() > 5e-7
     # the sliders of all patches against the component's own: what a loop loses differs by about 1 %
     assert np.abs(found["column.s"][first] - exact).max() <= 0.02 * np.abs(exact).max()

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Fmu
+from conftest import Fmu, here_alone
 from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
@@ -344,7 +344,8 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 )
 def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
     file = default(MODELS[name].joint).with_values(changes, "user", "test")
-    build([name], ["fmi3"], file, tmp_path)
+    with here_alone():
+        build([name], ["fmi3"], file, tmp_path)
     instance, plain = host(name, folder=tmp_path).start(STATE[name]), host(name).start(STATE[name])
     assert instance.get() != plain.get()
     for parameter, value in changes.items():

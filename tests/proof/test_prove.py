@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
 from joint_cases import NAMES
@@ -86,7 +86,8 @@ def test_the_python_flavour_proves_itself(fmus: Path, capsys: pytest.CaptureFixt
 def test_partners_prove_themselves(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, version: str
 ) -> None:
-    fmu = native_build(name, partner_parameters(name), tmp_path, version[-1])
+    with here_alone():
+        fmu = native_build(name, partner_parameters(name), tmp_path, version[-1])
     all_pass(proved(capsys, fmu))
 
 
@@ -98,7 +99,8 @@ def test_fmus_of_other_laws_prove_themselves(
 ) -> None:
     """Under a name of the user's own, too."""
     name = KINDS[joint].models[-1].name
-    fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
+    with here_alone():
+        fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
     assert fmu.name == "own_joint.fmu"
     all_pass(proved(capsys, fmu))
 
@@ -555,6 +557,8 @@ def test_no_listing_of_an_fmu_that_fails(
     assert cli.main(["prove", str(path), "--listing", str(tmp_path / "out")]) == 1
     assert "no listing is written" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+    place = path / "out"  # no folder: found before the experiments run
+    assert f"{place}: cannot be written" in refused_line(capsys, "prove", path, "--listing", place)
 
 
 def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ def made(capsys, *words):
     return {name: fact["value"] for name, fact in found["facts"].items()}, found
 
 
+@pytest.mark.slow
 def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys):
     """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
     face; its opening load is the preload less embedding over 1 - Phi."""
@@ -28,6 +29,7 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys):
     assert facts["interface_share"] < 0.05
 
 
+@pytest.mark.slow
 def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
     """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
     heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
@@ -38,6 +40,7 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
     assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
 
 
+@pytest.mark.slow
 def test_four_bolts_share_a_load_evenly(capsys):
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "40x40", "--grip", "20", *M16[6:]]
     facts, _ = made(capsys, *words, "--preload", "10e3")

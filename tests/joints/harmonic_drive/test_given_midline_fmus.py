@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import Fmu, made_once
+from conftest import Fmu, here_alone, made_once
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import kept
@@ -50,9 +50,10 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folders LAW/fmi3 and LAW/python."""
 
     def make_all(out: Path) -> None:
-        for one in LAWS:
-            build([SPRING], ["fmi3", "python"], file_of(one), out / one)
-            build([COMPLIANCE], ["fmi3"], file_of(one), out / one)
+        with here_alone():
+            for one in LAWS:
+                build([SPRING], ["fmi3", "python"], file_of(one), out / one)
+                build([COMPLIANCE], ["fmi3"], file_of(one), out / one)
 
     return made_once(tmp_path_factory, "given", make_all)
 
@@ -155,7 +156,8 @@ def test_another_table_needs_no_compiler(
 
     monkeypatch.setattr(kept, "compiled", refused)
     file = table_of(points)
-    build([name], ["fmi3"], file, tmp_path)
+    with here_alone():
+        build([name], ["fmi3"], file, tmp_path)
     instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
     for inputs in random_inputs(name, 10, seed=11):
         # a place within a short segment has the round-off of the whole wind-up
