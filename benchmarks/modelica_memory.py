@@ -33,6 +33,8 @@ class Drive:
         given = OTHERS | (FRICTION if friction else {})
         self.law = HarmonicDriveSpring.of(replace(default("harmonic_drive").values, **given))
         self.brakes, self.turns = LIMITS.size if friction else 0, turns
+        joint = self.law.joint
+        self.most = LAYER * max(limits(joint, 0.0, joint.rated_torque)) * LIMITS[: self.brakes]
         self.held, self.place = np.zeros(self.law.hysteresis.limit.size), 0.0
 
     def seen(self, x):
@@ -56,9 +58,8 @@ class Drive:
         q = x[4 : 4 + self.brakes]
         share = LIMITS[: self.brakes]
         braked = np.clip(q, -negative * share, positive * share)
-        most = LAYER * max(limits(joint, 0.0, joint.rated_torque)) * share + 1e-60
         stuck = self.law.friction.stiffness[: self.brakes]
-        rate = stuck * (x[1] - abs(x[1]) * (q - braked) / most) - (q - braked) / FORGETS
+        rate = stuck * (x[1] - abs(x[1]) * (q - braked) / self.most) - (q - braked) / FORGETS
         push = 0.03 * math.sin(26.179938779914945 * t) ** 3 if t < 0.24 else 0.0
         torque = push + tau * (1.0 / joint.ratio + slope) - braked.sum() - viscous(joint, x[1])
         own = [x[1], torque / MOTOR, x[3], -(tau + WEIGHT * math.sin(x[2])) / LINK]

@@ -178,7 +178,11 @@ class Read:
                     self._run(statement.statements, local)
             else:
                 (target,) = statement.left
-                local[target.name] = self.value(statement.right, local)
+                value, places = self.value(statement.right, local), _indices(target)
+                if places:  # items come one after the other
+                    before = local.get(target.name, [])[: int(self.value(places[0], local)) - 1]
+                    value = [*before, value]
+                local[target.name] = value
 
     def _variable(self, x: Any, local: Env) -> Any:
         name = _name(x)

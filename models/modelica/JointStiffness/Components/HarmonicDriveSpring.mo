@@ -135,8 +135,8 @@ equation
     held_h[i] = noEvent(min(max(stuck_h[i], -M_h[i]), M_h[i]));
     heat_h[i] = noEvent(if abs(stuck_h[i]) > M_h[i] then M_h[i]*abs(w_rel) else 0);
   end for;
-  ahead = w_rel > still;
-  behind = w_rel < -still;
+  ahead = (if hysteresis_friction > 0 then w_rel else 0) > still;
+  behind = (if hysteresis_friction > 0 then w_rel else 0) < -still;
   when {initial(), pre(ahead), pre(behind)} then
     q_h = JointStiffness.Functions.limited(pre(q_h) + K_h*(phi_rel - pre(phi_h)), M_h);
     phi_h = phi_rel;
