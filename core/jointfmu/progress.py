@@ -103,6 +103,7 @@ def processes() -> Iterator[Executor]:
     They print nothing and do not hear Ctrl-C; this process does, and ends them. The program that starts
     them needs a guard, `if __name__ == "__main__"`.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of each: they would spin in vain
     pool = ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn"), _quiet)
     try:
         yield pool

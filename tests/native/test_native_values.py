@@ -61,7 +61,8 @@ def test_all_flavours_and_interfaces_give_the_numbers_of_the_package(
 ) -> None:
     python, expected, r = fmu(name).start(), package(name).after(), MODELS[name].ramp
     natives = [host(name, v, exchange=kind).start() for v in VERSIONS for kind in (False, True)]
-    ramp = [dict.fromkeys(RANGES[name], 0.0) | {r.input: x} for x in np.linspace(0.0, r.end, 26)]
+    rest = {n: max(low, 0.0) for n, (low, _) in RANGES[name].items()}  # no lubricant is at 0 K
+    ramp = [rest | {r.input: x} for x in np.linspace(0.0, r.end, 26)]
     for inputs in (*ramp, *random_inputs(name, 40, seed=21)):
         found, *others = (one.at(inputs) for one in natives)
         assert others == [found] * 3

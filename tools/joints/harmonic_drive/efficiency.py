@@ -46,7 +46,7 @@ class Driven(Protocol):
     def step(self, time: float, size: float) -> None: ...
 
 
-class Sprung:
+class PythonDrive:
     """The Python drive in the place of an FMU; it begins at rest with all angles zero."""
 
     def __init__(self, model: Model, file: ParameterFile) -> None:
@@ -144,5 +144,5 @@ def bench(path: Path, parameters: Mapping[str, float]) -> Iterator[Bench]:
 def spring_bench(model: Model, file: ParameterFile) -> Bench:
     """The same of the Python drive with the parameters of a file: no FMU is needed."""
     steady = file.with_values(_STEADY, "user", "steady")
-    drive = Sprung(model, steady)
+    drive = PythonDrive(model, steady)
     return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])

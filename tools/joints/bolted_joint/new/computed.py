@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
+from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
@@ -21,7 +22,7 @@ from . import ATTACHED
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import Compliance, WholeJoint
+    from ....fem.whole_joint import WholeJoint
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -79,9 +80,9 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
 
 @dataclass(frozen=True, slots=True)
 class ComputedJoint:
-    """The joint between its attachments: compliances by direction, and its parameters with elastic sides."""
+    """The joint between its attachments: its compliances, and its parameters with elastic sides."""
 
-    compliances: "dict[str, Compliance]"
+    compliances: Compliances
     file: ParameterFile
 
 
