@@ -63,12 +63,20 @@ def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> 
     assert done.stdout.endswith(" passed, 0 missed\n")
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_joint_has_its_page_without_an_extra(kind: str, tmp_path: Path) -> None:
+    (tmp_path / "joint.toml").write_text(dump(default(kind)))
+    done = bare(tmp_path, "report", "joint.toml")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "joint.html").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "package"),
     [
         (("ring", "robot_joint", "--plot", "ring.png"), "matplotlib"),
         (("build", "GearContact"), "casadi"),
-        (("report", "joint.toml"), "casadi"),
         (("modes", "absent.toml"), "skfem"),
         (("footprint", "compute", "absent.toml", "--preload", "9e3"), "skfem"),
     ],

@@ -272,10 +272,10 @@ def test_the_reference_has_every_public_name(site: Path) -> None:
     """With the arguments, and what the help says of them, as items of a list; and the search finds it."""
     page = site / "reference.html"
     ids, text = Links(page).ids, page.read_text(encoding="utf-8")
-    for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivewind_up"):
+    for name in (*(f"jointfmu{n}" for n in jointfmu.__all__), "jointbuild", "drivejointwind_up"):
         assert name.lower() in ids, name
     assert re.search(r"<li><code>efficiency</code>: at rated torque and 2000 rev/min \[1\]</li>", text)
-    assert '"reference.html#drivewind_up"' in (site / "search.json").read_text("utf-8")
+    assert '"reference.html#drivejointwind_up"' in (site / "search.json").read_text("utf-8")
 
 
 def test_the_site_needs_no_network(site: Path) -> None:

@@ -16,7 +16,7 @@ from jointfmu.proof.run import prove
 from jointfmu.published import validation
 
 from ..laboratory.assemble import write_laboratory
-from ..report import write_report
+from ..report.page import write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
 from ..systems.master import Array

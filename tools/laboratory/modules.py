@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jointfmu_fmu_src.native.compiler import webassembly
-from jointfmu_fmu_src.native.generate import sources, token
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
@@ -34,6 +33,11 @@ class Module:
 
     def sources(self) -> dict[str, str]:
         """{file name: text} of all C sources: those of the FMU, and what the page calls."""
+        from jointfmu_fmu_src.native.generate import (
+            sources,
+            token,
+        )  # needs casadi, pages of the report do not
+
         files = sources(self.model.name, self.files[0])
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
         if self.map and self.map.is_file():

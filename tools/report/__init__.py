@@ -1,5 +1,1 @@
-"""The report that opens in a browser."""
-
-from .page import write_report
-
-__all__ = ["write_report"]
+"""The report that opens in a browser: of the main job (`page`), and of one joint (`joint`)."""

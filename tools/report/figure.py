@@ -1,13 +1,15 @@
 """A figure of the report; `figures(outcome)` in the file of a joint returns a list of them."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
-from matplotlib.figure import Figure as Canvas
 
 from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.published.reference import PROVES_NOTHING, ROLES, Point
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Canvas
 
 __all__ = ["Figure", "Panel", "Series", "drawn", "published"]
 
@@ -37,7 +39,7 @@ def published(points: Sequence[Point], over: str, factor: float = 1.0) -> list[S
     return found
 
 
-def drawn(canvas: Canvas, panels: Sequence[Panel]) -> None:
+def drawn(canvas: "Canvas", panels: Sequence[Panel]) -> None:
     """The panels side by side, as a picture for the command line."""
     for axes, panel in zip(canvas.subplots(1, len(panels), squeeze=False)[0], panels, strict=True):
         for series, color in zip(panel.series, _COLOURS, strict=False):
