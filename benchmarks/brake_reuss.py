@@ -1,6 +1,6 @@
 """The Brake-Reuss beam, blind: first frequency and damping over amplitude from geometry and roughness.
 
-`python benchmarks/brake_reuss.py [--images | --meshes]`
+`python benchmarks/brake_reuss.py [--images | --meshes | --form]`
 
 Finite elements for both halves and the bolts, the law of the interface on every patch of the lap, friction by
 sliders with memory. Nothing is fitted; what had to be chosen is below and was fixed before any comparison.
@@ -10,7 +10,7 @@ import sys
 from dataclasses import replace
 
 import numpy as np
-from brake_reuss_cases import Curves, beam, data, laws, published, solid_bar
+from brake_reuss_cases import Curves, beam, data, form, laws, published, solid_bar
 from lap_beam_loops import Joint, damping, foundation, frequency, masing
 from lap_beam_plan import Fineness
 from lap_beam_reduction import Structure, reduced, spectrum
@@ -32,12 +32,12 @@ GLUED = 1e17
 """Stiffness [N/m3] of a lap that is one piece: as soft as 2 um of steel."""
 
 
-def joints(structure):
-    """{law: the reduced beam on its sliders}."""
+def joints(structure, gap=None):
+    """{law: the reduced beam on its sliders}, of plane faces or with a gap [m] at places x, y."""
     preload, found = data()["beam"]["preload"], {}
     for name, law in laws().items():
         curve, shear = approach_curve(law), float(law.shear_ratio())
-        part = reduced(structure, curve, preload, shear)
+        part = reduced(structure, curve, preload, shear, gap)
         found[name] = Joint(part, foundation(curve, shear, FRICTION))
     return found
 
@@ -115,6 +115,21 @@ def meshes():
         row(f"{1e3 * near:g}", f"{1e3 * far:g}", layers, normal.size, f"{found:.2f}")
 
 
+def with_form():
+    """The beam with its scanned form, both laws at the published friction, beside the published curve."""
+    found = joints(Structure.of(beam(), Fineness()), form())
+    friction, small = data()["published"]["friction"], published("curved").frequency[0]
+    heading("With the scanned form", "interface", "f1", "miss [%]", "share of the lap that carries 90 %")
+    for name, joint in found.items():
+        pressure = joint.sliders.curve.derivatives(joint.beam.approach, 0)[0]
+        order = np.argsort(-pressure)
+        force, area = (np.cumsum(each[order]) for each in (joint.beam.area * pressure, joint.beam.area))
+        carries = area[np.searchsorted(force, 0.9 * force[-1])] / area[-1]
+        f = joint.beam.frequency
+        row(name, f"{f:.1f}", f"{100 * (f / small - 1):+.2f}", f"{carries:.2f}")
+    beside({name: by_masing(rubbing(joint, friction))[1] for name, joint in found.items()}, "curved", small)
+
+
 def main():
     """Print everything; `--images` draws the picture."""
     structure = Structure.of(beam(), Fineness())
@@ -160,4 +175,4 @@ def picture(both):
 
 
 if __name__ == "__main__":
-    meshes() if "--meshes" in sys.argv else main()
+    {"--meshes": meshes, "--form": with_form}.get(sys.argv[-1], main)()

@@ -1,11 +1,12 @@
 """The Brake-Reuss beam as its sources have it, and what is published of its first mode."""
 
 from dataclasses import dataclass, replace
+from importlib.resources import files
 
 import numpy as np
 from lap_beam import LapBeam
 from measured_joints import joint_law, level, measured
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import PchipInterpolator, RegularGridInterpolator
 from scipy.optimize import brentq
 
 
@@ -21,6 +22,28 @@ def beam():
     return LapBeam(**known | {"bolts": tuple(known["bolts"]), "E": entries["E"], "nu": entries["nu"]})
 
 
+def form():
+    """Gap [m] of the unloaded lap over places x, y [m], of models/reference/brake_reuss_lap_form.csv.
+
+    Half the width is modelled: the mean of both halves. Holes take what stands beside them along x; beyond
+    the scan the last row or column goes on.
+    """
+    text = (files("jointfmu_models") / "reference" / "brake_reuss_lap_form.csv").read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    gap = 1e-6 * np.array([[float(cell) if cell else np.nan for cell in line.split(",")] for line in lines])
+    y, x = (1e-3 * np.linspace(-end, end, n) for end, n in zip((13.2, 61.206), gap.shape, strict=True))
+    known = np.isfinite(gap).sum(axis=1) > 0.5 * x.size
+    rows = [np.interp(x, x[np.isfinite(row)], row[np.isfinite(row)]) for row in gap[known]]
+    surface = RegularGridInterpolator((y[known], x), np.array(rows))
+    most = np.min(np.abs(y[known][[0, -1]]))
+
+    def mean(at_x, at_y):
+        across, along = np.minimum(np.abs(at_y), most), np.clip(at_x, x[0], x[-1])
+        return 0.5 * sum(surface(np.stack([side * across, along], axis=-1)) for side in (1.0, -1.0))
+
+    return mean
+
+
 def laws():
     """{name: law}: from the deviation of the gap, and the same form at the published level."""
     entries = data()
@@ -34,7 +57,7 @@ def laws():
 
 def solid_bar(one):
     """First bending frequency [Hz] of a free bar without a joint (Timoshenko; shear by Cowper)."""
-    area, inertia = one.side**2, one.side**4 / 12.0
+    area, inertia = one.across * one.side, one.across * one.side**3 / 12.0
     shear = 10.0 * (1.0 + one.nu) / (12.0 + 11.0 * one.nu) * one.E / (2.0 * (1.0 + one.nu)) * area
     bend, heavy, turned, half = one.E * inertia, one.density * area, one.density * inertia, 0.5 * one.length
 

@@ -47,7 +47,14 @@ def calculix() -> str | None:
 
 
 def run(deck: Path) -> dict[int, np.ndarray]:
-    """Run a deck; returns {node: displacements (3)} printed last.
+    """Run a deck; returns {node: displacements (3)} printed last."""
+    tables = re.split(r"displacements .*", solved(deck))
+    rows = [line.split() for line in tables[-1].splitlines() if line.strip()]
+    return {int(row[0]): np.array(row[1:], dtype=float) for row in rows}
+
+
+def solved(deck: Path, patience: float = 300.0) -> str:
+    """Run a deck for at most `patience` [s]; returns what it printed.
 
     Raises RuntimeError with the end of what CalculiX said if it did not finish.
     """
@@ -57,13 +64,11 @@ def run(deck: Path) -> dict[int, np.ndarray]:
         env=os.environ | {"OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=patience,
     )
     if done.returncode or "*ERROR" in done.stdout or "Job finished" not in done.stdout:
         raise RuntimeError(f"{deck.name}: {done.stdout[-500:]}")
-    tables = re.split(r"displacements .*", deck.with_suffix(".dat").read_text())
-    rows = [line.split() for line in tables[-1].splitlines() if line.strip()]
-    return {int(row[0]): np.array(row[1:], dtype=float) for row in rows}
+    return deck.with_suffix(".dat").read_text()
 
 
 def export(*arguments: object) -> None:

@@ -74,14 +74,16 @@ def friction(drive):
     return limits(drive, speed, 0.0, WARM)[0] + viscous(drive, speed, WARM)
 
 
+def reference(name):
+    """Rows of a file of reference numbers."""
+    text = (files("jointfmu_models") / "reference" / name).read_text(encoding="utf-8")
+    return csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
+
+
 def measured():
     """Friction [N.m] at the motor of the base joint at SPEEDS: the mean of both senses."""
-    text = (files("jointfmu_models") / "reference" / "ur5e_base_joint_friction.csv").read_text(
-        encoding="utf-8"
-    )
-    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
     torque = {}
-    for row in rows:
+    for row in reference("ur5e_base_joint_friction.csv"):
         speed = abs(float(row["joint_speed_rad_per_s"]))
         torque.setdefault(speed if speed >= 0.5 else 0.0, []).append(abs(float(row["motor_torque_Nm"])))
     return np.array([np.mean(torque[speed]) for speed in SPEEDS])
@@ -115,6 +117,31 @@ def robot():
     table((*head, *(f"{speed:g} rad/s" for speed in SPEEDS[1:])), rows)
 
 
+def shape():
+    """Friction a + b speed^p for some powers: what is left of the base joint, and of efficiencies over speed.
+
+    Two numbers decide the line: least squares for the joint, the slowest and fastest point of an efficiency.
+    """
+    base, rows = measured(), []
+    curves = {}
+    for row in reference("harmonic_drive_catalogue_efficiency.csv"):
+        if row["share"] == "1" and row["efficiency"] and row["drive"] in ("ATRIAS", "M2"):
+            curves.setdefault(row["drive"], []).append((float(row["rpm"]), float(row["efficiency"])))
+    for power in (1.0, 2.0 / 3.0, 0.5):
+        line = np.stack([np.ones(len(SPEEDS)), np.array(SPEEDS) ** power], axis=1)
+        left = base - line @ np.linalg.lstsq(line, base, rcond=None)[0]
+        cells = [f"{power:.2g}", f"{1e3 * np.sqrt(np.mean(left**2)):.1f}"]
+        for points in curves.values():
+            speed, efficiency = np.array(points).T
+            loss, speed = 1.0 / efficiency, speed**power
+            between = np.interp(speed, speed[[0, -1]], loss[[0, -1]])
+            cells.append(f"{100.0 * np.max(np.abs(1.0 / between - efficiency)):.1f}")
+        rows.append(cells)
+    off = (f"efficiency of {name}, largest miss [points]" for name in curves)
+    table(("power of the speed", "base joint, root mean square [mN m]", *off), rows)
+
+
 if __name__ == "__main__":
     scaling()
     robot()
+    shape()

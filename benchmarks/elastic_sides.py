@@ -12,7 +12,7 @@ Run: python benchmarks/elastic_sides.py [--cells N] [--paths N]
 import argparse
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,16 +46,21 @@ LEVELS = (0.1, 0.3, 0.5, 0.8, 1.0, 1.3)
 
 @dataclass(frozen=True)
 class Joint:
-    """The example between its attachments: with elastic sides and rigid ones, and its finite elements."""
+    """A joint between its attachments: with elastic sides and rigid ones, and its finite elements.
+
+    normal  : (q) [Pa/m] stiffness of the interface at the points of the finite elements
+    members : [N/m] stiffness of what a bolt clamps, VDI 2230
+    """
 
     file: ParameterFile
     rigid: ParameterFile
     linear: Linear
     normal: Array
     preload: float
+    members: float
 
     @classmethod
-    def of(cls, attached: str) -> "Joint":
+    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE) -> "Joint":
         """Made as the command makes it."""
         seen: dict[str, object] = {}
         real = whole.whole_joint
@@ -69,11 +74,13 @@ class Joint:
 
         whole.whole_joint = watched
         try:
-            given = dict.fromkeys(option.name for option in NEW.options) | EXAMPLE | {"attached": attached}
-            file = NEW.run(given).file
+            given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
+            given["attached"] = attached
+            made = NEW.run(given)
         finally:
             whole.whole_joint = real
-        return cls(file=file, **seen)  # type: ignore[arg-type]
+        facts: dict[str, tuple[float, str, str]] = dict(made.facts)
+        return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
 
     @property
     def spring(self) -> BoltedJointSpring:
@@ -89,12 +96,14 @@ class Joint:
         return clamping * np.array([mu, mu, 1.0, radius, radius, mu * radius])
 
 
-def along(spring: BoltedJointSpring, motions: Sequence[Array], preload: float) -> list[Array]:
-    """Forces and moments (6) on the way through motions (6) from rest."""
+def along(
+    spring: BoltedJointSpring, motions: Sequence[Array], preload: float, names: Sequence[str] = FORCES
+) -> list[Array]:
+    """Forces and moments, or other outputs, on the way through motions (6) from rest."""
     memory, rows = spring.at_rest(), []
     for six in motions:
         out, memory = spring.evolve(preload, 0.0, Place.of(six), (0.0,) * 6, memory)
-        rows.append(np.array([float(out[name]) for name in FORCES]))
+        rows.append(np.array([float(out[name]) for name in names]))
     return rows
 
 

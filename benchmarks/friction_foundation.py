@@ -28,6 +28,8 @@ FIRST = (1.0, 0.8, 1.25, 0.5, 2.0)
 """Preloads under which the joint first moved over the present ones [1]."""
 AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
 """Force of the loops over the friction [1]."""
+SWUNG, SWING, CYCLES = 9e3, 0.3, (1, 2, 20, 100)
+"""Preload [N] at which the normal force swings by this part of it, at a shift that stays, and so often."""
 ALONG = 20
 """Displacements up to gross slip at which the force is compared."""
 
@@ -114,7 +116,36 @@ def main() -> None:
             areas = np.max([a for _, a in found], axis=0)
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
-    print(f"{spring.patches.share.size} patches, {spring.foundation().sliders} sliders each")
+    print(f"{spring.patches.share.size} patches, {spring.foundation().sliders} sliders each\n")
+    print_swings()
+
+
+def print_swings() -> None:
+    """Shear of the default joint at a shift that stays, while the normal force swings: over the first one."""
+    spring = BoltedJointSpring.of(default("bolted_joint").values)
+    share, whole = spring.patches.share, spring.foundation()
+    start = spring.curve.inverse(pressures(spring.joint, spring.patches, SWUNG, 0.0))
+
+    def load(apart: float) -> float:
+        return float(share @ spring.curve.derivatives(start - apart, 0)[0])
+
+    apart = brentq(lambda x: load(x) - (1.0 - SWING) * load(0.0), 0.0, float(np.ptp(start)) + 1e-6)
+    low, sliders = start - apart, spring.foundation(start)
+    print("| shear over friction | by the theorem | " + " | ".join(f"{n} cycles" for n in CYCLES) + " |")
+    print("|---" * (2 + len(CYCLES)) + "|")
+    for part in (0.5, 0.7, 0.9):
+        limit = spring.joint.mu * load(0.0)
+        shift = brentq(lambda u, most=part * limit: share @ whole.backbone(start, u) - most, 0.0, 1e-5)
+        exact = share @ whole.backbone(low, shift) / (share @ whole.backbone(start, shift))
+        along = np.outer(np.ones(share.size), [shift, 0.0])
+        moved = sliders.moved(sliders.at_rest(share.size), start, start, along)
+        first, found = share @ moved.traction[:, 0], []
+        for cycle in range(1, CYCLES[-1] + 1):
+            for before, after in ((start, low), (low, start)):
+                moved = sliders.moved(moved.force, before, after, 0.0 * along)
+            if cycle in CYCLES:
+                found.append(share @ moved.traction[:, 0] / first)
+        print(f"| {part:g} | {exact:.4f} | " + " | ".join(f"{x:.4f}" for x in found) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -29,6 +29,8 @@ APPROACH = 0.4
 """Approach [m] of the loops under constant load."""
 AMPLITUDES = (0.1, 0.2, 0.5, 0.9)
 """Force of the loops over the friction [1]."""
+TURNS, CIRCLE, TURN_STEPS = 3, 1.5, (6, 12, 24, 48, 96, 4096)
+"""Turns of a circle, its radius over gross slip, and steps of each; the last are taken as exact."""
 SPRINGS, ALONG = 20_000, 400
 """Springs, and steps of a round of a combined motion."""
 
@@ -181,10 +183,10 @@ MOTIONS = {
 
 
 def main() -> None:
-    """Print the two tables."""
-    print_loops()
-    print()
-    print_motions()
+    """Print the tables."""
+    for table in (print_loops, print_motions, print_turns):
+        table()
+        print()
 
 
 def print_loops() -> None:
@@ -219,6 +221,24 @@ def print_motions() -> None:
             worst = np.max(np.abs(tractions - exact[name][0])) / largest
             cells.append(f"{worst:.1e} | {np.sum(losses) / exact[name][1] - 1.0:+.1%}")
         print(f"| {sliders.sliders} | " + " | ".join(cells) + " |")
+
+
+def print_turns() -> None:
+    """Circles of 1.5 times gross slip, once it is steady: loss of a turn, force over the friction."""
+    print("| steps a turn | loss | force |\n|---|---|---|")
+    sliders, gross = foundation(0.2), FRICTION * APPROACH / RATIO
+
+    def around(steps: int) -> tuple[Array, float]:
+        angle = np.linspace(0.0, 2.0 * np.pi * TURNS, TURNS * steps + 1)
+        x, y = CIRCLE * gross * np.array([np.cos(angle) - 1.0, np.sin(angle)])
+        tractions, losses, _ = walk(sliders, np.column_stack([np.full_like(x, APPROACH), x, y]))
+        return tractions[-1], float(np.sum(losses[-steps:]))
+
+    force, loss = around(TURN_STEPS[-1])
+    for steps in TURN_STEPS[:-1]:
+        found, lost = around(steps)
+        off = np.hypot(*(found - force)) / (FRICTION * load(APPROACH))
+        print(f"| {steps} | {lost / loss - 1.0:+.2%} | {off:.1e} |")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ class LapBeam:
     """Lengths [m] and material of the beam.
 
     length, lap  : of the whole beam and of the overlap
-    side         : of the square section
+    side         : height of the section; `width` the other side of it, None: a square
     bolts        : positions along x from the middle
     hole, washer : diameters of the clearance hole and of what presses on the outer face
     shank        : diameter of a bolt
@@ -39,6 +39,12 @@ class LapBeam:
     E: float
     nu: float
     density: float
+    width: float | None = None
+
+    @property
+    def across(self) -> float:
+        """Width [m] of the section."""
+        return self.side if self.width is None else self.width
 
     @property
     def head(self) -> float:

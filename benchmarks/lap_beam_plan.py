@@ -73,7 +73,7 @@ def _lap(beam, size):
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         occ = gmsh.model.occ
-        whole = (2, occ.addRectangle(-half, 0.0, 0.0, beam.lap, 0.5 * beam.side))
+        whole = (2, occ.addRectangle(-half, 0.0, 0.0, beam.lap, 0.5 * beam.across))
         circles = [(x, d) for x in beam.holes for d in (beam.hole, beam.washer)]
         discs = [(2, occ.addDisk(x, 0.0, 0.0, 0.5 * d, 0.5 * d)) for x, d in circles]
         if discs:

@@ -55,15 +55,15 @@ class Structure:
             [s * trace(b, self.interface, axis) for s, b in zip((1.0, -1.0), self.bodies, strict=True)]
         )
 
-    def tightened(self, law, preload):
-        """Equilibrium without friction under a preload [N] of each bolt."""
+    def tightened(self, law, preload, gap=None):
+        """Equilibrium without friction under a preload [N] of each bolt; gap [m] at places x, y or None."""
         heads = [f"head{i}" for i in range(len(self.beam.bolts))]
         pull = [sum(b.uniform_load(b.mesh.boundaries[name]) for name in heads) for b in self.bodies]
         loads = [0.5 * preload * sign * load for sign, load in zip((1.0, -1.0), pull, strict=True)]
         first, second = self.symmetric
         slides = 3 * _ends(self.bodies[1])[0]
         held = (np.union1d(first, pins(self.bodies[0])), np.union1d(second, slides))
-        model = ContactModel(self.bodies, self.interface, law, held=held)
+        model = ContactModel(self.bodies, self.interface, law, gap, held=held)
         area = self.interface.area.sum()
         return model.solve(loads, 0.5 * preload * len(heads) / area)
 
@@ -152,9 +152,12 @@ def _free(structure):
     return np.setdiff1d(np.arange(size + structure.bodies[1].size), np.concatenate([first, second + size]))
 
 
-def reduced(structure, law, preload, shear):
-    """Tighten the bolts to a preload [N] each, then mode and compliance; shear is K_T/K_N [1]."""
-    solution = structure.tightened(law, preload)
+def reduced(structure, law, preload, shear, gap=None):
+    """Tighten the bolts to a preload [N] each, then mode and compliance; shear is K_T/K_N [1].
+
+    gap : [m] of the unloaded faces at places x, y; None: they are plane
+    """
+    solution = structure.tightened(law, preload, gap)
     normal = solution.stiffness
     springs = np.stack([shear * normal, shear * normal, normal], axis=1)
     frequencies, shapes = spectrum(structure, springs)

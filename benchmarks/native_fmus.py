@@ -8,7 +8,8 @@ way: the bolted joint has six degrees of freedom on the smooth trajectory, and o
  "x PassThrough" is the smooth cycle over that of an FMU that passes two inputs on to two
 outputs with the same runtime. "step" is doStep with changed inputs, "no change" with the inputs of the
 step before. "derivative" is one directional derivative of all outputs along all inputs, "start" goes from
-instantiation to the end of initialization. Medians. What is promised stands below with its target.
+instantiation to the end of initialization. Medians. What is promised stands below with its target. With
+`--worst` a million random steps of each are timed one by one instead.
 """
 
 import platform
@@ -162,10 +163,12 @@ def build_host(folder: Path) -> Path:
     return file
 
 
-def native_times(host: Path, name: str, flavour: str, library: Path, token: str, outputs: int) -> Times:
+def native_times(
+    host: Path, name: str, flavour: str, library: Path, token: str, outputs: int, repeats: int = REPEATS
+) -> Times:
     """What the host in C measures."""
     inputs = b"".join(rows.tobytes() for rows in trajectories(name).values())
-    counts = (str(len(RANGES[name])), str(outputs), str(REPEATS))
+    counts = (str(len(RANGES[name])), str(outputs), str(repeats))
     done = subprocess.run(
         [host, library, flavour[-1], token, *counts], input=inputs, capture_output=True, check=True
     )
@@ -225,6 +228,17 @@ def measure(folder: Path) -> dict[tuple[str, str], Times]:
     return times
 
 
+def worst(folder: Path) -> None:
+    """Print the longest of a million random steps of each FMU beside the median."""
+    host = build_host(folder)
+    print(f"{'random steps [us]':28} {'median':>9} {'1 in 1e4':>9} {'longest':>9}")
+    for name, flavour, *rest in libraries(folder):
+        if flavour == NATIVE[-1] and name not in PASS_THROUGH:
+            found = native_times(host, name, flavour, *rest, repeats=0)
+            times = [found[key] * 1e6 for key in ("median", "rare", "longest")]
+            print(f"{name:28}" + "".join(f" {time:9.2f}" for time in times))
+
+
 def report(times: dict[tuple[str, str], Times]) -> None:
     """Print the table."""
     print(f"{'FMU':28} {'flavour':7}" + "".join(f" {heading:>13}" for heading, *_ in COLUMNS.values()))
@@ -274,6 +288,9 @@ def main() -> None:
     if (sys.platform, platform.machine()) != ("linux", "x86_64"):
         raise SystemExit(f"this is {sys.platform} on {platform.machine()}, expected linux on x86_64")
     with tempfile.TemporaryDirectory() as folder:
+        if "--worst" in sys.argv[1:]:
+            worst(Path(folder))
+            return
         build([], ["python"], None, Path(folder))
         report(measure(Path(folder)))
 

@@ -76,7 +76,7 @@ MOTIONS = {
 PLATES = 12
 """Random plates."""
 POLES = 400
-"""Turns in gross slip about poles anywhere within the contact's reach."""
+"""Turns in gross slip about poles at random nodes of the contact, and beside them."""
 
 
 def ranges(moment: float) -> dict[str, Range]:
@@ -165,9 +165,24 @@ def contacts() -> Iterator[tuple[str, PressureShape]]:
     yield "frame, 8 bolts", pressure_shape(default("bolted_joint").values.pattern)
     four = ((-0.1, 0.02), (0.0, -0.03), (0.1, 0.02), (0.1, -0.02))
     yield "plate, 4 bolts", plate(*four, size=(0.3, 0.1), hole=0.011, cone=0.03)
+    square = ((-0.08, -0.03), (0.08, -0.03), (0.08, 0.03), (-0.08, 0.03))
+    yield "plate, 4 x M12", plate(*square, size=(0.2, 0.1), hole=0.0135, cone=0.05)
     three = ((-0.03, 0.0), (0.0, 0.0), (0.03, 0.0))
     yield "plate, a row", plate(*three, size=(0.12, 0.025), hole=0.0085, cone=0.02)
     yield "field", field()
+    yield "annulus", annulus()
+
+
+def annulus(around: int = 96, across: int = 8) -> PressureShape:
+    """A field of nodes of equal area on a ring, whose pressure falls from the inner to the outer edge."""
+    inner, outer = 0.02, 0.05
+    edge = np.linspace(inner**2, outer**2, 2 * across + 1)[1::2]
+    radius, angle = np.meshgrid(np.sqrt(edge), 2.0 * np.pi * np.arange(around) / around)
+    x, y = (radius * np.cos(angle)).ravel(), (radius * np.sin(angle)).ravel()
+    share = np.full(x.size, 1.0 / x.size)
+    equal = 1.0 - 0.7 * (radius.ravel() - inner) / (outer - inner)
+    equal /= share @ equal
+    return PressureShape(share, np.column_stack([x, y]), equal, equal * y / (share @ (equal * y * y)) * outer)
 
 
 def random_plate(seed: int) -> PressureShape:
@@ -222,9 +237,13 @@ def friction(
 
 
 def pole_deviations(shape: PressureShape, patches: PressureShape) -> Array:
-    """(2) deviation of the force over the friction [1] in gross slip about POLES poles: of 95 %, largest."""
-    reach = np.max(np.abs(shape.position), axis=0)
-    poles = reach * np.random.default_rng(1).uniform(-1.0, 1.0, (POLES, 2))
+    """(2) deviation of the force over the friction [1] in gross slip about POLES poles inside the contact: of
+    95 %, largest."""
+    rng = np.random.default_rng(1)
+    poles = shape.position[rng.choice(shape.share.size, POLES, p=shape.share)]
+    poles = poles + 0.5 * np.sqrt(np.prod(np.ptp(shape.position, axis=0)) / shape.share.size) * rng.uniform(
+        -1.0, 1.0, poles.shape
+    )
 
     def force(points: PressureShape) -> Array:
         arm = points.position - poles[:, None]

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import jinja2
 
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.laws.roughness import FEW_SPOTS
 from jointfmu.parameters import ParameterFile
 
@@ -36,4 +37,4 @@ def _number(value: float | str) -> str:
 
 def law_terms(parameters: ParameterFile) -> dict[str, object]:
     """What the templates of joints ask of the law: its name, and `rough`, whether it is `roughness`."""
-    return {"law": parameters.law, "rough": parameters.law == "roughness", "few_spots": FEW_SPOTS}
+    return {"law": parameters.law, "rough": parameters.law == ROUGHNESS_LAW, "few_spots": FEW_SPOTS}

@@ -43,16 +43,21 @@ def _interrupted(error: BaseException | None) -> bool:
 def _run(args: Any, name: str) -> int:
     """Run the command; what it refuses is one line."""
     from jointfmu.commands.common import option
+    from jointfmu.progress import told
     from jointfmu.quantity.refusal import Refusal
 
     try:
-        status = int(args.run(args))
+        with told(name):
+            status = int(args.run(args))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:
         hint = [f"({option(args, error.setting)})"] if isinstance(error, Refusal) else []
         print(f"{name}:", *str(error).splitlines(), *hint, file=sys.stderr)
         return 2 if isinstance(error, ValueError) else 1
+    except OverflowError:
+        print(f"{name}: a parameter is so large that numbers of the law exceed 1.8e308", file=sys.stderr)
+        return 2
 
 
 if __name__ == "__main__":

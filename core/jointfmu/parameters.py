@@ -294,6 +294,8 @@ def dump(parameters: ParameterFile) -> str:
     lines.append(f"name = {_quoted(parameters.name)}")
     section = ""
     for name, value in values:
+        if value == ():  # not stated
+            continue
         head, _, leaf = name.rpartition(".")
         if head != section:
             lines += ["", f"[{head}]"]

@@ -1,16 +1,21 @@
-"""Long work: a progress bar on standard error, where that is a terminal, and processes that share it."""
+"""Long work: a bar or a line on standard error, where that is a terminal, and processes that share it."""
 
 import multiprocessing
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
-from threading import RLock
-from typing import TypeVar
+from threading import Event, RLock, Thread
+from typing import Any, TypeVar
 
 T = TypeVar("T")
+PATIENCE = 2.0
+"""Time [s] after which a command says what it does."""
+_now: dict[str, Any] = {"step": "", "bars": 0}
+"""What goes on, and how many bars show it."""
 
 
 def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T]:
@@ -21,7 +26,63 @@ def track(items: Iterable[T], text: str, total: int | None = None) -> Iterator[T
         yield from items
         return
     tqdm.set_lock(RLock())  # its own is shared by processes, and left behind by those that are ended
-    yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+    _now["bars"] += 1
+    try:
+        yield from tqdm(items, desc=text, total=total, file=sys.stderr, disable=None, leave=False)
+    finally:
+        _now["bars"] -= 1
+
+
+def step(text: str) -> None:
+    """What goes on from here, for the line that `told` shows."""
+    _now["step"] = text
+
+
+@contextmanager
+def told(name: str) -> Iterator[None]:
+    """Show a line with name, step and seconds while work goes on without a bar, on a terminal."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    out, done, began = sys.stdout, Event(), time.monotonic()
+    step("")
+
+    def clear() -> None:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+    def show() -> None:
+        while not done.wait(0.5):
+            passed = time.monotonic() - began
+            if passed > PATIENCE and not _now["bars"]:
+                what = ", ".join(filter(None, (_now["step"], f"{passed:.0f} s")))
+                print(f"\r{name}: {what}\x1b[K", end="", file=sys.stderr, flush=True)
+
+    shower = Thread(target=show, daemon=True)
+    shower.start()
+    sys.stdout = _Clearing(out, clear)
+    try:
+        yield
+    finally:
+        sys.stdout = out
+        done.set()
+        shower.join()
+        if time.monotonic() - began > PATIENCE:
+            clear()
+
+
+class _Clearing:
+    """A stream before whose text the line goes away."""
+
+    def __init__(self, stream: Any, clear: Callable[[], None]) -> None:
+        self._stream, self._clear = stream, clear
+
+    def write(self, text: str) -> int:
+        """Write; the line is shown again below if the work goes on."""
+        self._clear()
+        return int(self._stream.write(text))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def each(pool: Executor | None, work: Callable[..., T], text: str, *jobs: Sequence[object]) -> list[T]:

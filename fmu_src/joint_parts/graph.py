@@ -52,11 +52,18 @@ class Graph:
     def add_with_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int = 0) -> None:
         """Add a function and `name_seed`: its derivative along a seed for all x but the first `fixed`."""
         self.add(name, doc, x, y)
+        self.add_seed(name, "x", x, y, fixed)
+
+    def add_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int) -> None:
+        """Add the derivative alone."""
         moving = ca.vertcat(*x[fixed:])
         seed = symbols("seed", len(x) - fixed)
         slope = ca.densify(ca.jtimes(ca.vertcat(*map(ca.SX, y)), moving, ca.vertcat(*seed)))
         self.add(
-            f"{name}_seed", f"Derivative along a seed: x, seed -> y of {name}", [*x, *seed], list(slope.nz)
+            f"{name}_seed",
+            f"Derivative along a seed: {doc}, seed -> y of {name}",
+            [*x, *seed],
+            list(slope.nz),
         )
 
     def settle(self) -> None:

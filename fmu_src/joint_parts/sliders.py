@@ -1,6 +1,6 @@
 """The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
 
-from jointfmu.mechanics.jenkins import reaches, slide, trial
+from jointfmu.mechanics.jenkins import direction, reaches, slide, trial
 from jointfmu.quantity import where
 
 from .graph import Graph, symbols
@@ -15,7 +15,7 @@ def add_sliders(g: Graph) -> None:
     tried = trial([force], 1.0, stiffness, [shift])
     doc = "force, shift, limit, stiffness -> force if it sticks, whether that is at the limit or beyond"
     g.add("stick_line", doc, [force, shift, after, stiffness], [*tried, reaches(tried, after)])
-    slid = slide([force], tried, after, after, stiffness, compliance)
+    slid = slide([force], 1.0, stiffness, [shift], after, after, stiffness, compliance)
     results = "force, tangent along and across, loss"
     doc = (
         f"force, limit, stiffness, compliance, shift -> {results}, its derivative in the shift: the friction"
@@ -23,7 +23,7 @@ def add_sliders(g: Graph) -> None:
     heat = where(slid.slip > 0.0, slid.force[0], 0.0)
     y = [*slid.force, *slid.tangent, slid.loss, heat]
     g.add("slide_steady", doc, [force, after, stiffness, compliance, shift], y)
-    slid = slide([force], tried, before, after, stiffness, compliance)
+    slid = slide([force], 1.0, stiffness, [shift], before, after, stiffness, compliance)
     doc = f"force, limit before, stiffness, compliance, shift, limit after -> {results}"
     x, y = [force, before, stiffness, compliance, shift, after], [*slid.force, *slid.tangent, slid.loss]
     g.add_with_seed("slide_line", doc, x, y, fixed=4)
@@ -32,14 +32,20 @@ def add_sliders(g: Graph) -> None:
 
 def _plane(g: Graph) -> None:
     force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
-    before, after, stiffness, compliance = symbols("x", 4)
+    before, after, stiffness, compliance = ends = symbols("x", 4)
     tried = trial(force, keeps, carries, shift)
     x, doc = [*force, keeps, carries, *shift], "force, part kept, gain, shift"
     y = [*tried, reaches(tried, after)]
     g.add(
         "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
     )
-    slid = slide(force, tried, before, after, stiffness, compliance)
-    doc += ", limits before and after, stiffness, compliance -> force, tangent xx, xy, yy, loss, slip"
+    unit = symbols("e", 2)
+    g.add("direction", "shift -> its direction and size", shift, direction(shift))
+    known, way = [*unit, *symbols("w", 1)], "limits before and after, stiffness, compliance"
+    results = "force, tangent xx, xy, yy, loss, slip"
+    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance, known)
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add_with_seed("slide_plane", doc, [*x, before, after, stiffness, compliance], y, fixed=2)
+    g.add("slide_plane", f"{doc}, its direction and size, {way} -> {results}", [*x, *known, *ends], y)
+    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
+    y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
+    g.add_seed("slide_plane", f"{doc}, {way}", [*x, *ends], y, fixed=2)

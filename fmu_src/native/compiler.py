@@ -24,7 +24,7 @@ TARGETS = {
 
 _COMPILED = (
     "-std=c11", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-sanitize=undefined",
-    "-fvisibility=hidden", "-DNDEBUG", "-s",
+    "-fvisibility=hidden", "-DNDEBUG", "-s", "-ffunction-sections", "-fdata-sections",
 )  # fmt: skip
 _OPTIONS = (*_COMPILED, "-shared")
 _WEB = (
@@ -109,7 +109,7 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
 
     common = ("-target", TARGETS[platform], *_OPTIONS)
     if platform.endswith("-linux"):
-        return (*common, "-lm")
+        return (*common, "-Wl,--gc-sections", "-lm")
     if platform.endswith("-darwin"):
         return (*common, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
     # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,

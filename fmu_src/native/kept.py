@@ -20,6 +20,7 @@ from typing import NamedTuple
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
+from jointfmu.progress import step
 
 from ..folders import own_folder
 from ..joint_parts.data import Split
@@ -67,6 +68,7 @@ def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
 
 def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
     """The same, compiled now."""
+    step(f"compile {model.name}")
     from .generate import code
 
     with interrupt_after():

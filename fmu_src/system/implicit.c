@@ -11,9 +11,10 @@
 #include "memory.h"
 #include "system.h"
 
-#define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it */
-#define CONVERGED (1e-2 * TOLERANCE) /* Newton's last correction, likewise */
-#define ROUGHLY TOLERANCE           /* the same of a whole step, whose error is compared with 15 TOLERANCE */
+#define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it; a host may state less, down to: */
+#define LEAST_TOLERANCE 1e-10
+#define CONVERGED 1e-2 /* of the tolerance, what Newton's method may leave */
+#define ROUGHLY 1.0    /* the same of a whole step, whose error is compared with 15 tolerances */
 #define LEAST_SPEED 1e-6 /* of the nominal speed: what is slower counts as that */
 #define LEAST_STEP 1e-9 /* of the communication step */
 #define MOST_STEPS 100000 /* tried in one communication step */
@@ -157,7 +158,7 @@ static void guess(Work *w, const double *begin, const double *known, double midd
 static bool step(Instance *m, const Step *s, double *to, double *after)
 {
     Work *w = &m->joint->work;
-    const double precision = s->rough ? ROUGHLY : CONVERGED;
+    const double precision = w->tolerance * (s->rough ? ROUGHLY : CONVERGED);
     double *k = w->accelerations, last = INFINITY;
     bool factorized = false;
     for (int n = 0; n < MOST_ITERATIONS; n++) {
@@ -211,7 +212,7 @@ static double error_of(const Work *w, const double *whole, const double *halves)
         const double way = sqrt(fabs(w->tangents[i][i])) * fabs(whole[i] - halves[i]);
         most = fmax(most, (speed + way) / w->scale[i]);
     }
-    return most / (15.0 * TOLERANCE);
+    return most / (15.0 * w->tolerance);
 }
 
 /* Size of a step up to the next corner of a load. */
@@ -257,6 +258,7 @@ Status instance_advance(Instance *m, double size)
     State *now = &m->now;
     double *from = w->states[0], *whole = w->states[1], *half = w->states[2], *halves = w->states[3];
     double *memory = w->memory[0], *between = w->memory[1], *after = w->memory[2], *aside = w->memory[3];
+    w->tolerance = now->tolerance > 0.0 ? fmax(fmin(now->tolerance, TOLERANCE), LEAST_TOLERANCE) : TOLERANCE;
     w->tangents_known = false; /* nothing is kept from step to step, so that a restored state goes on alike */
     w->shrinks = 1.0;
     double done = 0.0, next = now->last_size > 0.0 ? now->last_size : size;

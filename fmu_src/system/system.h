@@ -42,6 +42,7 @@ typedef struct {
     double matrix[N_STATES][N_STATES], rest[N_STATES]; /* of Newton's method */
     unsigned short pivot[N_STATES];
     double scale[N_BODIES]; /* of the speeds */
+    double tolerance;       /* of them, relative */
     double states[4][N_STATES + N_BODIES];
     double accelerations[2 * N_BODIES], known[2 * N_BODIES]; /* at the middle and the end of a step */
     double memory[4][N_MEMORY + 1];

@@ -1,14 +1,19 @@
 """The command line as a whole: its help in groups, completion in a shell, what a build replaces."""
 
+import io
 import json
 import shutil
 import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.parser import COMMANDS, GROUPS, SHELLS, parser
+
+from jointfmu import progress
 
 
 def test_the_help_lists_every_command_once_under_its_heading():
@@ -18,6 +23,28 @@ def test_the_help_lists_every_command_once_under_its_heading():
         listed = [line.split()[0] for line in section.splitlines() if line[:3].strip() and line[2] != " "]
         assert listed == [*names], title
     assert len({*COMMANDS}) == len(COMMANDS)
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_long_work_says_what_it_does_on_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.setattr(progress, "PATIENCE", 0.2)
+    for stream, shown in ((Terminal(), True), (io.StringIO(), False)):
+        monkeypatch.setattr(sys, "stderr", stream)
+        out = sys.stdout
+        with progress.told("jointfmu new"):
+            progress.step("members by finite elements")
+            time.sleep(0.8)
+            print("done")
+        assert ("\rjointfmu new: members by finite elements, 1 s\x1b[K" in stream.getvalue()) == shown
+        assert stream.getvalue().endswith("\r\x1b[K" * shown)  # and is gone again
+        assert sys.stdout is out
+        assert capsys.readouterr().out == "done\n"
 
 
 @pytest.mark.parametrize("shell", SHELLS)

@@ -16,6 +16,7 @@ from jointfmu.contact.interface import (
     newton_step,
     stiffness_curve,
 )
+from jointfmu.parameters import default
 from jointfmu.quantity import flat_fields, flatten
 
 EPS = np.finfo(float).eps
@@ -195,12 +196,16 @@ def test_impossible_spots_are_refused(law, area):
 
 @pytest.mark.parametrize(
     ("law", "values"),
-    [(ZHAO, {"surface.D": 1.001}), (YU, {"surface1.D": 1.001, "surface2.D": 1.001})],
-    ids=["zhao", "yu"],
+    [
+        (ZHAO, {"surface.D": 1.001}),
+        (YU, {"surface1.D": 1.001, "surface2.D": 1.001}),
+        (default("bolted_joint", "roughness").values, {"h": 1e300}),
+    ],
+    ids=["zhao", "yu", "roughness"],
 )
 def test_dimensions_without_a_representable_area_are_refused(law, values):
     # the critical area ~ G^2 (E/H)^(2/(D - 1)) is some 1e1000 m2
-    with pytest.raises(ValueError, match=r"^D, G and the material give a critical spot area of [^\n]*$"):
+    with pytest.raises(ValueError, match=r"^the parameters give a reference area of [^\n]*$"):
         largest_spot(changed(law, values), 1e6)
 
 

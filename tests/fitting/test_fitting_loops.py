@@ -381,6 +381,41 @@ def test_frequency_and_damping_over_the_amplitude(tmp_path):
     assert found.second_picture is not None
 
 
+@pytest.mark.slow
+def test_a_structure_in_series_is_told_from_the_joint(tmp_path):
+    """No beam is a joint alone: stated or fitted in series the joint is found, without it it is not."""
+    true = measurements.file("bolted_joint", measurements.JOINT)
+    joint, series = loop.rest_stiffness(true.values, PRELOAD), 0.5
+    law = loop.first_loading(true.values, PRELOAD, series * joint)[0]
+    alone = loop.first_loading(true.values, PRELOAD)[0]
+    motion = np.geomspace(1e-8, 3e-6, 20)
+    both = motion + alone.friction(motion) / (series * joint)
+    np.testing.assert_allclose(law.friction(both), alone.friction(motion), rtol=1e-4)  # between its nodes
+    frequency, damping = Oscillator(law, measurements.MASS).free(np.geomspace(1e-7, 1e-5, 25))
+    noise = np.random.default_rng(1)
+    frequency, damping = (
+        x * np.exp(s * noise.standard_normal(25)) for x, s in ((frequency, 1e-4), (damping, 0.01))
+    )
+    heads = "displacement [um], frequency [Hz], damping [1]"
+    path = write(tmp_path, heads, 1e6 * np.geomspace(1e-7, 1e-5, 25), frequency, damping)
+    start = measurements.file("bolted_joint", {"surface.D": measurements.JOINT["surface.D"]})
+
+    def fitted(*more, **given):
+        return loop.fit(
+            path, start, ["mu", "surface.G", *more], preload=PRELOAD, modal_mass=measurements.MASS, **given
+        )
+
+    stated, found, rigid = fitted(series_stiffness=series * joint), fitted("series_stiffness"), fitted()
+    for one in (stated, found):
+        for name, deviation in one.solution.deviations.items():
+            want = measurements.JOINT.get(name, series * joint)
+            assert abs(np.log(one.solution.values[name] / want)) < 4.0 * deviation, name
+        assert one.facts["shear_stiffness"][0] == pytest.approx(joint, rel=0.02)
+    assert rigid.facts["shear_stiffness"][0] < 0.5 * joint
+    with pytest.raises(ValueError, match="the data show joint and structure together"):
+        fitted(series_stiffness=0.1 * joint)
+
+
 def test_runs_of_their_own_size_have_their_own_noise():
     run, motion, force = joint_loops()
     force[run == 2.0] += 1e3 * np.random.default_rng(2).standard_normal(np.count_nonzero(run == 2.0))
@@ -428,6 +463,7 @@ def test_titles_as_people_write_them(tmp_path, titles):
     assert table.columns["torque"].tolist() == [2 * a for a in table.columns["angle"]]
 
 
+@pytest.mark.slow
 def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
     """A record of an elastic bar: its loop has no area but noise."""
     monkeypatch.chdir(tmp_path)
@@ -448,18 +484,25 @@ def test_a_fit_that_says_nothing_is_not_written(tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("stuck", "deviation", "says"),
+    ("stuck", "deviation", "h", "says"),
     [
-        (("mu", "h"), 0.01, "mu, h ended on a bound, nothing else was fitted"),
-        (("mu",), 0.01, None),
-        ((), 10.0, "the data determine none of mu, h, nor a combination of them"),
+        (("mu", "h"), 0.01, 1e-6, "mu, h ended on a bound, nothing else was fitted"),
+        (("mu",), 0.01, 1e-6, None),
+        ((), 10.0, 1e-6, "the data determine none of mu, h, nor a combination of them"),
+        (
+            (),
+            0.01,
+            1.41,
+            "h = 1.41e+06 um is outside (0, 100] um: no roughness is as high; what lies in series "
+            "with the joint may be missing (--series-stiffness)",
+        ),
     ],
 )
-def test_what_a_fit_does_not_say(stuck, deviation, says):
+def test_what_a_fit_does_not_say(stuck, deviation, h, says):
     """Two unknowns of which the data see a little, or nothing."""
     wanted = tuple(Unknown(name, "1", 0.1, 1e-3, 10.0) for name in ("mu", "h"))
     seen, nothing = np.eye(2), np.zeros(2)
-    values = {"mu": 0.1, "h": 0.1}
+    values = {"mu": 0.1, "h": h}
     solution = Solution(wanted, values, nothing, deviation, seen, deviation**2 * seen, stuck, None)
     picture = Picture(nothing, nothing, nothing, (nothing, nothing), ("", "", ""))
     assert FitResult(default("bolted_joint"), solution, {}, picture).doubt() == says

@@ -557,6 +557,8 @@ def test_no_listing_of_an_fmu_that_fails(
     assert cli.main(["prove", str(path), "--listing", str(tmp_path / "out")]) == 1
     assert "no listing is written" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+    place = path / "out"  # no folder: found before the experiments run
+    assert f"{place}: cannot be written" in refused_line(capsys, "prove", path, "--listing", place)
 
 
 def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:

@@ -122,14 +122,17 @@ def test_a_slider_moves_the_curves_and_a_refusal_is_told(shown: Browser) -> None
       control.number.value = -1;
       control.number.dispatchEvent(new Event("input"));
       await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      const stale = () => document.querySelectorAll(".stale").length, greyed = stale();
       const said = document.getElementById("said").textContent;
       lab.take(lab.set);
       lab.draw();
-      return [moved, said, document.getElementById("said").textContent];
+      return [moved, said, document.getElementById("said").textContent, greyed, stale()];
     })()"""
-    moved, said, after = shown.run(script.replace("PARAMETER", json.dumps(parameter)))
+    moved, said, after, *stale = shown.run(script.replace("PARAMETER", json.dumps(parameter)))
     assert moved
     assert re.search(rf"{re.escape(parameter)} = .* is outside ", said)
+    assert stale[0] > 0  # what was drawn before is greyed
+    assert stale[1] == 0
     assert after == ""
 
 
@@ -174,7 +177,7 @@ def test_another_input_moves_along_a_path(shown: Browser) -> None:
                 "return [lab.path.inputs.map((v) => v.name), lab.path.trace.force.length, "
                 "document.activeElement.id, document.getElementById('said').textContent] })"
             )
-            assert found[0] == way.split(" and ")
+            assert found[0] == re.findall(r"(\w+): ", way)
             assert found[1] > 100, found[3]
             assert found[2] == "moved"
 
@@ -287,3 +290,52 @@ def test_a_measured_curve_stands_beside_the_curves_that_measure_the_same(shown: 
         assert x == pytest.approx(factor * first[units.index(base)])
     assert "expected one in" in drop(shown, "loop.csv", "time [s], voltage [V]\n0, 1\n")
     assert "is no number" in drop(shown, "loop.csv", "angle [rad], torque [N.m]\n0, x\n")
+
+
+@needed
+def test_every_stop_of_every_slider_is_allowed(shown: Browser) -> None:
+    """Also where other parameters leave little room, as for the deformation of a harmonic drive."""
+    script = """laboratory.then((lab) => {
+      for (const { show } of lab.fits()) show();
+      const stops = (v) => [0, 200, 400, 600, 800, 1000].map((t) => onScale(v, t));
+      const takes = (name, x) => lab.joint.begin(new Map(lab.values).set(name, x));
+      const ranged = Object.entries(lab.controls).filter(([, control]) => control.range);
+      return [
+        ranged.filter(([name, { v }]) => !stops(v).every((x) => takes(name, x))).map(([name]) => name),
+        ranged.filter(([name, { full }]) => !stops(full).every((x) => takes(name, x))).length,
+      ];
+    })"""
+    narrowed = 0
+    for name in MODELS:
+        choose(shown, name)
+        refused, less = shown.run(script)
+        assert refused == [], name
+        narrowed += less
+    assert narrowed > len(MODELS)  # sliders over the whole span would be refused
+
+
+@needed
+def test_the_address_keeps_what_is_set_and_leads_back(shown: Browser) -> None:
+    (first, model), *_, (last, _) = MODELS.items()
+    parameter = JOINTS[model.joint].varied
+    choose(shown, first)
+    state = f"laboratory.then((lab) => [lab.about.name, lab.values.get({json.dumps(parameter)}), lab.end])"
+    where = shown.run(f"""laboratory.then((lab) => {{
+      lab.others[0].moved(1.25 * lab.end);
+      lab.controls[{json.dumps(parameter)}].moved(1.01 * lab.values.get({json.dumps(parameter)}));
+      lab.keep();
+      return location.href;
+    }})""")
+    before = shown.run(state)
+    shown.run(f"laboratory.then((lab) => lab.leave({json.dumps(last)}, 0))")
+    assert shown.run(state)[0] == last
+    shown.run(
+        "new Promise((done) => { addEventListener('popstate', () => setTimeout(done, 500)); "
+        "history.back(); }).then(() => true)"
+    )
+    assert shown.run(state) == before
+    shown.call("Page.navigate", url="about:blank")
+    shown.call("Page.navigate", url=where)
+    while not shown.run("document.readyState === 'complete' && typeof laboratory !== 'undefined'"):
+        pass
+    assert shown.run(state) == before

@@ -12,7 +12,9 @@ from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
+from jointfmu.joints import KINDS
 from jointfmu.parameters import dump, load
+from jointfmu.progress import step
 
 from ..drawing.reading import number
 from ..fitting.procedure import FitOption, Procedure, procedures
@@ -72,6 +74,7 @@ def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
     procedure = choices[joint]
     start = load(args.params, joint) if args.params else None
     data = (args.file,) if procedure.file else ()
+    step(f"fit of the {KINDS[joint].title}")
     return _finish(args, procedure.run(*data, start, args.free, **_options(procedure, args)))
 
 

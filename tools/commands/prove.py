@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command
+from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.proof import listing, report
@@ -44,6 +45,8 @@ def add(commands: Commands) -> None:
 def _prove(args: argparse.Namespace) -> int:
     if args.listing and args.against:
         raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
+    if args.listing:
+        check_folder(args.listing)
     proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
     folders = listing.write(proof, args.listing) if args.listing and proof.passed else []
     if args.json:

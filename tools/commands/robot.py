@@ -9,6 +9,7 @@ from typing import Any
 from jointfmu import plots
 from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files.writing import check_folder, write_text
+from jointfmu.parameters import dump
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -38,6 +39,14 @@ def add(commands: Commands) -> None:
         help="angles [rad] of the pose, of joints at zero or as in the first keyframe (for the payload: the "
         "pose of the grid at which the tip sinks most)",
     )
+    sub.add_argument(
+        "--plugin",
+        action="store_true",
+        help="the robot with MuJoCo's plugins of the drives too, compiled here",
+    )
+    sub.add_argument(
+        "--fmu", action="store_true", help="one FMU of the axes at the pose too, and the system's file of it"
+    )
     sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
 
 
@@ -59,7 +68,8 @@ def run(args: argparse.Namespace) -> int:
     from ..robots.transmission import transmission
 
     spec = elastic.read(args.robot)
-    axes = elastic.axes(spec, {joint: transmission(load(name).file) for joint, name in names.items()})
+    files = {joint: load(name).file for joint, name in names.items()}
+    axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
     model = spec.compile()
     pose, tip = elastic.posed(model, angles), elastic.body(model, args.tip, axes)
     made = elastic.with_drives(spec, axes)
@@ -72,8 +82,16 @@ def run(args: argparse.Namespace) -> int:
     if not angles:
         pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
+    more = []
+    try:
+        if args.plugin:
+            more += _plugged(args, spec, axes, files)
+        if args.fmu:
+            more += _system(args, model, axes, files, pose, tip)
+    except ImportError as error:
+        raise without_package(error, "compile", "mujoco") from None
     facts = {
-        "written": [str(path) for path in (written, *pictures)],
+        "written": [str(path) for path in (written, *pictures, *more)],
         "payload": args.payload,
         "tip": model.body(tip).name,
         "pose": {axis.joint: float(pose[model.joint(axis.joint).qposadr[0]]) for axis in axes},
@@ -84,6 +102,33 @@ def run(args: argparse.Namespace) -> int:
     }
     print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
     return 0
+
+
+def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:
+    """The robot with plugins, and these."""
+    from ..robots import elastic, plugged
+
+    elastic.keep_folders(spec, args.robot)
+    written = args.out / f"{args.robot.stem}_plugin.xml"
+    write_text(written, plugged.text(spec, axes, files))
+    return [written, *plugged.plugins(files, args.out).values()]
+
+
+def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int) -> list[Path]:
+    """The axes' file, those of its drives, and its FMUs."""
+    from jointfmu_fmu_src.system.fmu import build_system
+
+    from ..robots import axes_system
+    from ..robots.plugged import identifier
+    from ..systems.assembly import assembly
+    from ..systems.system import read
+
+    written = args.out / f"{identifier(args.robot.stem)}_axes.toml"
+    given = {identifier(file.name): dump(file) for file in files.values()}
+    for name, text in given.items():
+        write_text(args.out / f"{name}.toml", text)
+    write_text(written, axes_system.text(args.robot.stem, model, axes, files, pose, args.payload, tip))
+    return [written, *build_system(assembly(read(written)), args.out)]
 
 
 def _lines(facts: dict[str, Any]) -> Sequence[str]:

@@ -9,6 +9,7 @@ from jointfmu.files.columns import Column, rows, text
 
 from .placing import Placing, header
 from .springs import Springs
+from .tables import LoadTable
 from .units import Units
 
 Array = NDArray[np.float64]
@@ -45,6 +46,12 @@ def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str
 def table_csv(table: Array, heads: Heads, units: Units, about: Sequence[str]) -> str:
     """A table (n, columns) of SI values."""
     return _csv(list(table.T), heads, units, about)
+
+
+def contact_csv(table: LoadTable, units: Units, about: Sequence[str]) -> str:
+    """Overclosure, pressure and stiffness per area."""
+    heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
+    return table_csv(table.rows, heads, units, about)
 
 
 def _csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:

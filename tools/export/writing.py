@@ -1,6 +1,8 @@
 """One file of each kind: the numbers of a joint, its comment, its text."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
@@ -9,6 +11,7 @@ from . import ansys, columns, keywords, tables
 from .exports import LoadCurve, required
 from .mesh import Mesh
 from .placing import Placing
+from .springs import Springs
 from .units import Units
 
 
@@ -19,6 +22,28 @@ class Written:
     text: str
     facts: dict[str, object]
     warnings: tuple[str, ...] = ()
+
+
+_SPRINGS: dict[str, tuple[Callable[[Springs, Placing, list[str]], str], tuple[str, ...]]] = {
+    "ansys": (ansys.springs_text, ("MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping",)),
+    "calculix": (
+        partial(keywords.springs_text, dashpots=False),
+        ("no dashpots: CalculiX has none along an axis between coincident nodes",),
+    ),
+    "abaqus": (partial(keywords.springs_text, dashpots=True), ()),
+    "csv": (columns.springs_csv, ()),
+}
+"""{format: what writes springs, and lines about them}."""
+_FAR = f"the last row is {keywords.FAR:g} m further on the last tangent"
+_CONTACTS: dict[str, tuple[Callable[[tables.LoadTable, Units, list[str]], str], tuple[str, ...]]] = {
+    "calculix": (
+        partial(keywords.contact_text, most=keywords.CALCULIX_ROWS),
+        (_FAR, "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table"),
+    ),
+    "abaqus": (keywords.contact_text, (_FAR,)),
+    "csv": (columns.contact_csv, ()),
+}
+"""{format: what writes a contact, and lines about it}."""
 
 
 def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, placing: Placing) -> Written:
@@ -42,16 +67,9 @@ def springs(form: str, file: ParameterFile, state: object, mesh: Mesh | None, pl
         f"stiffness multiplied by {field.correction:.9g} to add up to the joint's",
         f"the joint's normal is the model's {placing.normal}",
     ]
-    if form == "ansys":
-        text = ansys.springs_text(field, placing, [*about, "MATRIX27, KEYOPT(3) = 4 stiffness, 5 damping"])
-    elif form == "csv":
-        text = columns.springs_csv(field, placing, about)
-    else:
-        if form == "calculix":
-            about.append("no dashpots: CalculiX has none along an axis between coincident nodes")
-        text = keywords.springs_text(field, placing, about, dashpots=form == "abaqus")
+    write, notes = _SPRINGS[form]
     facts = {"pairs": len(field.nodes), "open": field.opened, "correction": field.correction, **field.sums}
-    return Written(text, facts)
+    return Written(write(field, placing, [*about, *notes]), facts)
 
 
 def contact(form: str, file: ParameterFile, units: Units, error: float) -> Written:
@@ -70,19 +88,8 @@ def contact(form: str, file: ParameterFile, units: Units, error: float) -> Writt
         f"from {curve.closed:.4g} Pa (below, one line leads to first touch) to {curve.end[1]:.4g} Pa",
         *more,
     ]
-    if form == "csv":
-        heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
-        text = columns.table_csv(table.rows, heads, units, about)
-    else:
-        about.append(f"the last row is {keywords.FAR:g} m further on the last tangent")
-        most = None
-        if form == "calculix":
-            most = keywords.CALCULIX_ROWS
-            about.append(
-                "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table"
-            )
-        text = keywords.contact_text(table, units, about, most)
-    return Written(text, _facts(table))
+    write, notes = _CONTACTS[form]
+    return Written(write(table, units, [*about, *notes]), _facts(table))
 
 
 def curve(form: str, file: ParameterFile, state: object, units: Units, error: float) -> Written:

@@ -34,7 +34,8 @@ def load(path: str | Path) -> Assembly:
     path = Path(path)
     document = read_document(path, "an assembly")
     if document.get("assembly") != "bolted":
-        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'")
+        own = f"; it is of a {document['joint']}" if "joint" in document else ""
+        raise ValueError(f"{path}: assembly = {document.get('assembly')!r}, allowed is 'bolted'{own}")
     if unknown := sorted(set(document) - {"schema", "assembly", "name", *SECTIONS}):
         raise ValueError(f"{path}: unknown entry {unknown[0]!r}, allowed are name, {', '.join(SECTIONS)}")
     parts = {name: _part(path, document, name) for name in SECTIONS}

@@ -12,6 +12,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from jointfmu.joints.bolted_joint.compliances import Compliances
+
 from .bolted_contact import elastic_body, head_loads
 from .contact import Interface, trace
 from .elasticity import ElasticBody
@@ -23,8 +25,6 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 AXES = (0, 1, 2)
-DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
-"""Motions of side 2 against side 1: along the axes, and small turns about them through the joint's centre."""
 SLACK = 1e-6
 """Distance from a face over the body's size [1] at which a node lies on it."""
 
@@ -56,27 +56,6 @@ ATTACHED: Mapping[str, Callable[[ElasticBody, int], NDArray[np.bool_]]] = {
     "heads": _heads,
 }
 """Nodes that move as one: of the outer face, of the edge (side 1 at -x, side 2 at +x), or under the heads."""
-
-
-@dataclass(frozen=True)
-class Compliance:
-    """Compliance of a joint under a unit force along, or moment about, an axis, by what stretches.
-
-    interface, members, bolts : [m/N, rad/(N.m)] twice the energy stored in them; their sum is the whole
-    rigid     : of the interface alone between rigid sides, without bolts
-    bolt_force : (bolts) [N per N, N per N.m] what each bolt gets of it
-    """
-
-    interface: float
-    members: float
-    bolts: float
-    rigid: float
-    bolt_force: Array
-
-    @property
-    def whole(self) -> float:
-        """Of the joint."""
-        return self.interface + self.members + self.bolts
 
 
 @dataclass(frozen=True)
@@ -116,8 +95,8 @@ class WholeJoint:
             [s * trace(b, self.interface, axis) for s, b in zip((-1.0, 1.0), self.bodies, strict=True)]
         ).tocsr()
 
-    def compliances(self, springs: Array, bolt: float) -> dict[str, Compliance]:
-        """Of the whole joint in its DIRECTIONS, springs (points, 3) [N/m3] of the interface along x, y, z,
+    def compliances(self, springs: Array, bolt: float) -> Compliances:
+        """Of the whole joint; springs (points, 3) [N/m3] of the interface along x, y, z,
         bolt [N/m] the stiffness of each.
 
         Raises RuntimeError if a body can move freely.
@@ -167,17 +146,12 @@ class Linear:
     moved: Array
     rigid: Array
 
-    def compliances(self) -> dict[str, Compliance]:
-        """In all DIRECTIONS."""
-        forces = self.moved.T @ ((self.bodies + self.contact + self.shanks) @ self.moved)
+    def compliances(self) -> Compliances:
+        """Of the joint about its centre."""
+        parts = (self.contact, self.bodies, self.shanks)
+        forces = self.moved.T @ (sum(parts) @ self.moved)
         shapes = self.moved @ np.linalg.inv(forces)
         alone = np.linalg.inv(self.rigid.T @ (self.contact @ self.rigid))
-        result = {}
-        for i, name in enumerate(DIRECTIONS):
-            u = shapes[:, i]
-            inside, members, bolts = (
-                float(u @ (part @ u)) for part in (self.contact, self.bodies, self.shanks)
-            )
-            force = self.bolt * (self.joint.stretch.T @ u)
-            result[name] = Compliance(inside, members, bolts, float(alone[i, i]), force)
-        return result
+        stored = np.stack([np.sum(shapes * (part @ shapes), axis=0) for part in parts])
+        bolts = np.diag(self.rigid.T @ (self.shanks @ self.rigid))
+        return Compliances(stored, np.diag(alone), bolts, self.bolt * (self.joint.stretch.T @ shapes))

@@ -4,7 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PressureShape, growing, means
+from jointfmu.mechanics.footprint.friction import friction_patches
+from jointfmu.mechanics.footprint.shape import (
+    BOLT_MEANS,
+    PATCH,
+    PATCHES,
+    PressureShape,
+    as_lists,
+    growing,
+    means,
+)
 from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import build
 from jointfmu.quantity.refusal import Refusal
@@ -56,15 +65,9 @@ def with_field(
         raise ValueError(f"origin = {origin!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
-    points = reduction.shape
-    lists = {
-        "share": points.share,
-        "x": points.position[:, 0],
-        "y": points.position[:, 1],
-        "equal": points.equal,
-        "tilt": points.tilt,
-    }
-    given: dict[str, object] = {f"field.{name}": tuple(value.tolist()) for name, value in lists.items()}
+    patches = friction_patches(shape, PATCHES, reduction.shape)
+    lists = as_lists(reduction.shape) | as_lists(patches, PATCH)
+    given: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     given["A_0"] = float(np.sum(field.area))
     if bolts is not None:
         places = means(bolts - field.centroid)

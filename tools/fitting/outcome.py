@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.contact.roughness import ROUGHEST
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Interval, flat_fields
@@ -16,6 +17,9 @@ from .least_squares import Array, Solution, Unknown
 
 WORST_AREA = 2.0
 """Factor between measured and fitted area of the widest loop beyond which a law is none of these data."""
+
+HEIGHT = "h"
+"""Rms height [m] of laws that have one."""
 
 LEAST_GAIN = 0.95
 """Residual of a held-out part over that of a constant [1] from which on a fit says nothing."""
@@ -85,6 +89,11 @@ class FitResult:
         names = [u.name for u in self.solution.unknowns]
         if names and {*names} == {*self.solution.at_bound}:
             return f"{', '.join(names)} ended on a bound, nothing else was fitted"
+        if (height := self.solution.values.get(HEIGHT, 0.0)) > ROUGHEST:
+            return (
+                f"{HEIGHT} = {1e6 * height:.3g} um is outside (0, {1e6 * ROUGHEST:g}] um: no roughness is as "
+                "high; what lies in series with the joint may be missing (--series-stiffness)"
+            )
         loose = undetermined(self.solution)
         if names and len(loose) == len(names) and not any(c.determined for c in combinations(self.solution)):
             return f"the data determine none of {', '.join(names)}, nor a combination of them"

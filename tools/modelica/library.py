@@ -38,6 +38,8 @@ _FUNCTIONS = (
     "bend",
     "linear",
     "segment",
+    "limited",
+    "frictionLimit",
     "smoothStep",
     "loadDerivative",
     "stiffnessDerivative",

@@ -19,6 +19,8 @@ _Static_assert(N_INPUTS > W2 && N_OUTPUTS >= 2 && !MOVES, "a joint between two f
 typedef struct {
     Instance *instance;
     int joints[2];
+    bool known;              /* the instance stands where it was evaluated last, with this path before it: */
+    mjtNum state[PATH + 1];  /* one more, for C */
     char why[sizeof((Text *)0)->line]; /* of the last refusal */
 } Coupling;
 
@@ -150,19 +152,26 @@ static void write_path(const Instance *m, mjtNum *state)
 #endif
 
 /* Evaluate at the present angles and speeds, on the path of the state; if `accept`, the path goes on from them.
- * The first evaluation after a reset begins the path, as an FMU's initialization does. */
+ * The first evaluation after a reset begins the path, as an FMU's initialization does. What was evaluated last, at
+ * the end of a step and at the begin of the next one, is not evaluated again. */
 static const double *evaluate(const mjModel *m, mjData *d, int instance, bool accept)
 {
     Coupling *c = (Coupling *)d->plugin_data[instance];
     Instance *fmu = c->instance;
-    double *inputs = fmu->now.values + FIRST_INPUT;
+    mjtNum *state = PATH ? d->plugin_state + m->plugin_stateadr[instance] : c->state;
+    double inputs[4];
     for (int i = 0; i < 2; i++) {
         inputs[2 * i] = d->qpos[m->jnt_qposadr[c->joints[i]]];
         inputs[2 * i + 1] = d->qvel[m->jnt_dofadr[c->joints[i]]];
     }
+    const bool same = c->known && !memcmp(inputs, fmu->now.values + FIRST_INPUT, sizeof inputs) &&
+                      !memcmp(c->state, state, PATH * sizeof *state);
+    if (same && !accept)
+        return fmu->now.values + FIRST_OUTPUT;
+    c->known = false;
+    memcpy(fmu->now.values + FIRST_INPUT, inputs, sizeof inputs);
     fmu->dirty = true;
 #if N_MEMORY
-    mjtNum *state = d->plugin_state + m->plugin_stateadr[instance];
     read_path(fmu, state);
     accept |= !fmu->now.path.accepted;
 #endif
@@ -172,6 +181,8 @@ static const double *evaluate(const mjModel *m, mjData *d, int instance, bool ac
     if (accept)
         write_path(fmu, state);
 #endif
+    memmove(c->state, state, PATH * sizeof *state);
+    c->known = true;
     return fmu->now.values + FIRST_OUTPUT;
 }
 

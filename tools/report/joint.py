@@ -15,6 +15,7 @@ from jointfmu.fmi.loops import HysteresisLoops
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
+from jointfmu.progress import step
 from jointfmu.quantity.units import factor
 
 from ..joint_parts import part
@@ -24,6 +25,7 @@ from .beside import Beside
 from .course import Course
 from .figure import Figure, Panel, Series
 from .looks import script, style
+from .opening import opening
 
 MEANT = {
     "published": "printed in the paper",
@@ -66,9 +68,11 @@ def write_joint_report(path: Path, file: ParameterFile, fmu: str | None = None) 
 
 
 def _page(model: Model, file: ParameterFile) -> str:
+    step("curves over the load")
     course = Course(model, file)
     here, rows = Path(__file__).parent, _rows(file)
     own = part(KINDS[model.joint], "report")
+    step("loops")
     loops = course.loops() if model.loop else None
     figures = [curves(course), *([looped(course, loops)] if loops else [])]
     if own and model.name in own.FIGURES:
@@ -81,6 +85,7 @@ def _page(model: Model, file: ParameterFile) -> str:
         file=file,
         version=__version__,
         figures=[(figure, as_json(figure.panels)) for figure in figures],
+        opening=opening(course, loops, stated(file)),
         beside=_beside_rows(own.BESIDE[model.name](model, file)) if own and model.name in own.BESIDE else [],
         drawings=drawings(model, course.spring),
         rows=rows,

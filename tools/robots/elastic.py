@@ -103,17 +103,23 @@ def mass_matrix(model: Any, pose: Array) -> Array:
     return np.array(columns)
 
 
-def with_drives(spec: Any, chosen: list[ElasticAxis]) -> Any:
+def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> Any:
     """A copy of the robot with motors, drives as `mjcf` writes them, and the actuators at the motors.
 
     Keyframes are left out, whose positions are of fewer joints.
+
+    springs : False leaves out the drives, and the friction of their motors
     """
     made = spec.copy()
     model = spec.compile()
     for key in [*made.keys]:
         made.delete(key)
     for axis in chosen:
-        _add_motor(made, model, axis)
+        hinge = _add_motor(made, model, axis)
+        if not springs:
+            continue
+        hinge.frictionloss = axis.drive.dry
+        hinge.damping = [axis.drive.viscous, 0.0, 0.0]
         for name, stiffness, damping, limit in _springs(axis):
             tendon = made.add_tendon(name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0])
             tendon.springyield = limit
@@ -131,11 +137,11 @@ def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float],
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
 
 
-def _add_motor(spec: Any, model: Any, axis: ElasticAxis) -> None:
-    """The rotor beside the link, about a parallel axis, and the joint's actuators at it."""
+def _add_motor(spec: Any, model: Any, axis: ElasticAxis) -> Any:
+    """The rotor's hinge beside the link, about a parallel axis, and the joint's actuators at it."""
     import mujoco
 
-    joint, drive, ratio = spec.joint(axis.joint), axis.drive, axis.drive.ratio
+    joint, ratio = spec.joint(axis.joint), axis.drive.ratio
     number = model.joint(axis.joint).id
     body = model.jnt_bodyid[number]
     direction = np.zeros(3)
@@ -145,13 +151,12 @@ def _add_motor(spec: Any, model: Any, axis: ElasticAxis) -> None:
     motor.ipos, motor.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     hinge = motor.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_HINGE, axis=direction)
     hinge.armature = axis.rotor / ratio**2
-    hinge.frictionloss = drive.dry
-    hinge.damping = [drive.viscous, 0.0, 0.0]
     joint.armature = 0.0
     for actuator in spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
             actuator.target = axis.joint + MOTOR
             actuator.gear = np.asarray(actuator.gear) / ratio
+    return hinge
 
 
 def posed(model: Any, angles: Mapping[str, str]) -> Array:

@@ -34,16 +34,22 @@ def torques(
     return weight[own], jacobian[:, own]
 
 
+def inertia(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
+    """Mass matrix (n, n) [kg.m2] of the links, without rotors, with a payload [kg] as a point of a body."""
+    own = dofs(model, axes)
+    _, jacobian = torques(model, axes, pose, payload, tip)
+    mass = mass_matrix(model, pose)[np.ix_(own, own)] - np.diag(model.dof_armature[own])
+    return np.asarray(mass + payload * jacobian.T @ jacobian)
+
+
 def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int) -> Array:
     """Natural frequencies (n) [Hz], ascending, about a pose under weight: motors and other joints held.
 
     (K - omega^2 M) x = 0 with the drives' tangents K and the links' masses M, without rotors; the payload
     is a point. What weight adds to K as the links turn is left out.
     """
-    load, jacobian = torques(model, axes, pose, payload, tip)
-    own = dofs(model, axes)
-    mass = mass_matrix(model, pose)[np.ix_(own, own)] - np.diag(model.dof_armature[own])
-    mass += payload * jacobian.T @ jacobian
+    load, _ = torques(model, axes, pose, payload, tip)
+    mass = inertia(model, axes, pose, payload, tip)
     scale = 1.0 / np.sqrt([axis.stiffness(t) for axis, t in zip(axes, load.tolist(), strict=True)])
     squares = np.linalg.eigvalsh(scale[:, None] * mass * scale)
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))

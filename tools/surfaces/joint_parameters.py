@@ -3,12 +3,12 @@
 import math
 from dataclasses import replace
 
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import RoughSurface
 from jointfmu.parameters import ParameterFile
 
 from .results import Estimate, Identification, Result
-from .series import ROUGHNESS_LAW
 
 
 def changes(

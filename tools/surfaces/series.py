@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from .heights import Array
 
-ROUGHNESS_LAW = "roughness"
-"""The interface law whose parameters are the roughness itself, without D and G."""
 METHODS = ("structure", "psd")
 SIDES = ("1", "2", "both")
 """What one scan stands for: a side of the contact on a smooth other one, or both alike."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..contact import fractal
 from ..contact.interface import at_largest_spot, at_pressure
-from ..contact.laws import LAWS
+from ..contact.laws import LAWS, ROUGHNESS_LAW
 from ..contact.roughness import DECLARED, check, height
 from ..joints import KINDS
 from ..judgement import judge, known_height, law_height
@@ -46,7 +46,7 @@ def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any
     known = flatten(own)
     if other:
         known = flatten(law_of(default(file.joint, law).values)) | known | {"H": float(own.hardness)}
-    if law == "roughness":
+    if law == ROUGHNESS_LAW:
         fractal, stated = (flatten(own), known_height(file)) if other else ({}, None)
         settings = roughness_settings(fractal, stated, known["longest_wave"], settings)
     return build(LAWS[law], {k: v for k, v in known.items() if k in names} | settings)

@@ -8,7 +8,7 @@ from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
-from ..contact.laws import LAWS
+from ..contact.laws import LAWS, ROUGHNESS_LAW
 from ..contact.roughness import DECLARED
 from ..joints import KINDS, MODELS
 from ..parameters import ParameterFile, default, load
@@ -44,7 +44,7 @@ def _parameters(args: argparse.Namespace) -> int:
             raise ValueError(f"--law has no meaning for the law {name}; it is for FMUs and joints")
         values = flatten(law_parameters(name, law_file(args.params, name) if args.params else None, {}))
         fields = dict(flat_fields(LAWS[name], names=values))
-        if name == "roughness":
+        if name == ROUGHNESS_LAW:
             fields |= {stated: field for stated, field in DECLARED.items() if stated not in fields}
         head = {"name": name, "law": name}
     else:

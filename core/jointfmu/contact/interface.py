@@ -27,8 +27,8 @@ MOST_STEPS = 200
 SIDE = 1e-9
 """Where a regime ends its derivative is taken this far inside, in log-area [1]."""
 _NOT_REPRESENTABLE = (
-    "D, G and the material give a critical spot area of {} m2: "
-    "not representable; is D close to the end of its interval, or G extreme?"
+    "the parameters give a reference area of {} m2 or a load that is not representable; "
+    "is D close to the end of its interval, or another one extreme?"
 )
 _BLOCK = 16384
 

@@ -20,7 +20,11 @@ ROUND_OFF = 1e-14
 AT_LIMIT = 1e-12
 """By which a force may be below its limit and count as at it [1]."""
 NOTHING = 1e-200
-"""What divides in place of 0: square of a force, or force times force."""
+"""What divides in place of 0: square of a force or a shift, or force times force."""
+LARGEST = 1e100
+"""Of 1/limit, where there is none."""
+MOST_TURNED = 1e6
+"""Square of a trial force over that of the limit [1], from which on a force that slips is along the shift."""
 
 
 def trial(force: Vector, keeps: Number, carries: Number, shift: Vector) -> Vector:
@@ -43,8 +47,8 @@ def reaches(force: Vector, limit: Number) -> Number:
     return force[0] * force[0] + force[1] * force[1] - least * least
 
 
-_Returned = tuple[Vector, Vector, Number, Number, Number]
-"""Forces, tangent, slip; a trial force of this size, and its product with the force before."""
+_Returned = tuple[Vector, Vector, Number, Number]
+"""Forces, tangent, slip, mean of the limit meanwhile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,42 +69,83 @@ class Slid:
 
 
 def slide(
-    force: Vector, tried: Vector, before: Number, after: Number, stiffness: Number, compliance: Number
+    force: Vector,
+    keeps: Number,
+    carries: Number,
+    shift: Vector,
+    before: Number,
+    after: Number,
+    stiffness: Number,
+    compliance: Number,
+    unit: Vector | None = None,
 ) -> Slid:
-    """A slider after a straight path with a `trial` force; its limit goes from `before` to `after`.
+    """A slider after a straight path, see `trial`; its limit goes from `before` to `after`.
 
-    Beyond the limit the force returns to the friction circle, straight to its centre: exact for paths along
-    one direction, of first order for turning ones. The heat is the mean of the limit while it slips times the
-    slip, exact for a stiffness that stays: under constant load, and along one direction under any.
+    Along one direction the force returns to its limit, and the heat is the mean of the limit while it slips
+    times the slip: exact for a stiffness that stays. In a plane the force turns towards the shift while it
+    slips, tan(angle/2) between both falling as exp(-K way/limit) under constant load (Krieg and Krieg 1977):
+    met to the third order of the way, with its heat, and exactly where nothing turns.
 
     compliance : 1/stiffness, 0 without springs
+    unit       : direction and size of a shift in a plane, where they are known
     """
-    returned = _along if len(tried) == 1 else _in_a_plane
-    moved, tangent, slip, size, work = returned(force, tried, after, stiffness)
-    margin = np.maximum(before * size - work, 0.0)
-    onset = margin / np.maximum(margin + slip * size, NOTHING)
-    mean = 0.5 * (after + before + onset * (after - before))
+    tried = trial(force, keeps, carries, shift)
+    if len(tried) == 1:
+        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
+    else:
+        way = direction(shift) if unit is None else unit
+        moved, tangent, slip, mean = _in_a_plane(force, tried, carries, way, (before, after), stiffness)
     return Slid(moved, tangent, mean * (slip * compliance), slip)
 
 
-def _along(force: Vector, tried: Vector, limit: Number, stiffness: Number) -> _Returned:
+def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
     moved = np.minimum(np.maximum(tried[0], -limit), limit)
     slip = np.abs(tried[0] - moved)
     slips = slip > 0.0
-    before = where(tried[0] < 0.0, -force[0], force[0])
-    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, 1.0, before
+    margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
+    onset = margin / np.maximum(margin + slip, NOTHING)
+    mean = 0.5 * (limit + before + onset * (limit - before))
+    return [moved], [where(slips, 0.0, stiffness), stiffness], slip, mean
 
 
-def _in_a_plane(force: Vector, tried: Vector, limit: Number, stiffness: Number) -> _Returned:
-    x, y = tried
-    slips = beyond(tried, limit) > 0.0
-    square = np.maximum(np.maximum(limit * limit, x * x + y * y), NOTHING)
-    size = np.sqrt(square)
-    inverse = 1.0 / (size * square)
-    part = where(slips, limit * inverse * square, 1.0)
-    spent = where(reaches(tried, limit) > 0.0, stiffness * size * inverse, 0.0)
-    tangent = [stiffness - spent * x * x, -spent * x * y, stiffness - spent * y * y]
-    return [part * x, part * y], tangent, where(slips, size - limit, 0.0), size, force[0] * x + force[1] * y
+def direction(shift: Vector) -> Vector:
+    """Unit vector of a shift in a plane, and its size."""
+    way = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
+    return [shift[0] / way, shift[1] / way, way]
+
+
+def _in_a_plane(
+    force: Vector, tried: Vector, carries: Number, unit: Vector, limits: Vector, stiffness: Number
+) -> _Returned:
+    """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
+
+    A turn by g = K way/limit so ends within g^3 of where a slipping force does, whatever the limit does on
+    the way. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by Hermite's rule, of
+    the angle between force and shift.
+    """
+    (before, limit), (e_x, e_y, way) = limits, unit
+    square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
+    size = np.sqrt(np.maximum(np.maximum(squared, square), NOTHING))
+    slips, out = beyond(tried, limit) > 0.0, size - limit
+    margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
+    sum_ = margin + out * size
+    inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
+    per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
+    left = share * (carries * way)
+    g, beyond_it = left * per_limit, (square - squared) * per_limit * per_limit
+    more = where(slips, left * (0.25 * np.minimum(beyond_it, MOST_TURNED) - 1 / 12 * (g * g)), 0.0)
+    ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
+    size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
+    per_size = np.sqrt(size2) / size2
+    n = [per_size * q for q in ahead]
+    across = n[0] * e_y - n[1] * e_x
+    turned = left * across
+    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * per_limit / 12.0
+    spent = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
+    tangent = [stiffness - spent * n[0] * n[0], -spent * n[0] * n[1], stiffness - spent * n[1] * n[1]]
+    moved = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]
+    mean = 0.5 * (before + limit + (1.0 - share) * (limit - before))
+    return moved, tangent, where(slips, out + hermite, 0.0), mean
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,8 +185,8 @@ class Sliders:
 
     def along(self, force: Array, shift: ArrayLike, before: Array, after: Array) -> Moved:
         """After shifts (...) along a single direction with forces (..., n) and limits (..., n)."""
-        tried = trial([force], 1.0, self.stiffness, [np.asarray(shift)[..., None]])
-        slid = slide([force], tried, before, after, self.stiffness, self.compliance)
+        moved = [np.asarray(shift)[..., None]]
+        slid = slide([force], 1.0, self.stiffness, moved, before, after, self.stiffness, self.compliance)
         return Moved(np.asarray(slid.force[0]), np.sum(slid.loss, axis=-1), np.sum(slid.tangent[0], axis=-1))
 
 

@@ -11,7 +11,6 @@ sums over those of the springs that touch, so the foundation is exact in full st
 approach; they differ by the spread of the springs' limits, which the loss of a loop needs.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -21,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..quantity import Number, where
 from .curve import Curve
 from .footprint.reproducible import to_digits
-from .jenkins import Moved, Slid, Vector, compliance, slide, trial
+from .jenkins import Moved, Slid, Vector, compliance, slide
 
 Array = NDArray[np.float64]
 
@@ -31,8 +30,6 @@ derivatives at the ends (to the fourth order) and not by the difference of its l
 SHORT = 3e-2
 """Fall of the load over an amplitude, by the stiffness, over the load [1]: below it a loop is taken from the
 derivatives of the curve, as its differences cancel."""
-LOBATTO = 0.1 * np.sqrt(5.0)
-"""Distance of the two inner points of Lobatto's rule from the middle of a path [1]."""
 SPREAD = 1.0 / np.sqrt(12.0)
 """Standard deviation of evenly spread springs over the range of their heights [1]."""
 
@@ -246,8 +243,8 @@ class Foundation:
         slid, loss = on_way(_parts(force), start, end, self._way(start, end, path)), None
         if np.any(start.stiffness != end.stiffness):
             across = ~self._stays(path)
-            inner = self._between_ends(force, start, path) if np.any(across) else []
-            loss = heat(_parts(force), path.parts, start, end, slid, across, inner)
+            middle = self._halfway(force, start, path) if np.any(across) else [0.0, 0.0]
+            loss = heat(_parts(force), path.parts, start, end, slid, across, middle)
         tangent = np.stack([np.sum(t, axis=-1) for t in slid.tangent], axis=-1)
         loss = slid.loss if loss is None else loss
         return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), tangent)
@@ -263,12 +260,11 @@ class Foundation:
         rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
         return Way(path.parts, path.change, rise, small | (path.change == 0.0))
 
-    def _between_ends(self, force: Array, start: Carried, path: "_Path") -> list[Slid]:
-        """The sliders at the two inner points of Lobatto's rule."""
-        inner = [path.part(part) for part in (0.5 - LOBATTO, 0.5 + LOBATTO)]
-        ends = [self.carried(p.last[..., 0]) for p in inner]
-        ways = [self._way(start, end, p) for end, p in zip(ends, inner, strict=True)]
-        return [on_way(_parts(force), start, end, way) for end, way in zip(ends, ways, strict=True)]
+    def _halfway(self, force: Array, start: Carried, path: "_Path") -> Vector:
+        """Forces of the sliders in the middle of a path."""
+        half = path.part(0.5)
+        there = self.carried(half.last[..., 0])
+        return on_way(_parts(force), start, there, self._way(start, there, half)).force
 
     def _stays(self, path: "_Path") -> NDArray[np.bool_]:
         """Whether all, some or none of the springs of sliders (..., n) touch at both ends of a path alike."""
@@ -396,8 +392,9 @@ def of_range(
 def on_way(force: Vector, start: Carried, end: Carried, way: Way) -> Slid:
     """Sliders after a way; the loss is right where the stiffness stays, else see `heat`."""
     ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
-    tried = trial(force, *carrying(*ends, way.change, way.rise, way.small), way.shift)
-    return slide(force, tried, start.limit, end.limit, end.stiffness, compliance(end.stiffness))
+    keeps, carries = carrying(*ends, way.change, way.rise, way.small)
+    springs = end.stiffness, compliance(end.stiffness)
+    return slide(force, keeps, carries, way.shift, start.limit, end.limit, *springs)
 
 
 def heat(
@@ -407,16 +404,14 @@ def heat(
     end: Carried,
     slid: Slid,
     across: Number,
-    inner: Sequence[Slid],
+    middle: Vector,
 ) -> Number:
     """Loss [J/m2] of sliders on a way.
 
-    across : whether the springs begin or cease to touch on it; then `inner` are the sliders at the two inner
-             points of Lobatto's rule
+    across : whether the springs begin or cease to touch on it; then `middle` are the forces half way
     """
-    between = [sum(one.force[axis] for one in inner) for axis in range(2)]
     stiffness = start.stiffness, end.stiffness
-    changing = changing_loss(force, slid.force, shift, stiffness, slid.slip, across, between)
+    changing = changing_loss(force, slid.force, shift, stiffness, slid.slip, across, middle)
     return where(start.stiffness == end.stiffness, slid.loss, changing)
 
 
@@ -460,18 +455,18 @@ def changing_loss(
     stiffness: tuple[Number, Number],
     slip: Number,
     across: Number,
-    between: Vector,
+    middle: Vector,
 ) -> Number:
     """Heat [J/m2] of a slider whose stiffness changes from one to another: the work less what it stores.
 
-    The work is by Hermite's rule from the ends of the path, by Lobatto's where the springs begin or cease to
-    touch (`across`), with the sum of the forces at its two points `between`.
+    The work is by Hermite's rule from the ends of the path, by Simpson's where the springs begin or cease to
+    touch (`across`), with the force in its `middle`.
     """
     first, last = stiffness
     ends = (force[0] + moved[0]) * shift[0] + (force[1] + moved[1]) * shift[1]
-    points = between[0] * shift[0] + between[1] * shift[1]
+    half = middle[0] * shift[0] + middle[1] * shift[1]
     bent = where(slip > 0.0, 0.0, (shift[0] * shift[0] + shift[1] * shift[1]) * ((first - last) / 12.0))
-    work = where(across, ends / 12.0 + 5.0 / 12.0 * points, 0.5 * ends + bent)
+    work = where(across, ends / 6.0 + 2.0 / 3.0 * half, 0.5 * ends + bent)
     return np.maximum(work - (_elastic(moved, last) - _elastic(force, first)), 0.0)
 
 

@@ -37,10 +37,15 @@ def series(
     ge: float | None = None,
     lt: float | None = None,
     le: float | None = None,
+    optional: bool = False,
 ) -> Any:
-    """Declare a tuple of numbers [unit], every one inside an interval, see `Interval.of`."""
+    """Declare a tuple of numbers [unit], every one inside an interval, see `Interval.of`.
+
+    optional : without any it is not stated
+    """
     meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
-    return field(metadata={**meta, "calibration": False, "whole": False, "series": True})
+    default: Any = () if optional else MISSING
+    return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
 
 
 def choice(*allowed: str | bool, doc: str) -> Any:
@@ -96,6 +101,8 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
 
 def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
     """As `problem`, of the first of some numbers that is wrong."""
+    if values == () and item.default == ():
+        return None
     if not isinstance(values, list | tuple) or not values:
         return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
     number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})

@@ -61,7 +61,7 @@ bool kind_tabulate(Joint *joint, Text *why)
     kind->ratio = head[2];
     kind->area = head[3];
     kind->bolt = head[4];
-    kind->follows = false;
+    kind->begin.known = kind->end.known = false;
     if (ELASTIC && (!kind->memory || head[5] != 0.0)) {
         text_add(why, kind->memory ? "damping = true beside sides = elastic: expected false, the dashpots stand between rigid sides"
                                    : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
@@ -809,6 +809,27 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
         foundation_rates(f, &path, ends, shift, &shear);
     }
     return shear;
+}
+
+void patch_tangent(Joint *joint, int j, const double *inputs, const double *memory, double step, double *tangent)
+{
+    Kind *kind = &joint->kind;
+    double by[2][2], *const moved[2] = {kind->tried[0], kind->tried[1]};
+    if (kind->moved == RESTING) {
+        memcpy(tangent, kind->tangent[j], 3 * sizeof *tangent);
+        return;
+    }
+    for (int d = 0; d < 2; d++) {
+        PatchPath path = path_of(joint, j, inputs, memory);
+        Shear shear;
+        path.shift[d] += step;
+        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+        for (int e = 0; e < 2; e++)
+            by[d][e] = (shear.traction[e] - kind->traction[j][e]) / step;
+    }
+    tangent[0] = by[0][0];
+    tangent[1] = 0.5 * (by[0][1] + by[1][0]);
+    tangent[2] = by[1][1];
 }
 
 static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,

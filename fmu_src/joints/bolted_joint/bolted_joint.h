@@ -5,6 +5,7 @@
 
 #include "approach.h"
 #include "data.h"
+#include "dense.h"
 #include "energy.h"
 #include "friction.h"
 
@@ -13,6 +14,12 @@ enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX =
 
 /* Preload, moment, shift along the surface, and the end of the memory. */
 enum { FOLLOW_KEY = 5 + 3 + MODES + 3 * MOST_PATCHES };
+
+/* Amplitudes per motion, and what decides them. */
+typedef struct {
+    bool known;
+    double key[FOLLOW_KEY], follow[6][MODES];
+} Followed;
 
 typedef struct {
     Spots spots;
@@ -37,20 +44,24 @@ typedef struct {
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work; /* of the patch at hand */
 
-    /* Elastic sides: what modes move, at points, patches (along x, y and apart) and bolts. */
-    double bolt, opening[MOST_OPENING][MODES], patch[3][MOST_PATCH_X][MODES], stretch[MOST_STRETCH][MODES];
+    /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y and apart)
+     * and bolts. */
+    double bolt, bodies[MODES], opening[MOST_OPENING][WIDE], patch[3][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
     double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][2];
     double bent_before[MOST_PATCHES][2];
     double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][3]; /* pressures, and the tangents of a further motion */
-    bool follows; /* the values below are those of the key */
-    double key[FOLLOW_KEY], follow[6][MODES], whole[6]; /* amplitudes per motion, and the stiffness of the whole */
+    Followed begin, end; /* at the memory before the last evaluation, and after it */
+    double whole[6];     /* the stiffness of the whole after it */
     /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
     double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][2];
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
-    /* Room: derivatives by all motions, and by amplitudes with its factors; large frames need more on Windows. */
-    double slope[6 + MODES][6 + MODES], factors[MODES][MODES];
+    /* Room, as large frames need more on Windows: weighted rows, stiffness by normal motions and shear beside the
+     * modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last derivative. */
+    double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
+    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], factors[MODES][MODES], tried[2][SLIDERS];
+    double steps[NEWTON_STEPS][MODES], squares[NEWTON_STEPS];
     int pivots[MODES];
 } Kind;
 

@@ -135,22 +135,18 @@ static inline bool small_on(const Foundation *f, int i, const Point *from, const
     return change == 0.0 || (stays(i, from, at) && fabs(change) < SLIDER_SMALL * (f->height[i + 1] - f->height[i]));
 }
 
-/* The two points of Lobatto's rule on a way, looked up when they are first needed. */
+/* The middle of a way, looked up when it is first needed. */
 typedef struct {
     bool known;
-    Point at[2];
-} Inner;
+    Point at;
+} Middle;
 
-static const double lobatto[2] = {0.5 - SLIDER_LOBATTO, 0.5 + SLIDER_LOBATTO};
-
-static const Point *inner_points(const Foundation *f, const PatchPath *path, Inner *inner)
+static const Point *middle_of(const Foundation *f, const PatchPath *path, Middle *middle)
 {
-    for (int p = 0; p < 2 && !inner->known; p++) {
-        const double approach = path->from->approach + lobatto[p] * (path->to->approach - path->from->approach);
-        inner->at[p] = foundation_point(f, approach, path->to->full);
-    }
-    inner->known = true;
-    return inner->at;
+    if (!middle->known)
+        middle->at = foundation_point(f, 0.5 * (path->from->approach + path->to->approach), path->to->full);
+    middle->known = true;
+    return &middle->at;
 }
 
 static void add(const SliderSum *sum, Shear *shear)
@@ -167,8 +163,11 @@ static void move_steady(int n, const Sliders *s, const double *stick, const Patc
                         double *const moved[2], Shear *shear)
 {
     SliderSum sum;
-    const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
-                            : sliders_plane(n, s, path->shift, moved, &sum);
+    int first = n;
+    if (along)
+        first = sliders_sticking(n, s, path->shift[0], moved[0], &sum);
+    else
+        sliders_plane(n, s, path->shift, moved, &sum);
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
@@ -199,19 +198,6 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
     move_steady(2, &s, &stick, path, along, to, shear);
 }
 
-/* A range whose stiffness changes on the way, or rates of what it has at its ends and at the points between. */
-typedef struct {
-    Pair start, end, inner[2];
-} Range;
-
-static Range range_on(const Foundation *f, int i, const PatchPath *path, const Point *inner)
-{
-    Range r = {.start = pair_at(f, i, path->from), .end = pair_at(f, i, path->to)};
-    for (int p = 0; p < 2 && inner; p++)
-        r.inner[p] = pair_at(f, i, &inner[p]);
-    return r;
-}
-
 /* Arguments of `carrying`. */
 enum { X_SMALL, X_FIRST, X_SLOPE, X_LAST, X_THEN, X_CHANGE, X_RISE, N_CARRYING };
 
@@ -239,84 +225,87 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
     x[X_SMALL] = small_on(f, i, path->from, at);
 }
 
-/* Arguments of `slide_plane`, and its results. */
-enum { S_FORCE, S_KEEPS = 2, S_CARRIES, S_SHIFT, S_BEFORE = 6, S_AFTER, S_K, S_PER_K, N_SLIDE };
+/* Results of `slide_plane`. */
 enum { MOVED_FORCE, MOVED_TANGENT = 2, MOVED_LOSS = 5, MOVED_SLIP, N_MOVED };
 
-static inline void slider_on(const PatchPath *path, int k, const double gained[2], double part, const Pair *start,
-                             const Pair *end, double *x)
+/* Both sliders of a range side by side, at the end of a way and half way. */
+enum { AT_ONCE = 4 };
+typedef struct {
+    double x[AT_ONCE], y[AT_ONCE], keeps[AT_ONCE], carries[AT_ONCE], part[AT_ONCE], before[AT_ONCE], after[AT_ONCE],
+        K[AT_ONCE], per_K[AT_ONCE];
+} Sliding;
+
+static inline void slider_on(const PatchPath *path, int i, int at, const double gained[2], double part,
+                             const Pair *start, const Pair *end, Sliding *s)
 {
-    x[S_FORCE] = path->force[0][k];
-    x[S_FORCE + 1] = path->force[1][k];
-    x[S_KEEPS] = gained[0];
-    x[S_CARRIES] = gained[1];
-    x[S_SHIFT] = part * path->shift[0];
-    x[S_SHIFT + 1] = part * path->shift[1];
-    x[S_BEFORE] = start->limit[k % 2];
-    x[S_AFTER] = end->limit[k % 2];
-    x[S_K] = end->K;
-    x[S_PER_K] = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    const double per_K = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    for (int late = 0; late < 2; late++) {
+        const int k = 2 * at + late;
+        s->x[k] = path->force[0][2 * i + late];
+        s->y[k] = path->force[1][2 * i + late];
+        s->keeps[k] = gained[0];
+        s->carries[k] = gained[1];
+        s->part[k] = part;
+        s->before[k] = start->limit[late];
+        s->after[k] = end->limit[late];
+        s->K[k] = end->K;
+        s->per_K[k] = per_K;
+    }
 }
 
-/* The slider after it; most stick, which takes no root. */
-static inline void slide(const double *x, double *y)
+static inline void slide_all(int n, const double shift[2], const Sliding *restrict s, double (*restrict moved)[AT_ONCE])
 {
-    const double stick[] = {x[0], x[1], x[S_KEEPS], x[S_CARRIES], x[S_SHIFT], x[S_SHIFT + 1], x[S_AFTER]};
-    double tried[3];
-    stick_plane(stick, NULL, tried);
-    if (tried[2] > 0.0) {
+    const double u = shift[0], v = shift[1];
+    double e[3];
+    direction(shift, NULL, e);
+    const double e_x = e[0], e_y = e[1], way = e[2];
+    for (int k = 0; k < n; k++) {
+        const double part = s->part[k];
+        const double x[] = {s->x[k], s->y[k],    s->keeps[k],  s->carries[k], part * u, part * v, e_x, e_y,
+                            part * way, s->before[k], s->after[k], s->K[k],       s->per_K[k]};
+        double y[N_MOVED];
         slide_plane(x, NULL, y);
-        return;
+        for (int r = 0; r < N_MOVED; r++)
+            moved[r][k] = y[r];
     }
-    const double sticks[N_MOVED] = {tried[0], tried[1], x[S_K], 0.0, x[S_K]};
-    memcpy(y, sticks, sizeof sticks);
 }
 
 /* Arguments of `changing_loss`. */
-enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_BETWEEN, N_CHANGING = 12 };
-
-static inline void changing(const double *slider, const double *moved, const double shift[2], const Pair *start,
-                            const Pair *end, double *x)
-{
-    for (int d = 0; d < 2; d++) {
-        x[C_FORCE + d] = slider[S_FORCE + d];
-        x[C_MOVED + d] = moved[MOVED_FORCE + d];
-        x[C_SHIFT + d] = shift[d];
-    }
-    x[C_FIRST] = start->K;
-    x[C_LAST] = end->K;
-    x[C_SLIP] = moved[MOVED_SLIP];
-}
+enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_MIDDLE, N_CHANGING = 12 };
 
 /* The sliders of a range that changes. */
-static void move_range(const Foundation *f, int i, const PatchPath *path, Inner *inner, double *const moved[2],
+static void move_range(const Foundation *f, int i, const PatchPath *path, Middle *middle, double *const moved[2],
                        Shear *shear)
 {
     const bool across = !stays(i, path->from, path->to);
-    const Point *points = across ? inner_points(f, path, inner) : NULL;
-    const Range r = range_on(f, i, path, points);
-    double x[N_CARRYING], gained[3][2];
-    gain(f, i, path, &r.start, &r.end, path->to, x);
-    carrying(x, NULL, gained[2]);
-    for (int p = 0; p < 2 && across; p++) {
-        gain(f, i, path, &r.start, &r.inner[p], &points[p], x);
-        carrying(x, NULL, gained[p]);
+    const Point *half = across ? middle_of(f, path, middle) : path->to, *points[2] = {path->to, half};
+    const Pair start = pair_at(f, i, path->from), ends[2] = {pair_at(f, i, path->to), pair_at(f, i, half)};
+    const int n = across ? 2 : 1;
+    double x[N_CARRYING], gained[2], y[N_MOVED][AT_ONCE];
+    Sliding s;
+    for (int at = 0; at < n; at++) {
+        gain(f, i, path, &start, &ends[at], points[at], x);
+        carrying(x, NULL, gained);
+        slider_on(path, i, at, gained, at > 0 ? 0.5 : 1.0, &start, &ends[at], &s);
     }
-    for (int k = 2 * i; k < 2 * i + 2; k++) {
-        double slider[N_SLIDE], y[N_MOVED], there[N_MOVED], c[N_CHANGING] = {across}, loss;
-        slider_on(path, k, gained[2], 1.0, &r.start, &r.end, slider);
-        slide(slider, y);
-        changing(slider, y, path->shift, &r.start, &r.end, c);
-        for (int p = 0; p < 2 && across; p++) {
-            slider_on(path, k, gained[p], lobatto[p], &r.start, &r.inner[p], slider);
-            slide(slider, there);
-            c[C_BETWEEN] += there[0];
-            c[C_BETWEEN + 1] += there[1];
+    slide_all(2 * n, path->shift, &s, y);
+    for (int k = 0; k < 2; k++) {
+        double c[N_CHANGING] = {across}, loss;
+        for (int d = 0; d < 2; d++) {
+            c[C_FORCE + d] = path->force[d][2 * i + k];
+            c[C_MOVED + d] = moved[d][2 * i + k] = y[MOVED_FORCE + d][k];
+            c[C_SHIFT + d] = path->shift[d];
+            c[C_MIDDLE + d] = across ? y[MOVED_FORCE + d][2 + k] : 0.0;
         }
+        c[C_FIRST] = start.K;
+        c[C_LAST] = ends[0].K;
+        c[C_SLIP] = y[MOVED_SLIP][k];
         changing_loss(c, NULL, &loss);
-        moved[0][k] = y[0];
-        moved[1][k] = y[1];
-        add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, r.start.K == r.end.K ? y[MOVED_LOSS] : loss}, shear);
+        const double *xx = &y[MOVED_TANGENT][k];
+        add(&(SliderSum){{y[0][k], y[1][k]},
+                         {xx[0], xx[AT_ONCE], xx[2 * AT_ONCE]},
+                         start.K == ends[0].K ? y[MOVED_LOSS][k] : loss},
+            shear);
     }
 }
 
@@ -329,14 +318,14 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
     const bool rests = path->from->approach == path->to->approach, along = rests && path->straight;
-    Inner inner = {.known = false};
+    Middle middle = {.known = false};
     *shear = (Shear){.loss = 0.0};
     move_full(f, 2 * full, path, along, moved, work, shear);
     for (int i = full; i < touched; i++) {
         if (rests)
             move_resting(f, i, path, along, moved, shear);
         else
-            move_range(f, i, path, &inner, moved, shear);
+            move_range(f, i, path, &middle, moved, shear);
     }
 }
 
@@ -400,14 +389,14 @@ typedef struct {
     double approach, load, stiffness, slope;
 } OnCurve;
 typedef struct {
-    OnCurve at[4]; /* start, end and inner points */
+    OnCurve at[3]; /* start, end and middle */
     double shift[2];
 } RangePath;
 typedef struct {
-    double small[3], across, flags[4][2], ratio, mu, low[3], high[3], force[2][2];
+    double small[2], across, flags[3][2], ratio, mu, low[3], high[3], force[2][2];
     RangePath path, rate;
 } RangeOn;
-_Static_assert(sizeof(RangeOn) == (24 + 2 * 18) * sizeof(double), "arguments of both_on_way_seed");
+_Static_assert(sizeof(RangeOn) == (21 + 2 * 14) * sizeof(double), "arguments of both_on_way_seed");
 
 /* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
 static inline double least_limit(const PatchPath *path)
@@ -416,15 +405,15 @@ static inline double least_limit(const PatchPath *path)
 }
 
 /* Rates of the sliders of a range that is not all in contact. */
-static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *inner,
+static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *middle,
                        Shear *rate)
 {
-    const Point *from = path->from, *to = path->to, *points[] = {from, to, &inner[0], &inner[1]};
-    const double parts[] = {0.0, 1.0, lobatto[0], lobatto[1]}, change = to->approach - from->approach;
+    const Point *from = path->from, *to = path->to, *points[] = {from, to, middle};
+    const double parts[] = {0.0, 1.0, 0.5}, change = to->approach - from->approach;
     const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
     RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu * least_limit(path)};
     double y[6];
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 3; k++) {
         const Point *p = points[k];
         const double r = rates->ends[0] + parts[k] * (rates->ends[1] - rates->ends[0]);
         x.flags[k][0] = p->approach >= f->height[i];
@@ -471,14 +460,14 @@ void foundation_rates(const Foundation *f, const PatchPath *path, const double r
     const double approach = fmax(path->from->approach, path->to->approach);
     const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1]}};
     int touched = touched_on(path);
-    Inner inner = {.known = false};
+    Middle middle = {.known = false};
     const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0;
     if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
         touched++;
     *rate = (Shear){.loss = 0.0};
     full_rates(f, 2 * full, path, &moves, rate);
     if (touched > full)
-        inner_points(f, path, &inner);
+        middle_of(f, path, &middle);
     for (int i = full; i < touched; i++)
-        range_rate(f, i, path, &moves, inner.at, rate);
+        range_rate(f, i, path, &moves, &middle.at, rate);
 }

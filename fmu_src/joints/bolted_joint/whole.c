@@ -5,7 +5,7 @@
 
 #include "tabulated.h"
 
-enum { MOTIONS = 6, N_H = MOTIONS + MODES };
+enum { MOTIONS = 6 };
 
 /* Places of the motions of side 2 in the inputs: s_x, s_y, s_z, theta_x, theta_y, theta_z. */
 static inline int motion_of(int d)
@@ -13,42 +13,48 @@ static inline int motion_of(int d)
     return d < 3 ? INPUT_S_REL_X + d : INPUT_THETA_X + d - 3;
 }
 
-static inline int n_modes(void)
-{
-    return (int)data.n_modes;
-}
-
 /* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
+
+/* A row of what modes move, as numbers, and three motions beside them. */
+static void lay_row(const double *digits, double first, double second, double third, double *row)
+{
+    const double motions[LANES_OF_MODES] = {first, second, third};
+    for (int k = 0; k < (int)data.n_modes; k++)
+        row[k] = digits[k] / MODE_DIGITS;
+    memcpy(row + MODES, motions, sizeof motions);
+}
 
 void whole_begin(Kind *kind)
 {
     if (!ELASTIC)
         return;
+    for (int k = 0; k < MODES; k++)
+        kind->bodies[k] = k < (int)data.n_modes ? data.modes[k][0] : 1.0;
     for (int i = 0; i < (int)data.n_opening; i++)
-        for (int k = 0; k < n_modes(); k++)
-            kind->opening[i][k] = data.opening[i][k] / MODE_DIGITS;
-    for (int j = 0; j < (int)data.n_patch_x; j++)
-        for (int k = 0; k < n_modes(); k++) {
-            kind->patch[0][j][k] = data.patch_x[j][k] / MODE_DIGITS;
-            kind->patch[1][j][k] = data.patch_y[j][k] / MODE_DIGITS;
-            kind->patch[2][j][k] = data.patch_z[j][k] / MODE_DIGITS;
-        }
+        lay_row(data.opening[i], 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], kind->opening[i]);
+    for (int j = 0; j < (int)data.n_patch_x; j++) {
+        const double x = data.patches[j][PLACE_X], y = data.patches[j][PLACE_Y];
+        lay_row(data.patch_x[j], 1.0, 0.0, -y, kind->patch[0][j]);
+        lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
+        lay_row(data.patch_z[j], 1.0, y, -x, kind->patch[2][j]);
+    }
     for (int b = 0; b < (int)data.n_bolts; b++)
-        for (int k = 0; k < n_modes(); k++)
-            kind->stretch[b][k] = data.stretch[b][k] / MODE_DIGITS;
+        lay_row(data.stretch[b], 1.0, data.bolts[b][1], -data.bolts[b][0], kind->stretch[b]);
 }
 
+/* Sums go in lanes, which a processor adds side by side. */
 static inline double dot(const double *a, const double *b)
 {
-    double sum = 0.0;
-    for (int k = 0; k < n_modes(); k++)
-        sum += a[k] * b[k];
-    return sum;
+    double sum[LANES_OF_MODES] = {0.0};
+    for (int k = 0; k < MODES; k += LANES_OF_MODES)
+        for (int l = 0; l < LANES_OF_MODES; l++)
+            sum[l] += a[k + l] * b[k + l];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
-static inline void add_scaled(double by, const double *row, double *sum)
+static inline void add_scaled(double by, const double *restrict row, double *restrict sum)
 {
-    for (int k = 0; k < n_modes(); k++)
+    for (int k = 0; k < MODES; k++)
         sum[k] += by * row[k];
 }
 
@@ -66,66 +72,50 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
     }
 }
 
-/* Dense systems */
+static inline void scale(double by, const double *restrict row, double *restrict scaled)
+{
+    for (int k = 0; k < WIDE; k++)
+        scaled[k] = by * row[k];
+}
 
-/* Factors of `factors` in its place, with partial pivoting. */
-static void factor(Kind *kind)
+/* The stiffness by normal motions beside the modes in `by_normal`, up to a size, of points and bolts. */
+static void press_all(Kind *kind, int size)
+{
+    memset(kind->by_normal, 0, sizeof kind->by_normal);
+    for (int i = 0; i < (int)data.n_nodes; i++)
+        scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
+    dense_products((int)data.n_nodes, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->opening, size,
+                 kind->by_normal);
+    for (int b = 0; b < (int)data.n_bolts; b++)
+        scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
+    dense_products((int)data.n_bolts, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->stretch, size,
+                 kind->by_normal);
+}
+
+/* The same by shear in `by_shear`, of patches with their tangents. */
+static void shear_all(Kind *kind, int size, const double (*tangent)[3])
+{
+    const int n = (int)data.n_patches;
+    memset(kind->by_shear, 0, sizeof kind->by_shear);
+    for (int d = 0; d < 2; d++) {
+        for (int j = 0; j < n; j++) {
+            const double weight = kind->area * data.patches[j][SHARE], *t = tangent[j] + d;
+            for (int k = 0; k < WIDE; k++)
+                kind->weighted[j][k] = weight * (t[0] * kind->patch[0][j][k] + t[1] * kind->patch[1][j][k]);
+        }
+        dense_products(n, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->patch[d], size, kind->by_shear);
+    }
+}
+
+/* The derivative by the amplitudes from `by_normal` and, where it is given, `by_shear`. */
+static void by_amplitudes(Kind *kind, const double (*shear)[WIDE])
 {
     double(*a)[MODES] = kind->factors;
-    int *pivots = kind->pivots;
-    for (int c = 0; c < n_modes(); c++) {
-        int best = c;
-        for (int r = c + 1; r < n_modes(); r++)
-            best = fabs(a[r][c]) > fabs(a[best][c]) ? r : best;
-        pivots[c] = best;
-        for (int k = 0; k < n_modes() && best != c; k++) {
-            const double kept = a[c][k];
-            a[c][k] = a[best][k];
-            a[best][k] = kept;
-        }
-        for (int r = c + 1; r < n_modes(); r++) {
-            const double by = a[r][c] / a[c][c];
-            a[r][c] = by;
-            for (int k = c + 1; k < n_modes(); k++)
-                a[r][k] -= by * a[c][k];
-        }
-    }
-}
-
-static void solve(const Kind *kind, double *x)
-{
-    const double(*a)[MODES] = (const double(*)[MODES])kind->factors;
-    const int *pivots = kind->pivots;
-    for (int c = 0; c < n_modes(); c++) {
-        const double kept = x[pivots[c]];
-        x[pivots[c]] = x[c];
-        x[c] = kept;
-    }
-    for (int r = 0; r < n_modes(); r++)
-        for (int k = 0; k < r; k++)
-            x[r] -= a[r][k] * x[k];
-    for (int r = n_modes() - 1; r >= 0; r--) {
-        for (int k = r + 1; k < n_modes(); k++)
-            x[r] -= a[r][k] * x[k];
-        x[r] /= a[r][r];
-    }
-}
-
-/* Add weight times row row^T, its lower half. */
-static inline void add_square(double weight, const double *row, int n, double *h, int width)
-{
-    for (int r = 0; r < n; r++) {
-        const double by = weight * row[r];
+    for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++)
-            h[r * width + k] += by * row[k];
+            a[k][r] = a[r][k] = kind->by_normal[r][k] + (shear ? shear[r][k] : 0.0);
+        a[r][r] += kind->bodies[r];
     }
-}
-
-static void mirror(double (*a)[MODES])
-{
-    for (int r = 0; r < n_modes(); r++)
-        for (int k = 0; k < r; k++)
-            a[k][r] = a[r][k];
 }
 
 /* Equilibrium */
@@ -145,8 +135,8 @@ static double residual(const Joint *joint, const double *inputs, const double *a
 {
     const Kind *kind = &joint->kind;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
-    for (int k = 0; k < n_modes(); k++)
-        r[k] = data.modes[k][0] * amplitude[k];
+    for (int k = 0; k < MODES; k++)
+        r[k] = kind->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
         const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
         const double moved = fabs(inputs[INPUT_S_REL_X + 2] + inputs[INPUT_THETA_X] * data.nodes[i][PLACE_Y] -
@@ -171,20 +161,14 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
-/* The derivative of the residual, factored; in a further motion where the memory after it is given. */
-static void jacobian(Joint *joint, const double *inputs, const double *memory, const double *after)
+/* The derivative of the residual by what the memory says, factored; in a further motion where that after it is given. */
+static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
     double(*a)[MODES] = kind->factors;
     static const double units[3][3] = {{0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}};
-    memset(a, 0, sizeof kind->factors);
-    for (int k = 0; k < n_modes(); k++)
-        a[k][k] = data.modes[k][0];
-    for (int i = 0; i < (int)data.n_nodes; i++)
-        add_square(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], n_modes(), a[0], MODES);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        add_square(kind->bolt, kind->stretch[b], n_modes(), a[0], MODES);
-    mirror(a);
+    press_all(kind, MODES);
+    by_amplitudes(kind, NULL);
     for (int j = 0; j < (int)data.n_patches; j++) {
         const double weight = kind->area * data.patches[j][SHARE];
         double rows[2][MODES] = {{0.0}};
@@ -194,58 +178,45 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory, c
                 add_scaled(weight * slope.traction[d], kind->patch[c][j], rows[d]);
         }
         for (int d = 0; d < 2; d++)
-            for (int r = 0; r < n_modes(); r++)
+            for (int r = 0; r < MODES; r++)
                 add_scaled(kind->patch[d][j][r], rows[d], a[r]);
     }
-    factor(kind);
+    dense_factor(kind->factors, kind->pivots);
+}
+
+/* The same at the last trial less how the normal force acts on friction, by differences. */
+static void jacobian(Joint *joint, const double *inputs, const double *memory)
+{
+    Kind *kind = &joint->kind;
+    double tangent[MOST_PATCHES][3], deepest = 0.0;
+    for (int j = 0; j < (int)data.n_patches; j++)
+        deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
+    for (int j = 0; j < (int)data.n_patches; j++)
+        patch_tangent(joint, j, inputs, memory, WHOLE_DIFFERENCE * deepest, tangent[j]);
+    press_all(kind, MODES);
+    shear_all(kind, MODES, (const double(*)[3])tangent);
+    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
+    dense_factor(kind->factors, kind->pivots);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
-static void follow(Kind *kind, const double (*tangent)[3])
+static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
 {
-    double row[N_H], other[N_H], (*h)[N_H] = kind->slope, (*a)[MODES] = kind->factors;
-    memset(h, 0, sizeof kind->slope);
-    for (int i = 0; i < (int)data.n_nodes; i++) {
-        const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], 0.0};
-        memcpy(row, normal, sizeof normal);
-        memcpy(row + MOTIONS, kind->opening[i], MODES * sizeof *row);
-        add_square(kind->area * data.nodes[i][SHARE] * kind->k[i], row, MOTIONS + n_modes(), h[0], N_H);
-    }
-    for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.bolts[b][1], -data.bolts[b][0], 0.0};
-        memcpy(row, normal, sizeof normal);
-        memcpy(row + MOTIONS, kind->stretch[b], MODES * sizeof *row);
-        add_square(kind->bolt, row, MOTIONS + n_modes(), h[0], N_H);
-    }
-    for (int j = 0; j < (int)data.n_patches; j++) {
-        const double weight = kind->area * data.patches[j][SHARE], *t = tangent[j];
-        const double along[MOTIONS] = {1.0, 0.0, 0.0, 0.0, 0.0, -data.patches[j][PLACE_Y]};
-        const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
-        memcpy(row, along, sizeof along);
-        memcpy(row + MOTIONS, kind->patch[0][j], MODES * sizeof *row);
-        memcpy(other, across, sizeof across);
-        memcpy(other + MOTIONS, kind->patch[1][j], MODES * sizeof *other);
-        for (int r = 0; r < MOTIONS + n_modes(); r++) {
-            const double x = weight * (t[0] * row[r] + t[1] * other[r]), y = weight * (t[1] * row[r] + t[2] * other[r]);
-            for (int k = 0; k <= r; k++)
-                h[r][k] += x * row[k] + y * other[k];
-        }
-    }
-    for (int r = 0; r < n_modes(); r++) {
-        memcpy(a[r], h[MOTIONS + r] + MOTIONS, (size_t)(r + 1) * sizeof *a[r]);
-        a[r][r] += data.modes[r][0];
-    }
-    mirror(a);
-    factor(kind);
+    press_all(kind, WIDE);
+    shear_all(kind, WIDE, tangent);
+    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
+    dense_factor(kind->factors, kind->pivots);
     for (int d = 0; d < MOTIONS; d++) {
-        double *z = kind->follow[d];
-        for (int k = 0; k < n_modes(); k++)
-            z[k] = -h[MOTIONS + k][d];
-        solve(kind, z);
-        kind->whole[d] = h[d][d];
-        for (int k = 0; k < n_modes(); k++)
-            kind->whole[d] += h[MOTIONS + k][d] * z[k];
+        static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
+        const int at = MODES + beside[d];
+        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
+        double *z = followed->follow[d];
+        for (int k = 0; k < MODES; k++)
+            z[k] = -h[k];
+        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, z);
+        kind->whole[d] = h[at] + dot(h, z);
     }
+    followed->known = true;
 }
 
 /* What decides how the amplitudes follow: preload, moment, shift, and the end of the memory. */
@@ -280,7 +251,9 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
     double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][3];
     key_of(inputs, memory, key);
     place(inputs, memory, 0.0, first);
-    if (!kind->follows || memcmp(key, kind->key, sizeof key) != 0) {
+    if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
+        kind->begin = kind->end;
+    } else if (!kind->begin.known || memcmp(key, kind->begin.key, sizeof key) != 0) {
         deform(kind, memory + AT_AMPLITUDE);
         if (!joint_press(joint, first, why))
             return false;
@@ -291,13 +264,12 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
             tangent[j][0] = tangent[j][2] = stick;
             tangent[j][1] = 0.0;
         }
-        follow(kind, (const double(*)[3])tangent);
-        memcpy(kind->key, key, sizeof key);
-        kind->follows = true;
+        follow(kind, (const double(*)[3])tangent, &kind->begin);
+        memcpy(kind->begin.key, key, sizeof key);
     }
     memset(rate, 0, MODES * sizeof *rate);
     for (int d = 0; d < MOTIONS; d++)
-        add_scaled(inputs[motion_of(d)] - first[motion_of(d)], kind->follow[d], rate);
+        add_scaled(inputs[motion_of(d)] - first[motion_of(d)], kind->begin.follow[d], rate);
     return true;
 }
 
@@ -316,17 +288,32 @@ static bool try_at(Joint *joint, const Way *way, const double *at, const double 
 static double largest(const double *r)
 {
     double most = 0.0;
-    for (int k = 0; k < n_modes(); k++)
+    for (int k = 0; k < MODES; k++)
         most = fabs(r[k]) > most || !(r[k] == r[k]) ? fabs(r[k]) : most;
     return most;
 }
 
 typedef enum { FOUND, LOST, REFUSED } Newton;
 
-/* As `Whole._newton` of the package. */
-static Newton newton(Joint *joint, const Way *way, double part, double *amplitude, Text *why)
+/* The newest of some steps since the last derivative as Broyden's (good) update of it has it. */
+static void broyden(Kind *kind, int kept)
 {
-    const Kind *kind = &joint->kind;
+    double(*steps)[MODES] = kind->steps, *squares = kind->squares;
+    double *step = steps[kept];
+    for (int i = 0; i + 1 < kept; i++)
+        add_scaled(dot(steps[i], step) / squares[i], steps[i + 1], step);
+    if (kept > 0) {
+        const double by = 1.0 / (1.0 - dot(steps[kept - 1], step) / squares[kept - 1]);
+        for (int k = 0; k < MODES; k++)
+            step[k] *= by;
+    }
+    squares[kept] = dot(step, step);
+}
+
+/* As `Whole._newton` of the package; where nothing is found with the residual that is missed. */
+static Newton newton(Joint *joint, const Way *way, double part, double *amplitude, double *missed, Text *why)
+{
+    Kind *kind = &joint->kind;
     const double close = part == 1.0 ? 1.0 : WHOLE_ROUGH;
     double at[N_INPUTS], r[MODES], least;
     place(way->inputs, way->memory, part, at);
@@ -334,34 +321,40 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
         return REFUSED;
     least = residual(joint, at, amplitude, r);
     double before = 0.0;
-    for (int n = 0; n < NEWTON_STEPS; n++) {
+    for (int n = 0, kept = 0; n < NEWTON_STEPS; n++) {
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        double step[MODES], begin[MODES], size = 1.0;
-        if (!(left < WHOLE_CHORD * before)) /* else the last derivative is still good */
-            jacobian(joint, at, way->memory, NULL);
+        if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+            jacobian(joint, at, way->memory);
+            kept = 0;
+        }
         before = left;
-        memcpy(step, r, sizeof step);
-        solve(kind, step);
+        double begin[MODES], size = 1.0, *step = kind->steps[kept];
+        for (int k = 0; k < MODES; k++)
+            step[k] = -r[k];
+        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, step);
+        broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
-        const double falls = -dot(r, step);
+        const double falls = dot(r, step);
         for (int p = 0; p < NEWTON_PARTS; p++) {
-            for (int k = 0; k < n_modes(); k++)
-                amplitude[k] = begin[k] - size * step[k];
+            for (int k = 0; k < MODES; k++)
+                amplitude[k] = begin[k] + size * step[k];
             if (!try_at(joint, way, at, amplitude, why))
                 return REFUSED;
             least = residual(joint, at, amplitude, r);
-            const double rises = -dot(r, step);
+            const double rises = dot(r, step);
             if (!(rises > 0.5 * fabs(falls)))
                 break;
             size *= fmax(falls / (falls - rises), 0.1);
+            before = 0.0;
         }
     }
-    return largest(r) <= close * least ? FOUND : LOST;
+    *missed = largest(r);
+    return *missed <= close * least ? FOUND : LOST;
 }
 
-static void tell(const double *inputs, double done, Text *why)
+static void tell(const double *inputs, double done, double missed, Text *why)
 {
     static const int told[] = {INPUT_PRELOAD, INPUT_MOMENT};
     text_clear(why);
@@ -376,7 +369,9 @@ static void tell(const double *inputs, double done, Text *why)
     }
     text_add(why, ": the sides find no equilibrium beyond ");
     text_number(why, done, 3);
-    text_add(why, " of the way");
+    text_add(why, " of the way, the residual is ");
+    text_number(why, missed, 2);
+    text_add(why, " N");
 }
 
 bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
@@ -385,7 +380,7 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
         return false;
     Kind *kind = &joint->kind;
     const Way way = {inputs, memory, after, x};
-    double done = 0.0, step = 1.0, amplitude[MODES], rate[MODES], trial[MODES];
+    double done = 0.0, step = 1.0, missed = 0.0, amplitude[MODES], rate[MODES], trial[MODES];
     memcpy(amplitude, memory + AT_AMPLITUDE, sizeof amplitude);
     whole_deform(amplitude, kind, NULL, NULL, kind->bent_before);
     if (!predict(joint, inputs, memory, rate, why))
@@ -394,13 +389,13 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
         const double part = fmin(done + step, 1.0);
         for (int k = 0; k < MODES; k++)
             trial[k] = amplitude[k] + (part - done) * rate[k];
-        const Newton found = newton(joint, &way, part, trial, why);
+        const Newton found = newton(joint, &way, part, trial, &missed, why);
         if (found == REFUSED)
             return false;
         if (found == LOST) {
             step *= 0.5;
             if (step < WHOLE_LEAST_PART) {
-                tell(inputs, done, why);
+                tell(inputs, done, missed, why);
                 return false;
             }
             continue;
@@ -418,9 +413,8 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
     memcpy(after + AT_AMPLITUDE, trial, sizeof trial);
     memset(after + AT_TANGENT, 0, 3 * MOST_PATCHES * sizeof *after);
     memcpy(after + AT_TANGENT, kind->tangent, 3 * (size_t)data.n_patches * sizeof *after);
-    follow(kind, (const double(*)[3])(after + AT_TANGENT));
-    key_of(inputs, after, kind->key);
-    kind->follows = true;
+    follow(kind, (const double(*)[3])kind->tangent, &kind->end);
+    key_of(inputs, after, kind->end.key);
     return true;
 }
 
@@ -459,8 +453,8 @@ void whole_sums(Joint *joint, const double *inputs, double *x)
     double energy = 0.0;
     tell_whole(kind, kind->whole, kind->bolt, x);
     tell_stretch(kind, kind->amplitude, x);
-    for (int k = 0; k < n_modes(); k++)
-        energy += data.modes[k][0] * kind->amplitude[k] * kind->amplitude[k];
+    for (int k = 0; k < MODES; k++)
+        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude[k];
     for (int b = 0; b < (int)data.n_bolts; b++) {
         const double stretch = stretched(kind, b, inputs, kind->amplitude);
         energy += kind->bolt * stretch * stretch;
@@ -493,8 +487,8 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
             add_scaled(-kind->area * data.patches[j][SHARE] * kind->shears[j].traction[d], kind->patch[d][j], r);
     for (int b = 0; b < (int)data.n_bolts; b++)
         add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
-    jacobian(joint, inputs, memory, after);
-    solve(kind, r);
+    exact(joint, inputs, memory, after);
+    dense_solve((const double(*)[MODES])kind->factors, kind->pivots, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
     whole_deform(r, kind, kind->opened_rate, kind->patch_opened_rate, kind->bent_rate);
 }
@@ -506,7 +500,7 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
     const Kind *kind = &joint->kind;
     double rates[MOTIONS], energy = 0.0;
     for (int d = 0; d < MOTIONS; d++) { /* the motion with what follows is stationary: only tangents change it */
-        const double *z = kind->follow[d];
+        const double *z = kind->end.follow[d];
         double sum = 0.0;
         for (int i = 0; i < (int)data.n_nodes; i++) {
             const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], 0.0};
@@ -524,8 +518,8 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
     }
     tell_whole(kind, rates, 0.0, dx);
     tell_stretch(kind, kind->amplitude_rate, dx);
-    for (int k = 0; k < n_modes(); k++)
-        energy += data.modes[k][0] * kind->amplitude[k] * kind->amplitude_rate[k];
+    for (int k = 0; k < MODES; k++)
+        energy += kind->bodies[k] * kind->amplitude[k] * kind->amplitude_rate[k];
     for (int b = 0; b < (int)data.n_bolts; b++)
         energy += kind->bolt * stretched(kind, b, inputs, kind->amplitude) *
                   stretched(kind, b, seed, kind->amplitude_rate);

@@ -61,6 +61,7 @@ typedef struct {
     double values[N_VALUES]; /* by value reference; [0] is the time */
     double slopes[N_INPUTS]; /* derivatives of the inputs in the next step (FMI 2) */
     double start, stop;      /* times; stop is infinite where the host defines none */
+    double tolerance;        /* relative, of the host; 0: it states none */
     double last_inputs[N_INPUTS], last_rate, last_size; /* of the last step, if there are states */
     unsigned kind, mode;
     unsigned warned; /* bits of joint_outside that were reported */

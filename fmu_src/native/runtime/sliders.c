@@ -102,7 +102,7 @@ double sliders_heat(int n, const Sliders *s, double shift)
 
 /* What sliders from the first at its limit on give. */
 typedef struct {
-    double reaches[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+    double reaches[MOST_SLIDERS], loss[MOST_SLIDERS];
 } Each;
 
 static inline void stick_all(int n, const double *restrict K, const double *restrict limit,
@@ -170,6 +170,8 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 /* In a plane */
 
+enum { P_FORCE, P_TANGENT = 2, P_LOSS = 5, N_PLANE = 7 }; /* results of slide_plane */
+
 static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
                                    const double *restrict q_x, const double *restrict q_y, double u, double v,
                                    double *restrict x, double *restrict y, double *restrict reaches)
@@ -184,21 +186,42 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
     }
 }
 
-static inline void slide_plane_all(int first, int n, const double *restrict K, const double *restrict per_K,
-                                   const double *restrict before, const double *restrict after,
-                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
-                                   double *restrict x, double *restrict y, Each *restrict each)
+/* What sliders at their limits give. */
+typedef struct {
+    double x[MOST_SLIDERS], y[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
+} Slipped;
+
+/* Which they are, with another one after the last: a processor takes two at once. */
+static inline int at_limit(int n, const double *reaches, int *at)
 {
-    for (int k = first; k < n; k++) {
-        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, before[k], after[k], K[k], per_K[k]};
-        double b[7];
+    int i = 0;
+    for (int k = 0; k < n; k++) {
+        at[i] = k;
+        i += reaches[k] > 0.0;
+    }
+    at[i] = n - 1;
+    return i;
+}
+
+static inline void slide_some(int n, const int *restrict at, const double *restrict K, const double *restrict per_K,
+                              const double *restrict before, const double *restrict after, const double *restrict q_x,
+                              const double *restrict q_y, double u, double v, Slipped *restrict to)
+{
+    const double shift[2] = {u, v};
+    double e[3];
+    direction(shift, NULL, e);
+    const double e_x = e[0], e_y = e[1], way = e[2];
+    for (int i = 0; i < n; i++) {
+        const int k = at[i];
+        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, e_x, e_y, way, before[k], after[k], K[k], per_K[k]};
+        double b[N_PLANE];
         slide_plane(a, NULL, b);
-        x[k] = b[0];
-        y[k] = b[1];
-        each->xx[k] = b[2];
-        each->xy[k] = b[3];
-        each->yy[k] = b[4];
-        each->loss[k] = b[5];
+        to->x[i] = b[P_FORCE];
+        to->y[i] = b[P_FORCE + 1];
+        to->xx[i] = b[P_TANGENT] - K[k];
+        to->xy[i] = b[P_TANGENT + 1];
+        to->yy[i] = b[P_TANGENT + 2] - K[k];
+        to->loss[i] = b[P_LOSS];
     }
 }
 
@@ -216,22 +239,26 @@ static inline void add_forces(int n, const double *x, const double *y, Lanes *la
     }
 }
 
-int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
+void sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
 {
-    Each each;
+    int at[MOST_SLIDERS + 1];
+    double reaches[MOST_SLIDERS];
+    Slipped to;
     Lanes lanes = {.x = {0.0}};
-    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], each.reaches);
-    const int first = first_at_limit(each.reaches, n);
-    slide_plane_all(first, n, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1],
-                    moved[0], moved[1], &each);
+    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
+    const int slip = n > 0 ? at_limit(n, reaches, at) : 0;
+    slide_some(slip + slip % 2, at, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1], &to);
+    for (int i = 0; i < slip; i++) {
+        moved[0][at[i]] = to.x[i];
+        moved[1][at[i]] = to.y[i];
+    }
+    for (int i = 0; i < slip; i++) {
+        const int l = i % 2;
+        lanes.xx[l] += to.xx[i];
+        lanes.xy[l] += to.xy[i];
+        lanes.yy[l] += to.yy[i];
+        lanes.loss[l] += to.loss[i];
+    }
     add_forces(n, moved[0], moved[1], &lanes);
-    for (int k = first; k < n; k += 2)
-        for (int l = 0; l < 2; l++) {
-            lanes.xx[l] += each.xx[k + l];
-            lanes.xy[l] += each.xy[k + l];
-            lanes.yy[l] += each.yy[k + l];
-            lanes.loss[l] += each.loss[k + l];
-        }
     *sum = total(&lanes);
-    return first;
 }

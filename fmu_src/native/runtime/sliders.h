@@ -33,7 +33,7 @@ double sliders_heat(int n, const Sliders *s, double shift);
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
                        SliderSum *rate);
 
-/* In a plane; the tangents are those from a slider on that is returned, those before it stick. */
-int sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum);
+/* In a plane; the tangents are less those of sliders that stick. */
+void sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum);
 
 #endif

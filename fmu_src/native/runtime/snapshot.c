@@ -106,6 +106,7 @@ static void pass(Cursor *c, State *s)
         pass_doubles(c, s->last_inputs, N_INPUTS);
         pass_doubles(c, &s->last_rate, 1);
         pass_doubles(c, &s->last_size, 1);
+        pass_doubles(c, &s->tolerance, 1);
     }
     if (N_MEMORY) {
         pass_doubles(c, s->path.memory[0], N_MEMORY);

@@ -61,9 +61,9 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
         spots->most = log_load[0];
     }
     if (!good) {
-        text_add(why, "D, G and the material give a critical spot area of ");
+        text_add(why, "the parameters give a reference area of ");
         text_number(why, spots->reference, 6);
-        text_add(why, " m2: not representable; is D close to the end of its interval, or G extreme?");
+        text_add(why, " m2 or a load that is not representable; is D close to the end of its interval, or another one extreme?");
     }
     return good;
 }

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import patch_reduction
 import pytest
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli
@@ -118,6 +119,27 @@ def test_a_field_that_is_a_bit_off_is_the_same():
     for name in numbers:
         was = getattr(one, name)
         np.testing.assert_allclose(getattr(two, name), was, rtol=1e-9, atol=1e-9 * np.max(np.abs(was)))
+
+
+def test_patches_come_from_the_nodes(tmp_path):
+    """A ring under pure torsion has no lateral force, within 1e-3 of its friction, and its moment; the file
+    keeps the patches, and those that do not balance are refused."""
+    ring = patch_reduction.annulus(48, 5)
+    mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
+    contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.equal)
+    (tmp_path / "ring.toml").write_text(
+        dump(with_field(FILE, contact, PRELOAD, "a ring")[0]), encoding="utf-8"
+    )
+    joint = load(tmp_path / "ring.toml").values
+    spring = BoltedJointSpring.of(joint)
+    slides = spring.motion(PRELOAD, 0.0, (0.0, 0.0, 0.0), (0.0,) * 3, (0.0, 0.0, 1e-2))
+    friction = joint.mu * PRELOAD * joint.n_bolts
+    assert np.hypot(slides["f_x"], slides["f_y"]) < 1e-3 * friction
+    arm = (ring.share * ring.equal) @ np.hypot(*ring.position.T)
+    assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
+    share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
+    with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
+        replace(joint.pattern, patch_share=share)
 
 
 def test_few_nodes_stay_as_they_are():

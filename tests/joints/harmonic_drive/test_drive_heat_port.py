@@ -77,7 +77,7 @@ def test_all_losses_go_out_at_the_heat_port(rumoca, ratio):
     found = simulate(rumoca, text, stop, 2e-3, rtol=1e-8)
     times, warmth, lost, work, wound = once(found, "body.T", "loss", "work", "drive.phi_rel")
     stored = law.curve.energy(np.abs(wound))
-    for name, sliders in (("q_h", law.hysteresis), ("q_w", law.friction)):
+    for name, sliders in (("held_h", law.hysteresis), ("q_w", law.friction)):
         for i, K in enumerate(sliders.stiffness, 1):
             (q,) = once(found, f"drive.{name}[{i}]")[1:]
             stored = stored + q**2 / (2.0 * K)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from jointfmu import plots
 from jointfmu.commands.common import IMPLIED, Commands, Parser, command, written
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
@@ -13,7 +14,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
-from ...surfaces.series import METHODS, ROUGHNESS_LAW, SIDES
+from ...surfaces.series import METHODS, SIDES
 from . import synthesize
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from jointfmu.contact.fractal import zhao_roughness
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import height, level
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement
@@ -15,7 +16,6 @@ from ...pressure import judge_file
 from ...surfaces.heights import Areal, Heights
 from ...surfaces.joint_parameters import changes, doubt
 from ...surfaces.results import Estimate, Identification, Result
-from ...surfaces.series import ROUGHNESS_LAW
 
 UNIT_PRESSURE = 1e6
 """Pressure [Pa] at which the level of the stiffness is stated."""

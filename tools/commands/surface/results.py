@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from jointfmu.commands.common import tell
+from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
@@ -15,7 +16,6 @@ from ...surfaces.heights import Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
 from ...surfaces.results import Estimate, Identification, Result
 from ...surfaces.roughness import ScanRoughness
-from ...surfaces.series import ROUGHNESS_LAW
 from . import synthesize
 from .document import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
 

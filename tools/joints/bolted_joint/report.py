@@ -1,14 +1,15 @@
 """What the page of a user's bolted joint shows of the whole: interface, members and bolts side by side."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
-from numpy.typing import NDArray
 
+from jointfmu.joints.bolted_joint.compliances import (
+    Compliances,
+)
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import pressures, working_preload
+from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.joints.bolted_joint.outputs import bolt_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
@@ -18,52 +19,9 @@ from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
-from .new.whole import named, opening_load
 
-Array = NDArray[np.float64]
-
-DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
-"""{force along or moment about an axis: unit of its stiffness}."""
-MATTERS = 0.1
-"""Part of the whole's compliance [1] from which on the interface is worth a law of its own."""
 BEYOND = 4.0
 """Way that is drawn over that at which all is open [1]."""
-
-
-class Compliances(NamedTuple):
-    """Of the tightened joint, under a unit force along x, y, z and a unit moment about them.
-
-    parts      : (3, 6) [m/N, rad/(N.m)] twice the energy that interface, members and bolts store
-    rigid      : (6) of the interface alone between rigid sides, without bolts
-    bolt_force : (bolts, 6) [N per N, N per N.m] what each bolt gets of it
-    """
-
-    parts: Array
-    rigid: Array
-    bolt_force: Array
-
-    @property
-    def whole(self) -> Array:
-        """(6) of the joint."""
-        return np.asarray(self.parts.sum(axis=0))
-
-
-def compliances(spring: BoltedJointSpring, preload: float, moment: float = 0.0) -> Compliances:
-    """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
-    whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
-    there = spring.curve.inverse(pressures(spring.joint, spring.patches, preload, moment))
-    stick = spring.foundation().stick(there)[:, None] * np.array([1.0, 0.0, 1.0])
-    normal = spring.curve.derivatives(spring.tightened(preload, moment), 1)[1]
-    H = whole.slope(normal, stick)
-    motion = np.linalg.inv(whole.condensed(H))
-    amplitude = -np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion)
-    force = bolt * (whole.seats @ motion[2:5] + modes.stretch @ amplitude)
-    members = modes.stiffness @ amplitude**2
-    bolts = np.sum(force**2, axis=0) / bolt if bolt > 0.0 else np.zeros(6)
-    interface = np.diag(motion) - members - bolts
-    alone = H[:6, :6].copy()
-    alone[2:5, 2:5] -= bolt * whole.seats.T @ whole.seats
-    return Compliances(np.stack([interface, members, bolts]), np.diag(np.linalg.inv(alone)), force)
 
 
 def whole_joint(course: Course) -> list[Figure]:
@@ -73,9 +31,9 @@ def whole_joint(course: Course) -> list[Figure]:
         return []
     assert isinstance(spring, BoltedJointSpring)
     preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
-    found = compliances(spring, preload, moment)
+    found = spring.compliances(preload, moment)
     left = float(working_preload(joint, preload))
-    opening = opening_load(left, found.bolt_force[:, 2])
+    opening = found.opening_load(left)
     limit = joint.mu * joint.n_bolts * left
     panel = _bolt_forces(spring, preload, moment, opening * found.whole[2])
     text = _text(found, left, moment) + (
@@ -83,37 +41,34 @@ def whole_joint(course: Course) -> list[Figure]:
         f"and {_told(limit, 'N')} along x or y to slip wholly; slip begins at the edges far below, and what "
         "it loses is under Loops."
     )
-    return [Figure("The whole joint", text, [panel], table=_rows(found, spring))]
+    return [Figure("The whole joint", text, [panel], table=_rows(found))]
 
 
 def _told(value: float, unit: str) -> str:
     return " ".join(quantity(value, unit, 4))
 
 
-def _rows(found: Compliances, spring: BoltedJointSpring) -> list[tuple[str, ...]]:
+def _rows(found: Compliances) -> list[tuple[str, ...]]:
     """Stiffnesses, and parts of the compliance, by direction."""
-    seats = spring.whole.seats
-    bolts = [0.0, 0.0, *np.diag(seats.T @ seats) * spring.joint.bolt_stiffness, 0.0]
-    heads = ("whole joint", "interface alone", "bolts alone", "interface", "members", "bolts")
+    heads = ("whole joint", "interface alone", "members", "bolts alone", "interface", "members", "bolts")
     rows: list[tuple[str, ...]] = [("", *heads)]
-    for i, (name, unit) in enumerate(DIRECTIONS.items()):
-        stiffness = (1.0 / found.whole[i], 1.0 / found.rigid[i], bolts[i])
-        told = [_told(value, unit) if value > 0.0 else "none" for value in stiffness]
-        parts = (f"{part / found.whole[i]:.1%}" for part in found.parts[:, i])
-        rows.append((f"K_{named(name)}", *told, *parts))
+    for name, unit, each, shares in found.rows():
+        told = [_told(value, unit) if value > 0.0 else "none" for value in each]
+        rows.append((name, *told, *(f"{share:.1%}" for share in shares)))
     return rows
 
 
 def _text(found: Compliances, tension: float, moment: float) -> str:
-    share = found.parts[0] / found.whole
+    share = found.shares[0]
     most = float(np.max(share))
-    matters = "it has a say in the stiffness" if most >= MATTERS else "the stiffness hardly knows of it"
+    matters = "it has a say in the stiffness" if found.matters else "the stiffness hardly knows of it"
     return (
         f"Small motions of the attachments about the tightened state, {_told(tension, 'N')} in each bolt"
         + (f" with a moment of {moment:g} N m" if moment else "")
-        + ". The last three columns are parts of the compliance, by the energy stored. The interface has "
+        + ". The last three columns are parts of the compliance, by the energy stored; members are a spring "
+        "in series with the rest, interface and bolts alone are between rigid sides. The interface has "
         f"{share[2]:.1%} of it along z and at most {most:.1%} in any direction: {matters}. Of a force along "
-        f"z the bolts take {found.bolt_force[:, 2].sum():.3f} (load factor n Phi_K of VDI 2230); when the "
+        f"z the bolts take {found.load_factor:.3f} (load factor n Phi_K of VDI 2230); when the "
         "interface opens they take all, as drawn."
     )
 

@@ -16,9 +16,9 @@ class Body {
     const body = { name: this.turns ? "body inertia" : "body mass", doc: "of the body on the joint", unit: this.turns ? "kg.m2" : "kg", shown: this.turns ? "kg.m2" : "kg", factor: 1, span: this.turns ? [1e-3, 10] : [1, 1000], log: true };
     this.inertia = this.turns ? 0.1 : 60;
     this.pulled = 0.2;
-    const controls = [new Control(body, this.inertia, (x) => { if (x > 0) { this.inertia = x; lab.redraw(); } })];
+    const controls = [lab.beside(body, this.inertia, (x) => { if (x > 0) { this.inertia = x; lab.redraw(); } })];
     const half = this.input.span[1];
-    if (this.moves) controls.push(new Control({ name: "pull", doc: `${this.input.name} from which it is let go, beside the slider's`, unit: this.input.unit, shown: this.input.shown, factor: this.input.factor, span: [0.002 * half, half], log: true }, (this.pull = this.pulled * half), (x) => { this.pull = x; lab.redraw(); }));
+    if (this.moves) controls.push(lab.beside({ name: "pull", doc: `${this.input.name} from which it is let go, beside the slider's`, unit: this.input.unit, shown: this.input.shown, factor: this.input.factor, span: [0.002 * half, half], log: true }, (this.pull = this.pulled * half), (x) => { this.pull = x; lab.redraw(); }));
     place.append(element("div", { class: "row bodies" }, ...controls.map((c) => c.node)));
     const charts = element("div", { class: "charts" });
     place.append(charts);

@@ -12,16 +12,41 @@ const scaled = (v, x) => {
   return Math.round(1000 * Math.min(1, Math.max(0, t)));
 };
 
+/** The ends of the part of a slider's span, around its value, that the joint takes, all other values as they are. */
+function allowed(joint, values, v) {
+  const here = values.get(v.name), said = new Set(joint.messages);
+  const between = (a, b, t) => {
+    const x = v.log && a > 0 && b > 0 ? a * (b / a) ** t : a + t * (b - a);
+    return v.whole ? Math.round(x) : Number(x.toPrecision(6));
+  };
+  const takes = (x) => joint.begin(new Map(values).set(v.name, x));
+  const ends = v.span.map((end) => {
+    let [good, bad] = [here, NaN];
+    for (const x of [between(here, end, 0.5), between(here, end, 1)]) {
+      if (takes(x)) good = x;
+      else { bad = x; break; }
+    }
+    for (let i = 0; i < 12 && !Number.isNaN(bad); i++) {
+      const x = between(good, bad, 0.5);
+      if (takes(x)) good = x;
+      else bad = x;
+    }
+    return good;
+  });
+  joint.messages = said;
+  return ends;
+}
+
 /** A labelled slider with a number beside it; `change` gets the SI value. */
 class Control {
   constructor(v, value, change) {
     const id = `set-${v.name.replaceAll(/[. ]/g, "-")}`;
-    this.v = v;
+    [this.v, this.full, this.first, this.change] = [v, v, value, change];
     const unit = unitText(v.shown);
     this.range = element("input", { type: "range", min: 0, max: 1000, step: 1, id: `${id}-slider`, "aria-label": `${v.name}, ${v.doc}`,
-      oninput: () => this.moved(onScale(v, Number(this.range.value)), change, this.range) });
+      oninput: () => this.moved(onScale(this.v, Number(this.range.value)), this.range) });
     this.number = element("input", { type: "number", step: "any", id, "aria-describedby": `${id}-doc`,
-      oninput: () => this.number.value !== "" && this.moved(Number(this.number.value) / v.factor, change, this.number) });
+      oninput: () => this.number.value !== "" && this.moved(Number(this.number.value) / v.factor, this.number) });
     this.node = element("div", { class: "control" },
       element("label", { for: id }, element("b", {}, v.name)),
       element("span", { class: "doc", id: `${id}-doc` }, v.doc), this.range,
@@ -29,12 +54,20 @@ class Control {
     this.show(value);
   }
 
-  moved(value, change, by) {
+  moved(value, by) {
     this.show(value, by);
-    change(value);
+    this.change(value);
+  }
+
+  /** A slider that goes over a part of its span; without room it rests. */
+  fit([low, high]) {
+    this.v = { ...this.full, span: [low, high], log: this.full.log && low > 0 && high > 5 * low };
+    this.range.disabled = !(low < high);
+    this.show(this.value, this.number);
   }
 
   show(value, except) {
+    this.value = value;
     if (except !== this.number) this.number.value = entered(value * this.v.factor);
     if (except !== this.range) this.range.value = scaled(this.v, value);
     this.range.setAttribute("aria-valuetext", `${digits(value * this.v.factor)} ${unitText(this.v.shown)}`);

@@ -66,11 +66,21 @@ class Joint {
     return Array.from({ length: all.length / 4 }, (_, i) => Array.from(all.subarray(4 * i, 4 * i + 4)));
   }
 
+  /** A refusal or a warning in the units of the sliders: value and interval, which C states in SI. */
+  asShown(line) {
+    const v = this.variables.get(line.match(/^(\S+) = /)?.[1]);
+    if (!v || v.factor === 1) return line;
+    const own = (text) => (Number.isFinite(Number(text)) ? Number((text * v.factor).toPrecision(6)) : text), unit = unitText(v.shown);
+    return line
+      .replace(/^(\S+ = )([^\s:]+)(?: [^\s:]+)?(?=:| is outside)/, (_, name, value) => `${name}${own(value)} ${unit}`)
+      .replace(/ is outside ([[(])(\S+), ([^\])]+)([\])])(?: [^\s:]+)?:/, (_, left, low, high, right) => ` is outside ${left}${own(low)}, ${own(high)}${right} ${unit}:`);
+  }
+
   /** Whether a call went well; what the joint said goes to `messages`. */
   told(status) {
     const bytes = new Uint8Array(this.c.memory.buffer, this.c.lab_said());
     const text = bytes[0] ? new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0))) : "";
-    for (const line of text.split("\n")) if (line) this.messages.add(line.slice(1));
+    for (const line of text.split("\n")) if (line) this.messages.add(this.asShown(line.slice(1)));
     return status === 0;
   }
 }

@@ -11,8 +11,8 @@ class Laboratory {
     this.said = new Set();
     const models = [...new Set(known.modules.map((m) => m.name))];
     at("model").append(...models.map((name) => element("option", { value: name }, `${known.modules.find((m) => m.name === name).title}: ${name}`)));
-    at("model").onchange = () => this.choose(at("model").value, 0);
-    at("set").onchange = () => this.choose(at("model").value, Number(at("set").value));
+    at("model").onchange = () => this.leave(at("model").value, 0);
+    at("set").onchange = () => this.leave(at("model").value, Number(at("set").value));
     at("reset").onclick = () => this.take(this.set);
     at("example").onclick = () => this.change(this.about.example.values, this.about.example.doc);
     at("copy").onclick = () => this.copy();
@@ -25,6 +25,8 @@ class Laboratory {
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => { event.preventDefault(); if (event.dataTransfer.files[0]) this.read(event.dataTransfer.files[0]); });
     addEventListener("resize", () => this.redraw());
+    addEventListener("popstate", () => this.restore());
+    addEventListener("pagehide", () => this.keep());
   }
 
   /** All parameter sets of a model, with the module that runs them. */
@@ -32,17 +34,62 @@ class Laboratory {
     return this.known.modules.filter((m) => m.name === model).flatMap((about) => about.sets.map((set) => ({ about, set })));
   }
 
+  /** To another joint or set; the browser's way back leads here. */
+  async leave(model, index) {
+    this.keep();
+    history.pushState(null, "", location.hash);
+    await this.choose(model, index);
+    this.keep();
+  }
+
+  /** The address says what is set: the joint, and all that differs from the parameter set as it begins. */
+  keep() {
+    if (!this.path) return;
+    const said = new URLSearchParams({ joint: this.about.name, set: this.set.name }), first = this.start(this.set);
+    for (const [name, value] of this.values) if (value !== first.get(name)) said.set(name, value);
+    for (const { v, value, first } of this.others) if (value !== first) said.set(v.name, value);
+    if (this.path.inputs.map((v) => v.name).join() !== this.about.path.join()) said.set("path", this.path.inputs.map((v) => v.name).join());
+    if (`#${said}` !== location.hash) history.replaceState(null, "", `#${said}`);
+  }
+
+  /** What the address says; the first joint if it says nothing. */
+  async restore() {
+    const said = new URLSearchParams(location.hash.slice(1)), model = this.known.modules.find((m) => m.name === said.get("joint"))?.name ?? this.known.modules[0].name;
+    await this.choose(model, Math.max(0, this.sets(model).findIndex((s) => s.set.name === said.get("set"))));
+    const ways = said.get("path")?.split(",") ?? [];
+    if (ways.length && ways.every((name) => name in this.about.pairs)) this.follow(ways);
+    for (const [name, text] of said) {
+      const number = Number(text), other = this.others.find((control) => control.v.name === name);
+      if (this.controls[name]) this.values.set(name, text === "true" || (text !== "false" && number));
+      else if (other && Number.isFinite(number)) other.moved(number);
+    }
+    this.shown();
+  }
+
+  /** The present values, at the controls and drawn. */
+  shown() {
+    for (const name in this.controls) this.controls[name].show(this.values.get(name));
+    this.redraw();
+  }
+
+  /** A control of something that is no variable of the joint. */
+  beside(v, value, change) {
+    this.others.push(new Control(v, value, change));
+    return this.others.at(-1);
+  }
+
   async choose(model, index) {
     const sets = this.sets(model), { about, set } = sets[index];
     at("model").value = model;
-    at("set").replaceChildren(...sets.map((s, i) => element("option", { value: i }, `${s.set.name} (${s.about.law})`)));
+    at("set").replaceChildren(...sets.map((s, i) => element("option", { value: i }, s.set.name)));
     at("set").value = index;
     this.about = about;
     this.set = set;
     this.joint = await (about.running ??= Joint.of(about));
-    at("doc").textContent = `${about.doc}. Interface law ${about.law}.`;
+    at("doc").textContent = `${set.name}. ${about.doc}. Interface law ${about.law}.`;
     this.said = new Set();
     this.path = null;
+    this.others = [];
     const views = ["curves", "path", "map", "body", "turn"].map((id) => at(id));
     views.forEach((view) => view.replaceChildren());
     this.values = this.start(set);
@@ -81,25 +128,21 @@ class Laboratory {
   rampControl(about) {
     const v = about.variables.find((each) => each.name === about.ramp.input);
     const ramp = { ...v, name: "ramp to", doc: `end of the ramp of ${v.name}: ${v.doc}`, span: [0.02 * about.ramp.end, 3 * about.ramp.end], log: true };
-    const control = new Control(ramp, this.end, (x) => { if (x > 0) { this.end = x; this.redraw(); } });
+    const control = this.beside(ramp, this.end, (x) => { if (x > 0) { this.end = x; this.redraw(); } });
     at("ramp").replaceChildren(control.node);
   }
 
   /** Other values, shown at the controls. */
   take(set) {
     this.values = this.start(set);
-    for (const name in this.controls) this.controls[name].show(this.values.get(name));
-    this.redraw();
+    this.shown();
   }
 
   /** Some other values, shown at the controls. */
   change(values, doc) {
-    for (const [name, value] of Object.entries(values)) {
-      this.values.set(name, value);
-      this.controls[name].show(value);
-    }
+    for (const [name, value] of Object.entries(values)) this.values.set(name, value);
     this.say(`Set: ${doc}.`);
-    this.redraw();
+    this.shown();
   }
 
   /** After a change: what is in sight with the next frame, its ramps coarse; then the rest, and fine ones. */
@@ -117,14 +160,28 @@ class Laboratory {
     document.body.classList.toggle("refused", !this.good);
     this.now = this.good && Object.fromEntries(this.about.variables.filter((v) => v.causality !== "parameter").map((v) => [v.name, this.joint.get(v.name)]));
     this.said = new Set(this.joint.messages); // of the sliders and of the path, not of a ramp that begins without load
-    if (this.good && seen) {
-      const near = this.views(COARSE).filter(({ place }) => this.sight.sees(place));
-      for (const { show } of near) show();
-      const done = new Set(near.filter((v) => !v.ramp).map((v) => v.place));
-      this.rest = setTimeout(() => this.later(this.views(STEPS).filter(({ place }) => !done.has(place))), PAUSE);
-    } else if (this.good) for (const { show } of this.views(STEPS)) show();
+    const views = this.views(seen ? COARSE : STEPS);
+    for (const { place } of views) place.classList.add("stale");
+    if (this.good) {
+      const near = views.filter(({ place }) => !seen || this.sight.sees(place));
+      for (const view of near) this.show(view);
+      const done = new Set(near.filter((v) => !seen || !v.ramp).map((v) => v.place));
+      const due = () => [...this.views(STEPS).filter(({ place }) => !done.has(place)), ...this.fits()];
+      this.rest = setTimeout(() => this.later(due()), PAUSE);
+    } else this.rest = setTimeout(() => this.keep(), PAUSE);
     this.tell();
     this.took = performance.now() - began;
+  }
+
+  show({ place, show }) {
+    show();
+    place.classList.remove("stale");
+  }
+
+  /** Sliders over what the joint takes with the present values. */
+  fits() {
+    const sliders = Object.values(this.controls).filter((control) => control.range);
+    return sliders.map((control) => ({ place: control.node, show: () => control.fit(allowed(this.joint, this.values, control.full)) }));
   }
 
   /** { place, show, ramp } of everything that depends on the values; the ramp is gone once for all its curves. */
@@ -143,9 +200,10 @@ class Laboratory {
 
   /** Views one after the other, a slice at a time, so that the next change need not wait. */
   later(due) {
-    for (const end = performance.now() + SLICE; due.length && performance.now() < end; ) due.shift().show();
+    for (const end = performance.now() + SLICE; due.length && performance.now() < end; ) this.show(due.shift());
     this.tell();
-    if (due.length) this.rest = setTimeout(() => this.later(due));
+    if (!due.length) this.keep();
+    else this.rest = setTimeout(() => this.later(due));
   }
 
   /** Published points beside what the joint gives with the present parameters and the point's own. */
@@ -215,16 +273,15 @@ class Laboratory {
     const others = bakedOtherwise(found, about.sets[0]);
     await this.choose(about.name, this.sets(about.name).findIndex((s) => s.about === about));
     for (const [key, value] of found.values) if (this.values.has(key)) this.values.set(key, value);
-    for (const key in this.controls) this.controls[key].show(this.values.get(key));
     this.say(`${name}: ${found.name ?? "parameters"} shown.` + (others.length ? ` Baked into this page and other there: ${others.join(", ")}.` : ""));
-    this.redraw();
+    this.shown();
   }
 }
 
 const laboratory = (async () => {
   const known = await unpacked(at("content").textContent);
   const lab = new Laboratory(known);
-  await lab.choose(known.modules[0].name, 0);
+  await lab.restore();
   at("waiting").remove();
   at("bench").hidden = false;
   lab.draw();

@@ -15,7 +15,7 @@ class Path {
     this.amplitude = element("input", { type: "range", min: 1, max: 100, value: 50, id: "amplitude", oninput: () => (this.size = Number(this.amplitude.value) / 100) });
     const button = (text, act) => element("button", { type: "button", onclick: act }, text);
     const { path, pairs } = joint.about, ways = [path, ...Object.keys(pairs).filter((name) => path.length > 1 || name !== path[0]).map((name) => [name])];
-    const moved = element("select", { id: "moved", onchange: () => lab.follow(ways[Number(moved.value)]) }, ...ways.map((way, i) => element("option", { value: i, selected: way.join() === names.join() }, way.join(" and "))));
+    const moved = element("select", { id: "moved", onchange: () => lab.follow(ways[Number(moved.value)]) }, ...ways.map((way, i) => element("option", { value: i, selected: way.join() === names.join() }, way.map((name) => `${name}: ${joint.variables.get(name).doc.split(/[,;:(]/)[0].trim()}`).join("; "))));
     place.append(element("div", { class: "row" },
       ...(ways.length > 1 ? [element("label", { for: "moved" }, "What moves"), moved] : []), element("label", { for: "amplitude" }, "Size of the loop"), this.amplitude, button("Loop to and fro", () => this.loop()),
       ...(this.inputs.length > 1 ? [button("Round in a circle", () => this.circle())] : []), button("Clear the path", () => this.clear())));

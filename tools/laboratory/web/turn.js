@@ -9,7 +9,7 @@ class Turn {
     [this.driven, this.speed, this.torque, this.load, this.error] = [driven, speed, torque, load, error].map(v);
     this.rated = lab.values.get(this.about.rated);
     [this.load_now, this.speed_now] = [this.rated / 2, this.about.usual];
-    const asked = (key, like, doc, span) => new Control({ ...like, name: key.replace("_now", ""), doc, span, log: true }, this[key], (x) => { if (x > 0) { this[key] = x; lab.redraw(); } });
+    const asked = (key, like, doc, span) => lab.beside({ ...like, name: key.replace("_now", ""), doc, span, log: true }, this[key], (x) => { if (x > 0) { this[key] = x; lab.redraw(); } });
     place.append(element("div", { class: "row" },
       asked("load_now", this.load, "torque at the output that resists the motion", [0.02 * this.rated, 2 * this.rated]).node,
       asked("speed_now", this.speed, this.speed.doc, [this.about.usual / 20, 3 * this.about.usual]).node));

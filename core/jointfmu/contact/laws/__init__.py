@@ -5,5 +5,7 @@ from .roughness import Roughness
 from .yu2022 import Yu2022
 from .zhao2018 import Zhao2018
 
-LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022, "roughness": Roughness}
+ROUGHNESS_LAW = "roughness"
+"""Name of the law whose parameters are the roughness itself, without D and G."""
+LAWS = {"zhao2018": Zhao2018, "hu2023": Hu2023, "yu2022": Yu2022, ROUGHNESS_LAW: Roughness}
 """{author and year, or what it starts from: parameters of the law}."""

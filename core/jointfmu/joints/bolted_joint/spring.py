@@ -12,12 +12,13 @@ from ...mechanics.curve import Curve, approach_curve
 from ...mechanics.footprint.bolts import PressureSource, pressure_shape
 from ...mechanics.footprint.friction import friction_patches
 from ...mechanics.footprint.patches import few_points
-from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.footprint.shape import PATCHES, NodalField, PressureShape
 from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
 from ...quantity import Number
 from .bodies import MODES, Modes, RigidBodies
+from .compliances import Compliances
 from .contact import (
     Place,
     elastic_shear,
@@ -36,8 +37,6 @@ Array = NDArray[np.float64]
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
-PATCHES = 22
-"""Points that carry the friction [1], each with sliders."""
 REST = (0.0, 0.0, 0.0)
 UNKNOWN, RESTING, ALONG, FREE = range(4)
 """How friction has moved so far, see `memory_of`."""
@@ -83,7 +82,8 @@ def points(pattern: PressureSource) -> PressureShape:
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource) -> PressureShape:
     """The points that carry its friction."""
-    return friction_patches(pressure_shape(pattern), PATCHES)
+    stated = pattern.patches() if isinstance(pattern, NodalField) else None
+    return stated or friction_patches(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)
@@ -239,6 +239,10 @@ class BoltedJointSpring:
             sums |= self._whole_sums(at, place, amplitude, sums["loop_energy"])
         out = outputs(joint, sums, place.shift, place.turn, rates, np.max(at.derivatives[0]))
         return out | self._bolt_forces(preload, moment, place, amplitude), after
+
+    def compliances(self, preload: float, moment: float = 0.0) -> Compliances:
+        """Of elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
+        return Compliances.of(self, preload, moment)
 
     @cached_property
     def whole(self) -> Whole:

@@ -111,15 +111,18 @@ class Trials:
         shift = along(spring.patches, rigid - before["rigid"]) + bent + further
         return spring.way(before, approach, shift, rigid)
 
-    def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
+    def tangents(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
         approach = self.approaches(place, amplitude)[1]
         step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
-        def traction(moved: Array) -> Array:
-            return self._way(place, amplitude, approach - moved[2], moved[:2]).moved.traction
+        def traction(further: Array) -> Array:
+            return self._way(place, amplitude, approach, further).moved.traction
 
-        return np.stack([traction(d) - traction(-d) for d in step * np.eye(3)], axis=-1) / (2.0 * step)
+        here = traction(np.zeros(2))
+        along_x, along_y = ((traction(d) - here) / step for d in step * np.eye(2))
+        xy = 0.5 * (along_x[:, 1] + along_y[:, 0])
+        return np.stack([along_x[:, 0], xy, along_y[:, 1]], axis=1)
 
 
 def told(preload: float, moment: float, place: Place) -> str:

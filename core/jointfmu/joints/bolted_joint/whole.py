@@ -6,11 +6,13 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
     r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
 
 at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the symmetric
-part H = G^T W G + S of the slope, W the tangents of points, patches and bolts; the part of H that is left to
-the attachments where a follows is the stiffness of the whole.
+part H = G^T W G + S of the slope, W the tangents of points, patches and bolts, which Broyden's update carries
+on; the part of H that is left to the attachments where a follows is the stiffness of the whole.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -28,10 +30,10 @@ CANCELS = 0.02
 """Forces of points that come apart by rigid motion and modes alike, whose difference is left [1] in CLOSE."""
 ROUGH = 1e7
 """How much more is enough on the way [1]."""
-STEPS, PARTS = 12, 6
+STEPS, PARTS = 16, 6
 """Most steps of Newton's method [1], and most parts of each that are tried."""
-CHORD = 0.05
-"""Part of the residual that a step leaves [1] below which the next one takes the same derivative."""
+CHORD = 0.1
+"""Part of the residual that a step leaves [1] below which the next one takes the derivative on."""
 LEAST_PART = 1e-4
 """Least part of a motion that is gone at once [1]."""
 
@@ -72,8 +74,8 @@ class Trials(Protocol[T]):
     def at(self, place: Place, amplitude: Array) -> T:
         """Forces there at amplitudes (k) [m]."""
 
-    def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 2, 3) [Pa/m] of the traction over shift along x, y and over coming apart."""
+    def tangents(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
 
 
 @dataclass(frozen=True)
@@ -155,17 +157,6 @@ class Whole:
         """Stiffness (6, 6) of the whole, where the amplitudes follow."""
         return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
 
-    def jacobian(self, stiffness: Array, slopes: Array) -> Array:
-        """dr/da (k, k) [N/m]: stiffness (n) [Pa/m] of the points, slopes (m, 2, 3) [Pa/m] of the patches'
-        traction x, y over their shift x, y and over how far they come apart."""
-        modes = self.modes
-        pressed, pulled = (self.weight * stiffness)[:, None] * modes.opening, self.bolt * modes.stretch
-        J = np.diag(modes.stiffness) + modes.opening.T @ pressed + modes.stretch.T @ pulled
-        traction = np.einsum("jxc,cjk->xjk", slopes, modes.patch)
-        for axis in range(2):
-            J = J + modes.patch[axis].T @ (self.patch[:, None] * traction[axis])
-        return np.asarray(J)
-
     def solve(self, trials: "Trials[T]", tight: Array, start: Array, first: Array) -> tuple[Array, T]:
         """Amplitudes (k) [m] in equilibrium at the end of a motion, and the trial there.
 
@@ -179,11 +170,12 @@ class Whole:
         while True:
             part = min(done + step, 1.0)
             found = self._newton(trials, part, tight, amplitude + (part - done) * rate)
-            if found is None:
+            if isinstance(found, float):
                 step *= 0.5
                 if step < LEAST_PART:
                     raise ValueError(
-                        f"{trials.told}: the sides find no equilibrium beyond {done:.3g} of the way"
+                        f"{trials.told}: the sides find no equilibrium beyond {done:.3g} of the way, "
+                        f"the residual is {found:.2g} N"
                     )
                 continue
             if part == 1.0:
@@ -193,19 +185,21 @@ class Whole:
 
     def _newton(
         self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array
-    ) -> tuple[Array, T] | None:
-        """Equilibrium at a part [1] of the motion, from amplitudes (k) [m]; None if it is not found."""
+    ) -> tuple[Array, T] | float:
+        """Equilibrium at a part [1] of the motion, from amplitudes (k) [m], or the residual [N] left."""
         place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
         at = trials.at(place, amplitude)
         r, least = self.residual(at, tight, place, amplitude)
         before, J = 0.0, np.eye(r.size)
+        steps: list[Array] = []
         for _ in range(STEPS):
             left = float(np.max(np.abs(r)))
             if left <= close * least:
                 return amplitude, at
             if not left < CHORD * before:
-                J = self.jacobian(at.stiffness, trials.slopes(place, amplitude))
-            step, before = -np.linalg.solve(J, r), left
+                J, steps = self.slope(at.stiffness, trials.tangents(place, amplitude))[6:, 6:], []
+            step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
+            steps.append(step)
             size, falls, begin = 1.0, float(r @ step), amplitude
             for _ in range(PARTS):
                 amplitude = begin + size * step
@@ -215,7 +209,15 @@ class Whole:
                 if not rises > 0.5 * abs(falls):
                     break
                 size *= max(falls / (falls - rises), 0.1)
-        return None
+                before = 0.0
+        return float(np.max(np.abs(r)))
+
+
+def _broyden(step: Array, steps: Sequence[Array]) -> Array:
+    """A step (k) of a derivative as Broyden's (good) update by the steps since then changes it."""
+    for last, following in pairwise(steps):
+        step = step + (last @ step) / (last @ last) * following
+    return np.asarray(step / (1.0 - steps[-1] @ step / (steps[-1] @ steps[-1])) if steps else step)
 
 
 def _apart(position: Array) -> Array:

@@ -49,13 +49,17 @@ HOLDS = 400.0
 """Weight of what is exact beside that of a case [1]."""
 DIFFERENCE = 1e-6
 """Change of a place or pressure over its size [1] by which derivatives are found."""
+AT_ONCE = 2000
+"""Nodes whose friction is summed up at once [1]."""
 TINY = float(np.finfo(float).tiny)
 _RATIOS = powers(1.0 / 1.0969815577985598, 7)
 """An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
 
 
-def friction_patches(shape: PressureShape, count: int) -> PressureShape:
+def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> PressureShape:
     """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
+
+    begin : some points that stand for many nodes, of which the first patches are taken
 
     Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
 
@@ -69,7 +73,7 @@ def friction_patches(shape: PressureShape, count: int) -> PressureShape:
     unit = np.array([1.0, gyration, gyration, highest, steep])[:, None]
     nodes, there, points = (
         np.stack([each.share, *each.position.T, each.equal, each.tilt]) / unit
-        for each in (rough, shape, few_points(rough, count))
+        for each in (rough, shape, few_points(rough if begin is None else rounded(begin), count))
     )
     aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
     moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
@@ -165,7 +169,11 @@ class _Aim:
         """Those over nodes (5, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
         motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
-        friction, gross = (over(each, share) for each in motions.friction(nodes))
+        friction, gross = np.zeros(4 * CASES), np.zeros(CASES)
+        for first in range(0, share.size, AT_ONCE):
+            some = nodes[:, first : first + AT_ONCE]
+            each, most = motions.friction(some)
+            friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * CASES :]]), TINY)
         exact = _exact(nodes, reach)
         held, hold = over(exact, share), HOLDS / np.maximum(over(np.abs(exact), share), TINY)

@@ -92,14 +92,25 @@ class MergedShape:
 
 _POINTS = ("share", "x", "y", "equal", "tilt")
 """What a point of a field has."""
+PATCH = "patch_"
+"""Begins the names of what a patch has."""
+PATCHES = 22
+"""Most points that carry the friction of a joint [1], each with sliders."""
+
+
+def as_lists(shape: PressureShape, prefix: str = "") -> dict[str, tuple[float, ...]]:
+    """What a field has of its points, or with PATCH of its patches."""
+    rows = shape.share, *shape.position.T, shape.equal, shape.tilt
+    return {prefix + name: tuple(row.tolist()) for name, row in zip(_POINTS, rows, strict=True)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodalField:
     """The pressure of a bolted contact at points that stand for a nodal contact result.
 
-    Raises ValueError if the points are not equally many in every entry or do not balance: shares that
-    sum to 1, the centroid at the origin, a mean of 1 of `equal` and of 0 of `tilt`, within BALANCE.
+    Raises ValueError if the points, or the patches of friction where there are some, are not equally many in
+    every entry or do not balance: shares that sum to 1, the centroid at the origin, a mean of 1 of `equal`
+    and of 0 of `tilt`, within BALANCE.
     """
 
     share: tuple[float, ...] = series("1", "parts of the nominal area, which sum to 1", gt=0.0)
@@ -109,6 +120,11 @@ class NodalField:
     tilt: tuple[float, ...] = series(
         "1", "pressures that a moment adds, over the mean pressure of one row's share of it"
     )
+    patch_share: tuple[float, ...] = series("1", "the same of the patches of friction", gt=0.0, optional=True)
+    patch_x: tuple[float, ...] = series("m", "places of the patches along the bolt rows", optional=True)
+    patch_y: tuple[float, ...] = series("m", "places of the patches across the bolt rows", optional=True)
+    patch_equal: tuple[float, ...] = series("1", "`equal` of the patches", ge=0.0, optional=True)
+    patch_tilt: tuple[float, ...] = series("1", "`tilt` of the patches", optional=True)
     bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
     bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
     bolt_x2: float = quantity(
@@ -123,23 +139,34 @@ class NodalField:
 
     def __post_init__(self) -> None:
         check(self)
+        for prefix in ("", PATCH):
+            self._check_points(prefix)
+        if (count := len(self.patch_share)) > PATCHES:
+            raise ValueError(f"patch_share has {count} numbers, expected at most {PATCHES}")
+
+    def _check_points(self, prefix: str) -> None:
+        """Raise ValueError if the points, or the patches, do not balance."""
+        count = len(getattr(self, f"{prefix}share"))
         for name in _POINTS:
-            if (count := len(getattr(self, name))) != len(self.share):
+            if (given := len(getattr(self, prefix + name))) != count:
                 raise ValueError(
-                    f"{name} has {count} numbers, expected as many as share has: {len(self.share)}"
+                    f"{prefix}{name} has {given} numbers, expected as many as {prefix}share has: {count}"
                 )
-        shape = self.shape()
+        if not count:
+            return
+        shape, what = self._points(prefix), "of the patches" if prefix else ""
         reach = float(np.max(np.abs(shape.position)))
         x, y = shape.share @ shape.position
         steep = max(float(np.max(np.abs(shape.tilt))), 1.0)
         for text, value, expected, size in (
-            ("the sum of share", float(np.sum(shape.share)), 1.0, 1.0),
+            (f"the sum of {prefix}share", float(np.sum(shape.share)), 1.0, 1.0),
             ("x of the centroid", float(x), 0.0, reach),
             ("y of the centroid", float(y), 0.0, reach),
-            ("the mean of equal", float(shape.share @ shape.equal), 1.0, 1.0),
-            ("the mean of tilt", float(shape.share @ shape.tilt), 0.0, steep),
+            (f"the mean of {prefix}equal", float(shape.share @ shape.equal), 1.0, 1.0),
+            (f"the mean of {prefix}tilt", float(shape.share @ shape.tilt), 0.0, steep),
         ):
             if not abs(value - expected) <= BALANCE * size:
+                text = f"{text} {what}".rstrip() if "centroid" in text else text
                 raise ValueError(f"{text} is {value:.9g}, expected {expected:g} within {BALANCE * size:.1g}")
 
     @property
@@ -149,5 +176,12 @@ class NodalField:
 
     def shape(self) -> PressureShape:
         """The points as arrays."""
-        share, x, y, equal, tilt = (np.array(getattr(self, name)) for name in _POINTS)
+        return self._points("")
+
+    def patches(self) -> PressureShape | None:
+        """Those of its friction, where the field has some of all its nodes."""
+        return self._points(PATCH) if self.patch_share else None
+
+    def _points(self, prefix: str) -> PressureShape:
+        share, x, y, equal, tilt = (np.array(getattr(self, prefix + name)) for name in _POINTS)
         return PressureShape(share, np.column_stack([x, y]), equal, tilt)

@@ -32,10 +32,25 @@ def _loop(
     preload: float | None,
     modal_mass: float | None,
     damping_ratio: float,
+    series_stiffness: float | None,
 ) -> "FitResult":
     from . import loop
 
-    return loop.fit(path, start, free, preload=preload, modal_mass=modal_mass, damping_ratio=damping_ratio)
+    return loop.fit(
+        path,
+        start,
+        free,
+        preload=preload,
+        modal_mass=modal_mass,
+        damping_ratio=damping_ratio,
+        series_stiffness=series_stiffness,
+    )
+
+
+SERIES = FitOption(
+    name="series_stiffness",
+    text="of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
+)
 
 
 FITS = (
@@ -52,10 +67,7 @@ FITS = (
                 choices=("normal", "tangential"),
             ),
             FitOption(name="modal_mass", text="what vibrates on the joint [kg]"),
-            FitOption(
-                name="series_stiffness",
-                text="of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
-            ),
+            SERIES,
         ),
         run=_preload,
     ),
@@ -68,6 +80,7 @@ FITS = (
             FitOption(name="preload", text="of each bolt in the test [N] (default: of the start's inputs)"),
             FitOption(name="modal_mass", text="what vibrates on the joint [kg]; with decays and responses"),
             DAMPING_RATIO,
+            SERIES,
         ),
         run=_loop,
     ),

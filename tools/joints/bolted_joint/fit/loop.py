@@ -26,10 +26,10 @@ from ....fitting import memory, memory_pictures
 from ....fitting.exchange import Exchange
 from ....fitting.heads import Heads
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Array
+from ....fitting.least_squares import Array, Unknown
 from ....fitting.measurement import Measurement, measured
 from ....fitting.outcome import FitResult, fitted, unknowns
-from .preload import even_shape
+from .preload import SERIES, even_shape
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
 FREE: Mapping[str, tuple[str, ...]] = {
@@ -43,12 +43,21 @@ STARTS: Mapping[str, Sequence[float]] = {
     "surface.D": (1.2, 1.45),
 }
 """Where the fit looks for a start, beside the start file's; the level begins where the data have it."""
+BESIDE = (memory.DAMPING, SERIES)
+"""Unknowns that are no parameters of the joint."""
+SERIES_STARTS = (2.0, 1.1, 1.5, 5.0)
+"""Series stiffness at which the search begins, over the whole at rest [1]."""
 _NODES = 48
 """Steps of the table of first loading, graded towards rest."""
 
 
-def first_loading(joint: Bolted, preload: float) -> tuple[HysteresisLaw, dict[str, tuple[float, str, str]]]:
+def first_loading(
+    joint: Bolted, preload: float, series: float | None = None
+) -> tuple[HysteresisLaw, dict[str, tuple[float, str, str]]]:
     """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
+
+    series : stiffness [N/m] of a structure in series; the motion is that of both, B(u) of the force that both
+             bear, and Masing's rule holds for them as for the joint. What describes is the joint's alone.
 
     Raises ValueError if nothing is in contact or a pressure is beyond the law.
     """
@@ -56,9 +65,12 @@ def first_loading(joint: Bolted, preload: float) -> tuple[HysteresisLaw, dict[st
     kappa, mu = float(shear_ratio(joint)), joint.mu
     apart = (float(np.max(approach)) - curve.displacement[0]) * np.linspace(0.0, 1.0, _NODES + 1) ** 2
     load, stiffness, bend = (value @ weight for value in curve.derivatives(approach - apart[:, None], 2))
-    table = CubicHermiteSpline(apart * mu / kappa, mu * (load[0] - load), kappa * stiffness)
+    beside = 0.0 if series is None else 1.0 / series
+    force, slope = mu * (load[0] - load), kappa * stiffness
+    moved = apart * mu / kappa + beside * force
+    table = CubicHermiteSpline(moved, force, slope / (1.0 + beside * slope))
     whole = table.antiderivative()
-    end, limit = float(apart[-1] * mu / kappa), float(mu * load[0])
+    end, limit = float(moved[-1]), float(mu * load[0])
 
     def friction(motion: Array) -> Array:
         return np.where(motion < end, table(np.minimum(motion, end)), limit)
@@ -104,15 +116,17 @@ def fit(
     preload: float | None = None,
     modal_mass: float | None = None,
     damping_ratio: float = 0.0,
+    series_stiffness: float | None = None,
 ) -> FitResult:
     """Fit a file of loops, decays, responses or frequency and damping over the amplitude (HEADS).
 
     Parameters
     ----------
-    free       : names to fit; None: those of FREE; `damping_ratio` may be one
+    free       : names to fit; None: those of FREE; `damping_ratio` and `series_stiffness` may be among them
     preload    : [N] of each bolt; None: that of the start's inputs
     modal_mass : [kg] what vibrates on the joint; needed unless the file has loops
     damping_ratio : [1] of the structure, beside the joint
+    series_stiffness : [N/m] of the structure, in series with the joint; None: rigid, unless it is fitted
 
     Raises ValueError, one line: the file, its units, its values; a loop that creates energy; a name that
     cannot be fitted. RuntimeError if the fit finds no end.
@@ -125,24 +139,44 @@ def fit(
             f"preload = {force:g} N is outside (0, inf); state that of each bolt in the test", "preload"
         )
     names = list(free or FREE[file.law][: 3 if data.kind == "loops" else 2])
+    if series_stiffness is not None and not 0.0 < series_stiffness < np.inf:
+        raise Refusal(f"series stiffness = {series_stiffness:g} N/m is outside (0, inf)", SERIES)
 
     def joint(values: Mapping[str, float]) -> Bolted:
-        parameters: Bolted = file.with_values(values, "calibration", "fit").values
+        parameters: Bolted = file.with_values(_own(values), "calibration", "fit").values
         return parameters
 
-    model = memory.model(
-        data, lambda values: first_loading(joint(values), force)[0], "modal_mass", modal_mass, damping_ratio
-    )
-    wanted = unknowns(file, [name for name in names if name != memory.DAMPING], {})
+    def beside(values: Mapping[str, float]) -> float | None:
+        return values.get(SERIES, series_stiffness)
+
+    def law_of(values: Mapping[str, float]) -> HysteresisLaw:
+        return first_loading(joint(values), force, beside(values))[0]
+
+    model = memory.model(data, law_of, "modal_mass", modal_mass, damping_ratio)
+    seen = data.rest_stiffness(modal_mass)
+    if series_stiffness is not None and SERIES not in names and series_stiffness <= seen:
+        raise Refusal(
+            f"series stiffness = {series_stiffness:g} N/m is outside ({seen:.4g}, inf): the data "
+            "show joint and structure together as that stiff at rest",
+            SERIES,
+        )
+    wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
     wanted += [memory.damping_unknown()] * (memory.DAMPING in names)
-    level = _level(file, names, joint, force)
+    wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
+
+    def rest(values: Mapping[str, float]) -> float:
+        series = beside(values)
+        return 1.0 / (1.0 / rest_stiffness(joint(values), force) + (0.0 if series is None else 1.0 / series))
+
+    level = _level(file, names, rest)
     moved = data.kind != "loops" and set(FREE[file.law][1:]) <= set(names)
-    solution, scale = memory.search(data, wanted, model, STARTS, level, moved and level is not None)
+    starts = {**STARTS, SERIES: [times * seen for times in SERIES_STARTS[1:]]}
+    solution, scale = memory.search(data, wanted, model, starts, level, moved and level is not None)
     result = fitted(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
-    law, described = first_loading(result.values, force)
-    picture, beside = memory_pictures.pictures(data, model, solution.values, scale)
+    law, described = first_loading(result.values, force, beside(solution.values))
+    picture, second = memory_pictures.pictures(data, model, solution.values, scale)
     return FitResult(
         result,
         solution,
@@ -151,28 +185,25 @@ def fit(
         | memory.facts(data, solution, law, scale),
         picture,
         notes=memory.notes(data, solution),
-        second_picture=beside,
+        second_picture=second,
     )
 
 
 def _level(
     file: ParameterFile,
     names: Sequence[str],
-    joint: Callable[[Mapping[str, float]], Bolted],
-    preload: float,
+    rest: Callable[[Mapping[str, float]], float],
 ) -> Exchange | None:
-    """The stiffness at rest and the parameter of its level, if that is fitted."""
+    """The stiffness at rest, [N/m] of the values, and the parameter of its level, if that is fitted."""
     _, level, *_ = FREE[file.law]
     if level not in names:
         return None
-    return Exchange(
-        level, lambda values: rest_stiffness(joint(_own(values)), preload), "N/m", "shear_stiffness"
-    )
+    return Exchange(level, rest, "N/m", "stiffness at rest")
 
 
 def _own(values: Mapping[str, float]) -> dict[str, float]:
     """Those of the joint."""
-    return {name: value for name, value in values.items() if name != memory.DAMPING}
+    return {name: value for name, value in values.items() if name not in BESIDE}
 
 
 def _reached(data: Measurement, law: HysteresisLaw, limit: float) -> dict[str, tuple[float, str, str]]:

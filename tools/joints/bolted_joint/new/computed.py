@@ -8,19 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
+from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
+from jointfmu.progress import step
 
 from ....drawing.vdi2230 import ClampedPart
 from . import ATTACHED
 
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
-    from ....fem.whole_joint import Compliance, WholeJoint
+    from ....fem.whole_joint import WholeJoint
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -69,6 +71,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
         from ....fem.bolted_contact import BoltedContact
         from ....fem.joint_file import with_solution
 
+        step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
         return with_solution(file, solution, plates.tension)
 
@@ -77,9 +80,9 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
 
 @dataclass(frozen=True, slots=True)
 class ComputedJoint:
-    """The joint between its attachments: compliances by direction, and its parameters with elastic sides."""
+    """The joint between its attachments: its compliances, and its parameters with elastic sides."""
 
-    compliances: "dict[str, Compliance]"
+    compliances: Compliances
     file: ParameterFile
 
 
@@ -93,6 +96,7 @@ def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJ
         from ....fem.elastic_sides import elastic_bodies
         from ....fem.whole_joint import WholeJoint
 
+        step("members by finite elements")
         joint = WholeJoint.of(plates.assembly(file), attached)
         springs = _springs(file, plates.preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)

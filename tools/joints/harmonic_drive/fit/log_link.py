@@ -4,7 +4,7 @@ The wind-up is the joint's angle less the motor's over the ratio, the torque tha
 torque of the hysteresis follows the measured wind-up; where the drive has its zero is found beside.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,13 +14,18 @@ from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 
-from ....fitting.least_squares import Array, Solution, solve
+from ....fitting.identifiability import undetermined
+from ....fitting.least_squares import Array, Solution, Unknown, solve
 from ....fitting.outcome import Picture, unknowns
 from .hysteresis import ARCMIN, LOSS
-from .log_reading import Samples
+from .log_samples import Samples
 
 LINES = ("K1", "K2", "K3")
 """Stiffnesses of the law `catalogue`; drives of other laws are fitted to loops."""
+OWN = (*LINES, LOSS)
+"""What is fitted here."""
+ROTOR = "motor_inertia"
+"""Beside these, where nobody states it."""
 FIRST_LOSS = 0.3 * ARCMIN
 """Where hysteresis_loss starts [rad] if the file has none."""
 LEAST_PART = 1e-2
@@ -36,36 +41,68 @@ def wind_up(samples: Samples, ratio: float) -> Array:
     return np.asarray(angle - angle.mean())
 
 
+def rotor(
+    file: ParameterFile, phi: Array, tau: Array, spread: Array, relief: Array, most: float
+) -> tuple[float, float] | None:
+    """Inertia of the rotor and its standard deviation [kg.m2] by a path of wind-ups (n) [rad]; None if these
+    do not determine it.
+
+    tau, spread : as in `fit`, if it were none
+    relief      : (n) [N.m/(kg.m2)] what of them it takes
+    most        : all of the inertia is the rotor's [kg.m2]
+
+    Raises RuntimeError if the fit finds no end.
+    """
+    own = [name for name in OWN if name in file.flat]
+    wanted = Unknown(ROTOR, "kg.m2", 0.1 * most, LEAST_PART * most, most)
+    solution, _ = _solved(file, own, phi, lambda values: tau + values[ROTOR] * relief, spread, [wanted])
+    found = solution.values[ROTOR]
+    return None if ROTOR in undetermined(solution) else (found, found * solution.deviations[ROTOR])
+
+
 def fit(
     file: ParameterFile, names: Sequence[str], phi: Array, tau: Array, spread: Array
 ) -> tuple[Solution, Picture]:
-    """Fit names of LINES and hysteresis_loss to a path of wind-ups (n) [rad] under torques (n) [N.m].
+    """Fit names of OWN to a path of wind-ups (n) [rad] under torques (n) [N.m].
 
     spread : (k, n) changes of the torques by k independent standard deviations; they widen the covariance
 
     Raises RuntimeError if the fit finds no end.
     """
+    solution, law = _solved(file, names, phi, lambda values: tau, spread)
+    labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
+    return solution, Picture(tau, phi / ARCMIN, (phi - law) / ARCMIN, (tau, law / ARCMIN), labels)
+
+
+def _solved(
+    file: ParameterFile,
+    names: Sequence[str],
+    phi: Array,
+    torque: Callable[[Mapping[str, float]], Array],
+    spread: Array,
+    more: Sequence[Unknown] = (),
+) -> tuple[Solution, Array]:
+    """The fit of names of OWN, and of what else decides the torque (n) [N.m]; and the law's wind-up (n)."""
     begin = {LOSS: FIRST_LOSS} if file.flat[LOSS] == 0.0 else {}
     start = file.with_values({n: v for n, v in begin.items() if n in names}, "calibration", "start")
     path = phi - phi[0]
 
-    def angle(values: Mapping[str, float], torque: Array = tau) -> Array:
+    def angle(values: Mapping[str, float], tau: Array) -> Array:
         """Wind-up (n) [rad] by the law, less its mean."""
-        spring = HarmonicDriveSpring.of(file.with_values(values, "calibration", "fit").values)
-        found = spring.curve.odd_inverse(torque - _friction(spring, path))
+        own = {name: values[name] for name in names}
+        spring = HarmonicDriveSpring.of(file.with_values(own, "calibration", "fit").values)
+        found = spring.curve.odd_inverse(tau - _friction(spring, path))
         return np.asarray(found - np.mean((found - phi)[SETTLED:]))
 
-    bounds = {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}
-    solution = solve(
-        unknowns(start, names, bounds), lambda values: (phi - angle(values))[SETTLED:], nuisances=1
-    )
-    law = angle(solution.values)
+    wanted = [*unknowns(start, names, {LOSS: (LEAST_PART * start.flat[LOSS], np.inf)}), *more]
+    solution = solve(wanted, lambda values: (phi - angle(values, torque(values)))[SETTLED:], nuisances=1)
+    carried = torque(solution.values)
+    law = angle(solution.values, carried)
     for change in spread:
-        moved = np.linalg.lstsq(solution.jacobian, (angle(solution.values, tau + change) - law)[SETTLED:])[0]
+        off = (angle(solution.values, carried + change) - law)[SETTLED:]
+        moved = np.linalg.lstsq(solution.jacobian, off)[0]
         solution = replace(solution, covariance=solution.covariance + np.outer(moved, moved))
-    labels = "torque at the joint [N m]", "wind-up [arcmin]", "log - law [arcmin]"
-    picture = Picture(tau, phi / ARCMIN, (phi - law) / ARCMIN, (tau, law / ARCMIN), labels)
-    return solution, picture
+    return solution, law
 
 
 def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:

@@ -15,7 +15,7 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
 
 from ....fitting.least_squares import Array
-from .log_reading import Samples
+from .log_samples import Samples
 
 
 @dataclass(frozen=True, slots=True)

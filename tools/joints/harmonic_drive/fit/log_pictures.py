@@ -10,7 +10,7 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ....fitting.least_squares import Array
 from ....fitting.outcome import Picture
-from .log_reading import Samples
+from .log_samples import Samples
 
 MILLI = 1e3
 _FRICTION, _MISFIT = "friction at the motor [mN m]", "log - law [mN m]"

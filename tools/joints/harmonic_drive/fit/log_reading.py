@@ -1,27 +1,19 @@
-"""A robot's logs: columns, checks, and samples.
+"""A robot's logs: columns and checks.
 
-A log with a time is dynamic: its motion and torque pass one filter, a polynomial over WINDOW (Savitzky and
-Golay 1964), which gives the derivatives too; kept are samples so far apart that their noise is independent,
-and marked are those where the drive has turned on since its last reversal. A log without a time is a table of
-steady speeds.
+A log with a time is dynamic; a log without one is a table of steady speeds.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.signal import savgol_coeffs, savgol_filter
 
 from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity.units import KELVIN_AT_ZERO, Sizes, sizes
 
 from ....fitting.least_squares import Array
-
-Places: TypeAlias = NDArray[np.int_]
+from .log_samples import Samples, moving, smoothed, steady, window
 
 COLUMNS: Mapping[str, Sizes] = {
     "time": sizes("s", "ms"),
@@ -49,12 +41,6 @@ OTHERS: Mapping[str, Sequence[str]] = {
 }
 LEAST = 6
 """Fewest rows of a log."""
-WINDOW, ORDER = 0.04, 4
-"""Of the filter [s], and of its polynomial [1]."""
-NODES = 9
-"""Speeds [1] within a window by which friction is filtered; fewest samples of a window."""
-TURNED = 5.0
-"""Way of the motor since a reversal over `presliding` [1] after which friction has built up but for 1 %."""
 MOST_SPEED = 2000.0
 """Speed of a wave generator [rad/s] that none has: catalogues allow up to 14 000 rev/min."""
 MOST_CURRENT = 1e3
@@ -63,52 +49,10 @@ MOST_TORQUE = 3.0
 """Torque of a motor over that of the drive at max_torque [1] that none has."""
 STILL = 1e-3
 """Speed of the motor [rad/s] that is no motion."""
-ONE_SPEED = 1.2
-"""Largest over smallest speed [1] below which a log has one speed only."""
 EVEN, GAP = 0.2, 10.0
 """Steps of time off their median [1] up to which a log is evenly sampled; step over it that is a gap."""
 SAME = (0.5, 2.0)
 """dq over the derivative of q [1] between which they are of one motion."""
-
-
-@dataclass(frozen=True, slots=True)
-class Samples:
-    """Samples (n) of logs, SI; NaN where a log has no such column.
-
-    dq, ddq  : speed and acceleration of the joint
-    speeds   : (n, NODES) of the joint within the filter's window
-    weights  : (n, NODES) [1] of the filter there: friction is filtered as the torque is
-    torque   : of the motor
-    gravity  : torque at the joint that holds the arm
-    motor, sensed : angle of the motor, torque at the joint
-    later    : of the last part of a log, which is held out
-    dynamic  : of a log with a time
-    built    : friction has built up
-    """
-
-    time: Array
-    q: Array
-    dq: Array
-    ddq: Array
-    speeds: Array
-    weights: Array
-    torque: Array
-    gravity: Array
-    temperature: Array
-    motor: Array
-    sensed: Array
-    later: NDArray[np.bool_]
-    dynamic: NDArray[np.bool_]
-    built: NDArray[np.bool_]
-
-    def part(self, rows: NDArray[np.bool_] | Places) -> "Samples":
-        """The samples of some rows."""
-        return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
-
-
-def joined(parts: Sequence[Samples]) -> Samples:
-    """The samples of several logs, one after the other."""
-    return Samples(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Samples)))
 
 
 def named(words: Sequence[str]) -> dict[str, tuple[str, str | None]]:
@@ -141,10 +85,9 @@ def read(
     if "temperature" in have and table.units["temperature"] != "K":
         have["temperature"] = have["temperature"] + KELVIN_AT_ZERO
     if "time" in have:
-        samples = _dynamic(table, have, torque, drive)
-    else:
-        table.require("dq", COLUMNS)
-        samples = _steady(have, torque)
+        return _of_motion(table, have, torque, drive)
+    table.require("dq", COLUMNS)
+    samples = steady(have, torque)
     _check(path, samples, drive)
     return samples
 
@@ -167,78 +110,23 @@ def _torque(table: columns.Columns, constant: float | None) -> Array:
     return constant * current
 
 
-def _steady(have: Mapping[str, Array], torque: Array) -> Samples:
-    """Rows of steady speeds; every third one is held out."""
-    none = np.full(torque.size, np.nan)
-    return Samples(
-        time=none,
-        q=have.get("q", none),
-        dq=have["dq"],
-        ddq=np.zeros(torque.size),
-        speeds=np.repeat(have["dq"][:, None], NODES, axis=1),
-        weights=np.repeat(np.eye(1, NODES), torque.size, axis=0),
-        torque=torque,
-        gravity=have.get("gravity", none),
-        temperature=have.get("temperature", none),
-        motor=none,
-        sensed=none,
-        later=np.arange(torque.size) % 3 == 1,
-        dynamic=np.zeros(torque.size, dtype=bool),
-        built=have["dq"] != 0.0,
-    )
-
-
-def _dynamic(table: columns.Columns, have: Mapping[str, Array], torque: Array, drive: Drive) -> Samples:
-    """Filtered samples where friction has built up."""
+def _of_motion(table: columns.Columns, have: Mapping[str, Array], torque: Array, drive: Drive) -> Samples:
+    """Filtered samples as far apart as the filter is wide."""
     if "q" not in have and "dq" not in have:
         raise ValueError(f"{table.path}: has neither q nor dq; expected {columns.heading(COLUMNS)}")
     time, step = _clock(table)
     even = np.arange(time[0], time[-1] + 0.5 * step, step)
     have = {name: np.interp(even, time, x) for name, x in (*have.items(), ("tau", torque))}
-    width = max(2 * round(0.5 * WINDOW / step) + 1, NODES)
+    width = window(step)
     if even.size < 2 * width:
         raise ValueError(
             f"{table.path}: takes {time[-1] - time[0]:.4g} s, expected at least {2 * width * step:.3g} s"
         )
-
-    def smooth(values: Array, derivative: int = 0) -> Array:
-        return np.asarray(savgol_filter(values, width, ORDER, derivative, step))
-
-    of_q = "dq" not in have
-    dq = smooth(have["q"], 1) if of_q else smooth(have["dq"])
-    ddq = smooth(have["q"], 2) if of_q else smooth(have["dq"], 1)
-    if not of_q and "q" in have:
-        _same_motion(table, smooth(have["q"], 1), dq)
-    nodes, weights = _nodes(width)
-    none = np.full(even.size, np.nan)
-    samples = Samples(
-        time=even,
-        q=smooth(have["q"]) if "q" in have else none,
-        dq=dq,
-        ddq=ddq,
-        speeds=dq[np.clip(np.arange(even.size)[:, None] + nodes, 0, even.size - 1)],
-        weights=np.repeat(weights[None, :], even.size, axis=0),
-        torque=smooth(have["tau"]),
-        gravity=smooth(have["gravity"]) if "gravity" in have else none,
-        temperature=have.get("temperature", none),
-        motor=smooth(have["q_motor"]) if "q_motor" in have else none,
-        sensed=smooth(have["link_torque"]) if "link_torque" in have else none,
-        later=even > even[0] + 0.7 * (even[-1] - even[0]),
-        dynamic=np.ones(even.size, dtype=bool),
-        built=_built_up(dq, step, width, drive),
-    )
+    samples = moving(even, step, have, drive)
+    if "dq" in have and "q" in have:
+        _same_motion(table, smoothed(have["q"], step, 1), samples.dq)
     _check(table.path, samples, drive)
     return samples.part(np.arange(width // 2, even.size - width // 2, width))
-
-
-def _nodes(width: int) -> tuple[Places, Array]:
-    """Places (NODES) in the filter's window, in samples off its middle, and the filter's weights for what is
-    straight between them.
-    """
-    half = width // 2
-    nodes = np.round(np.linspace(-half, half, NODES)).astype(int)
-    hats = [np.interp(np.arange(-half, half + 1), nodes, row) for row in np.eye(NODES)]
-    return nodes, np.array(hats) @ savgol_coeffs(width, ORDER, use="dot")
 
 
 def _clock(table: columns.Columns) -> tuple[Array, float]:
@@ -298,16 +186,3 @@ def _check(path: Path, samples: Samples, drive: Drive) -> None:
             f"{path}: a motor torque of {largest:.4g} N.m is outside [-{most:.4g}, {most:.4g}] N.m; expected "
             "that of the motor, not of the joint, of a drive as stated"
         )
-
-
-def _built_up(dq: Array, step: float, width: int, drive: Drive) -> NDArray[np.bool_]:
-    """Whether (n) the motor has turned on, by more than the filter and presliding blur."""
-    sign = np.sign(dq)
-    run = np.concatenate([[0], np.cumsum(np.diff(sign) != 0.0)])
-    first = np.concatenate([[0], np.flatnonzero(np.diff(run)) + 1])
-    last = np.concatenate([first[1:], [dq.size]])
-    place = np.arange(dq.size)
-    way = np.concatenate([[0.0], np.cumsum(np.abs(dq[1:]))]) * step * abs(drive.ratio)
-    since, left = place - first[run], last[run] - 1 - place
-    turned = way - way[first[run]] > TURNED * drive.presliding
-    return np.asarray(turned & (since > width // 2) & (left > width // 2) & (sign != 0.0))

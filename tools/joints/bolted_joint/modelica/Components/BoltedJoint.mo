@@ -126,6 +126,7 @@ equation
 <h4>Not in this table</h4>
 <ul>
 <li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>
+<li>With memory an implicit solver takes a hundred times as many Jacobians as with the FMU in its wrapper: take that, or <code>memory=false</code>, for longer runs.</li>
 <li>Side 2 does not turn: rotations, moments and contact pressures are the FMU's.</li>
 <li>The FMU has sliders of its own on each of its patches: where few of them slip, at a small part of the friction limit, the two differ in what a loop loses.</li>
 <li>The normal dissipation factor is interpolated linearly, within << damping_tolerance >>.</li>

@@ -68,7 +68,7 @@ model HarmonicDriveSpring "Torsional spring and damper of a harmonic drive betwe
   Modelica.Units.SI.RotationalSpringConstant K_TS(nominal=5e3) "<< docs.K_TS >>";
   Modelica.Units.SI.Power lossPower "Power dissipated by damper and friction";
 protected
-  constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider ceases to stick, over that friction";
+  constant Real layer=1e-3 "Width of the layer beyond its friction in which a slider of the wave generator ceases to stick, over that friction";
   constant Modelica.Units.SI.Time turned=<< turned >> "Time for which a drive that turns at initialization has turned before";
   constant Modelica.Units.SI.Time forgets=1e-4 "Time in which a slider at rest that friction holds no more goes back to its friction";
   constant Modelica.Units.SI.Temperature reference=<< reference >> "Temperature at which the friction parameters hold";
@@ -77,9 +77,13 @@ protected
   parameter Integer n=size(data.sliders, 1) "Sliders of the hysteresis";
   parameter Modelica.Units.SI.RotationalSpringConstant K_h[n]=(if hysteresis_friction > 0 then hysteresis_stiffness else 0)*data.sliders[:, 1] "Their stiffness";
   parameter Modelica.Units.SI.Torque M_h[n]=hysteresis_friction*data.sliders[:, 2] "Their friction";
-  Modelica.Units.SI.Torque q_h[n](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
+  constant Modelica.Units.SI.AngularVelocity still=1e-7 "Rate of the wind-up beyond which it has turned round";
+  discrete Modelica.Units.SI.Torque q_h[n](each start=0, each fixed=true, each nominal=0.01) "Their torques where the wind-up last turned round";
+  discrete Modelica.Units.SI.Angle phi_h(start=0, fixed=true, nominal=1e-3) "Wind-up there";
+  Boolean ahead(start=false, fixed=true) "The wind-up grows";
+  Boolean behind(start=false, fixed=true) "It falls";
+  Modelica.Units.SI.Torque stuck_h[n] "Their torques if they stuck since then";
   Modelica.Units.SI.Torque held_h[n] "What of it friction holds";
-  Real rate_h[n](each unit="N.m/s") "Their rates";
   Modelica.Units.SI.Power heat_h[n] "What they turn into heat";
   parameter Integer m=size(brakes, 1) "Sliders of the friction at the wave generator";
   parameter Real loss_back(unit="1")=if load_loss_back < 0 then load_loss else load_loss_back "Share of the load where it drives the motor";
@@ -87,7 +91,8 @@ protected
   parameter Modelica.Units.SI.RotationalSpringConstant K_w[m]=M_rated/presliding*brakes[:, 1] "Their stiffness";
   Real f_dry(unit="1") "Dry friction at the temperature over that of the parameters";
   Real f_viscous(unit="1") "Viscous friction at the temperature over that of the parameters";
-  Real back(unit="1") "How far positive friction holds the load, 0 to 1";
+  Modelica.Units.SI.Torque unloaded "Limit of dry friction without load, but for the temperature";
+  Modelica.Units.SI.Torque tau_begun "Torque at the output with hysteresis from rest";
   Modelica.Units.SI.Torque M_p "Limit of positive dry friction at the wave generator";
   Modelica.Units.SI.Torque M_n "Limit of negative dry friction at the wave generator";
   Modelica.Units.SI.Torque q_w[m](each start=0, each nominal=0.01) "Their torques, less than the layer beyond their friction";
@@ -97,11 +102,10 @@ protected
   Real errorSlope "Derivative of phi_error in flange_a.phi";
   Modelica.Units.SI.Angle windUp "Absolute value of the wind-up";
 initial equation
-  for i in 1:n loop
-    q_h[i] = if use_damping then min(max(K_h[i]*phi_rel, -M_h[i]), M_h[i]) else 0;
-  end for;
   for i in 1:m loop
-    q_w[i] = min(max(turned*K_w[i]*w1, -M_n*brakes[i, 2]), M_p*brakes[i, 2]);
+    q_w[i] = min(max(turned*K_w[i]*w1,
+      -f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau_begun, width*data.rated_torque, -ratio)*brakes[i, 2]),
+      f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau_begun, width*data.rated_torque, ratio)*brakes[i, 2]);
   end for;
 equation
   assert(ratio < 0 or ratio > 0, "ratio = 0: it may be negative, not zero");
@@ -117,22 +121,29 @@ equation
     w1 = 0;
     tau = tau_c + tau_h;
   end if;
-  // sliders: a spring each, that follows the motion until its friction holds no more
+  // sliders of the hysteresis: a spring each, from the last turn on, that friction holds no further
   for i in 1:n loop
-    held_h[i] = noEvent(min(max(q_h[i], -M_h[i]), M_h[i]));
-    rate_h[i] = K_h[i]*(w_rel - noEvent(abs(w_rel))*(q_h[i] - held_h[i])/(layer*M_h[i] + Modelica.Constants.small));
-    der(q_h[i]) = rate_h[i];
-    heat_h[i] = held_h[i]*w_rel - q_h[i]*rate_h[i]/max(K_h[i], Modelica.Constants.small);
+    stuck_h[i] = q_h[i] + K_h[i]*(phi_rel - phi_h);
+    held_h[i] = noEvent(min(max(stuck_h[i], -M_h[i]), M_h[i]));
+    heat_h[i] = noEvent(if abs(stuck_h[i]) > M_h[i] then M_h[i]*abs(w_rel) else 0);
   end for;
-  tau_h = sum(held_h);
+  ahead = w_rel > still;
+  behind = w_rel < -still;
+  when {initial(), pre(ahead), pre(behind)} then
+    q_h = JointStiffness.Functions.limited(pre(q_h) + K_h*(phi_rel - pre(phi_h)), M_h);
+    phi_h = phi_rel;
+  end when;
+  tau_h = if use_damping then sum(held_h) else 0;
+  tau_begun = tau_c + d*w_rel + sum(JointStiffness.Functions.limited(K_h*phi_rel, M_h));
   if not useHeatPort then
     temperature = T;
   end if;
   f_dry = temperature_factor*exp(-dry_temperature_coefficient*(temperature - reference));
   f_viscous = temperature_factor*exp(-viscous_temperature_coefficient*(temperature - reference));
-  back = 0.5*(1 + tanh(tau/(width*data.rated_torque))*ratio/abs(ratio));
-  M_p = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*back)*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
-  M_n = f_dry*(friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2) + (load_loss + (loss_back - load_loss)*(1 - back))*tau*tanh(tau/(width*data.rated_torque))/abs(ratio));
+  unloaded = friction_coulomb + friction_stribeck*exp(-(w1/stribeck_speed)^2);
+  M_p = f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau, width*data.rated_torque, ratio);
+  M_n = f_dry*JointStiffness.Functions.frictionLimit(unloaded, load_loss, loss_back, tau, width*data.rated_torque, -ratio);
+  // sliders of the friction: a spring each, that follows the motion until its friction holds no more
   for i in 1:m loop
     held_w[i] = noEvent(min(max(q_w[i], -M_n*brakes[i, 2]), M_p*brakes[i, 2]));
     rate_w[i] = K_w[i]*(w1 - noEvent(abs(w1))*(q_w[i] - held_w[i])/(layer*M_rated*brakes[i, 2] + Modelica.Constants.small)) - (q_w[i] - held_w[i])/forgets;
@@ -164,7 +175,7 @@ equation
 <p>Positive wind-up is the output ahead of the motor. The housing is ground: it takes the difference of the two torques. Inertias are not inside; put one on each flange. With a flange held, the other at a given torque and no inertia, the damper decides the speed, which is a division by zero if <code>d</code> is 0: set <code>use_damping=false</code> then, and the wind-up follows the torque at once.</p>
 <h4>Law</h4>
 << html.law >>
-<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, whose torques are states. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. The sliders of the friction at the wave generator are the FMU's too, and their limit M follows speed and load. A slider ceases to stick within a layer of a thousandth of its friction; what is beyond its friction never acts, so a drive at rest holds.</p>
+<p>T<sub>h</sub> is the hysteresis of the FMU: the same sliders, from where the wind-up last turned round (an event) on. The FMU states it by <code>hysteresis_loss</code>; the component by its friction and its stiffness at tiny motion, see the example. The sliders of the friction at the wave generator are the FMU's too; their torques are states, and their limit M follows speed and load. Such a slider ceases to stick within a layer of a thousandth of its friction; what is beyond its friction never acts, so a drive at rest holds. Where friction costs the solver too many steps take the FMU in its wrapper.</p>
 <h4>Not in this table</h4>
 <p>The parameters of the law and the lost motion are those of the record <code>data</code>, fixed. With <code>use_damping=false</code> the drive has neither hysteresis nor friction. The table is odd in the wind-up and ends at << end >>; beyond, the last tangent continues without a warning.</p>
 <h4>How far to trust it</h4>

@@ -1,0 +1,147 @@
+"""Does one FMU of a system keep the energy, and does it stay bounded from anywhere?
+
+    python benchmarks/system_proof.py
+
+Energy: the six drives of an arm, each with its link, motors held and all losses off, swing freely for two
+seconds at a communication step of 1 ms, at several tolerances of the host. Random: the robot joint from
+10 000 random states under random torques, three steps of 10 ms each: all is finite, and energy less the work
+of the torques falls in every step (hysteresis off, whose sliders hold energy too).
+"""
+
+import platform
+import shutil
+import tempfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+from jointfmu_fmu_src.system.fmu import build_system
+from jointfmu_tools.interface import drive, load
+from jointfmu_tools.robots import axes_system, elastic
+from jointfmu_tools.robots.transmission import transmission
+from jointfmu_tools.systems.assembly import assembly
+from jointfmu_tools.systems.system import read, system
+from scipy.interpolate import CubicSpline
+
+from jointfmu.parameters import dump
+
+ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
+SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
+LOSSES = ("d", "friction_coulomb", "friction_stribeck", "friction_viscous", "hysteresis_loss", "load_loss")
+TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8)
+WIND_UP, SWING = 1e-3, 2.0
+DRAWS, STEP, STEPS = 10_000, 1e-2, 3
+PLATFORM = (
+    f"{'aarch64' if platform.machine() in ('arm64', 'aarch64') else 'x86_64'}-{platform.system().lower()}"
+)
+
+
+def built(path: Path, out: Path) -> str:
+    """The FMU of a system's file, unpacked."""
+    (file,) = build_system(assembly(read(path)), out, ("2",), (PLATFORM,))
+    return fmpy.extract(str(file))
+
+
+def potential(joint, widest: float):
+    """Elastic energy [J] over the wind-up [rad], without losses."""
+    given = {name: 0.0 for name in LOSSES if name in joint.values}
+    turns = np.linspace(-widest, widest, 4001)
+    torque = joint.with_values(given).evaluate("HarmonicDriveSpring", phi2=turns)["tau"]
+    energy = CubicSpline(turns, np.asarray(torque)).antiderivative()
+    return lambda x: energy(x) - energy(0.0)
+
+
+def energy(folder: Path) -> None:
+    """Print the drift at each tolerance."""
+    spec = elastic.read(ROBOT)
+    model = spec.compile()
+    joints = {f"joint{i}": drive(size) for i, size in enumerate(SIZES, 1)}
+    files = {name: joint.file for name, joint in joints.items()}
+    axes = elastic.axes(spec, {name: transmission(file) for name, file in files.items()})
+    pose = elastic.posed(model, {"joint2": "0.7", "joint3": "0.8"})
+    for file in files.values():
+        (folder / f"{file.name.replace('-', '_')}.toml").write_text(dump(file), encoding="utf-8")
+    path = folder / "swing.toml"
+    path.write_text(axes_system.text("six_axis", model, axes, files, pose, 3.0, model.nbody - 1))
+    unzipped = built(path, folder)
+    described = fmpy.read_model_description(unzipped)
+    starts = {v.name: v.start for v in described.modelVariables}
+    given = {f"{n}_drive.{loss}": 0.0 for n in joints for loss in LOSSES if f"{n}_drive.{loss}" in starts}
+    given |= {f"{n}_weight.ramp_height": 0.0 for n in joints} | {f"{n}_link.phi": WIND_UP for n in joints}
+    for tolerance in TOLERANCES:
+        found = fmpy.simulate_fmu(
+            unzipped,
+            model_description=described,
+            stop_time=SWING,
+            step_size=1e-3,
+            output_interval=1e-3,
+            relative_tolerance=tolerance,
+            start_values=given,
+            output=[f"{n}_link.{x}" for n in joints for x in ("phi", "w")],
+        )
+        total = sum(
+            0.5 * float(starts[f"{n}_link.J"]) * found[f"{n}_link.w"] ** 2
+            + potential(joint, 2.0 * WIND_UP)(found[f"{n}_link.phi"])
+            for n, joint in joints.items()
+        )
+        drift = np.abs(total / total[0] - 1.0).max() / SWING
+        print(f"tolerance {tolerance:.0e}: energy within {drift:.1e} per second")
+    shutil.rmtree(unzipped)
+
+
+def random(folder: Path) -> None:
+    """Print the largest rise of energy, and whether all is finite, without and with hysteresis."""
+    (file,) = build_system(assembly(system("robot_joint")), folder, ("2",), (PLATFORM,))
+    unzipped = fmpy.extract(str(file))
+    described = fmpy.read_model_description(unzipped)
+    refs = {v.name: v.valueReference for v in described.modelVariables}
+    stored = potential(load("HarmonicDriveSpring"), 0.5)
+    draw = np.random.default_rng(1)
+    states = draw.uniform(-1.0, 1.0, (DRAWS, 6)) * [10.0, 300.0, 0.1, 3.0, 0.1, 10.0]
+    states[:, 2] += states[:, 0] / 100.0
+    names = ["motor.phi", "motor.w", "link.phi", "link.w", "load.tau_in", "link.tau_a"]
+    quiet = {"load.ramp_height": 0.0, "load.pulse_height": 0.0}
+    for loss in (0.0, 2.9e-4):
+        given = quiet | {"drive.hysteresis_loss": loss}
+        fmu = fmpy.instantiate_fmu(unzipped, described, "CoSimulation", logger=lambda *_: None)
+        rises, spans = [], []
+        for row in states:
+            fmu.reset()
+            fmu.setupExperiment(startTime=0.0)
+            fmu.enterInitializationMode()
+            start = dict(zip(names, row.tolist(), strict=True)) | given
+            fmu.setReal([refs[name] for name in start], list(start.values()))
+            fmu.exitInitializationMode()
+            seen = [fmu.getReal([refs[name] for name in names[:4]])]
+            for k in range(STEPS):
+                fmu.doStep(k * STEP, STEP)
+                seen.append(fmu.getReal([refs[name] for name in names[:4]]))
+            phi1, w1, phi2, w2 = np.array(seen).T
+            spans.append(np.abs([w1 / 300.0, w2 / 3.0]).max())
+            total = 0.5 * 1e-5 * w1**2 + 0.5 * 0.05 * w2**2 + 9.80665 * 0.2 * (1.0 - np.cos(phi2))
+            total += stored(phi2 - phi1 / 100.0) - row[4] * phi1 - row[5] * phi2
+            rises.append(np.diff(total).max() / (total.max() - total.min() + 1e-3))
+        fmu.terminate()
+        fmu.freeInstance()
+        said = (
+            ""
+            if loss
+            else f", energy less work falls in every step, by {-max(rises):.1e} of its span or more"
+        )
+        finite = np.isfinite(rises).all()
+        print(
+            f"hysteresis {loss:g} rad, {DRAWS} draws: {'all finite' if finite else 'NOT FINITE'}, "
+            f"speeds within {max(spans):.2g} times their draw{said}"
+        )
+    shutil.rmtree(unzipped)
+
+
+def main() -> None:
+    """Print both."""
+    with tempfile.TemporaryDirectory() as folder:
+        energy(Path(folder))
+        random(Path(folder))
+
+
+if __name__ == "__main__":
+    main()

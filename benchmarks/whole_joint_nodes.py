@@ -1,0 +1,237 @@
+"""The whole bolted joint with elastic sides beside finite elements with friction at every element.
+
+Three joints of two plates: a flange (outer faces rigid, sheared along x), a lap (ends rigid, sheared along x)
+and a bracket (ends rigid, a force along y off the bolts' line). The finite elements are linear but for the
+contact, and reduce to the compliance of their elements' patches without loss: about 300 to 500, each with the
+law's own p(delta) and 144 sliders beside the joint's 120 points and 22 patches of 38. Quasi-static: up to
+LEVELS of the motion at which a linear joint would carry all friction, then a whole cycle at CYCLES of it.
+
+Run: python benchmarks/whole_joint_nodes.py [flange lap bracket] [--why]
+"""
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+import numpy as np
+from elastic_sides import Joint, along
+from jointfmu_tools.fem import elastic_sides as reduction
+from jointfmu_tools.fem.sparse import Cholesky
+from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
+from lap_beam_loops import Joint as Loops
+from lap_beam_loops import foundation
+from lap_beam_reduction import AT_ONCE, Reduced, patches
+from numpy.typing import NDArray
+from scipy import sparse as sp
+from scipy.spatial import cKDTree
+
+from jointfmu.joints.bolted_joint import bodies, spring
+from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics.footprint.bolts import pressure_shape
+
+Array = NDArray[np.float64]
+
+PLATES: dict[str, object] = {"grip": ["20"], "material": ["steel"], "Ra": ["0.8"], "embedding": "0"}
+PLATES |= {"preload": "15e3"}
+JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
+    "flange": (
+        "faces",
+        PLATES | {"plate": "80x80", "bolts": "4xM8", "at": ["50x50"]},
+        np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    ),
+    "lap": (
+        "edge",
+        PLATES | {"plate": "90x40", "bolts": "2xM8", "at": ["40x0"]},
+        np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    ),
+    "bracket": (
+        "edge",
+        PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]},
+        np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]),
+    ),
+}
+"""Attachment, drawing and force: along x and y [1], moments about the centre [m]."""
+LEVELS = (0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
+"""Motions over that at which the linear joint would carry all friction [1]."""
+CYCLES = (0.5, 1.0)
+"""Those at which a whole cycle is followed [1]."""
+STEPS = 8
+"""From one end of a cycle to the other."""
+WHY = {"as it is": (24, 22), "60 modes": (60, 22), "60 patches": (24, 60), "60 modes, 60 patches": (60, 60)}
+"""Modes and patches of the reduced joint."""
+
+
+@dataclass(frozen=True)
+class Elements:
+    """A joint by finite elements, moved along one motion.
+
+    loops     : its patches on sliders, the load is the motion [1]
+    motion    : (6) [m, rad] of side 2 per load; `stiffness` [N.m] of the linear joint along it
+    """
+
+    loops: Loops
+    motion: Array
+    stiffness: float
+
+    @classmethod
+    def of(
+        cls, whole: WholeJoint, pressure: Array, spring: BoltedJointSpring, force: float, wrench: Array
+    ) -> "Elements":
+        """Moved as small loads move it along forces and moments (6), until they are all of a force [N].
+
+        pressure : (P) [Pa] at the points of its interface
+        spring   : whose curve, friction and bolts it has
+        """
+        values, ratio = spring.joint, float(shear_ratio(spring.joint))
+        approach, at = spring.curve.inverse(pressure), whole.interface
+        springs = np.outer(spring.curve.derivatives(approach, 1)[1], [ratio, ratio, 1.0])
+        linear = whole.linear(springs, values.bolt_stiffness)
+        matrix = linear.bodies + linear.contact + linear.shanks
+        apart = [sign * whole.apart(axis) for axis, sign in ((0, 1.0), (1, 1.0), (2, -1.0))]
+        K = linear.moved.T @ (matrix @ linear.moved)
+        motion = np.linalg.solve(K, wrench) * force
+        beam = Reduced(
+            np.array([0.5 / np.pi]),  # unit square of the frequency: the load is the motion
+            0.0,
+            approach,
+            springs,
+            at.area,
+            at.position,
+            np.stack([rows @ (linear.moved @ motion) for rows in apart], axis=1),
+            compliance(matrix.tocsr(), apart, whole.held, whole.bodies[0].size),
+        )
+        loops = Loops(beam, foundation(spring.curve, ratio, values.mu))
+        return cls(loops, motion, float(motion @ K @ motion))
+
+    @classmethod
+    def clamped(cls, joint: Joint, wrench: Array) -> "Elements":
+        """Of a joint under its bolts, to all friction."""
+        values, whole = joint.rigid.values, joint.linear.joint
+        at = patches(whole.interface)
+        shape = pressure_shape(values.pattern)
+        here = cKDTree(shape.position).query(at.position - at.area @ at.position / at.area.sum())[1]
+        pressure = pressures(values, shape, joint.preload, 0.0)[here]
+        pressure *= values.n_bolts * joint.preload / (at.area @ pressure)
+        spring = BoltedJointSpring.of(values)
+        return cls.of(replace(whole, interface=at), pressure, spring, joint.load()[0], wrench)
+
+    def along(self, loads: Sequence[float]) -> tuple[Array, Array]:
+        """Work per load (n) [N.m] of the force, and heat (n) [J] so far, on a way through loads from rest."""
+        state, rows, heat = self.loops.at_rest(), [], 0.0
+        for load in loads:
+            state = self.loops.loaded(state, load)
+            heat += 0.5 * state.loss
+            rows.append((load * self.stiffness + 0.5 * (load - state.q), heat))
+        force, loss = np.array(rows).T
+        return force, loss
+
+
+def compliance(
+    matrix: sp.csr_matrix, apart: Sequence[sp.csr_matrix], held: tuple[Array, Array], first: int
+) -> Array:
+    """Shifts and approaches (3 P) [m] by pairs of forces (3 P) [N], patch by patch, attachments held."""
+    count = apart[0].shape[0]
+    free = np.setdiff1d(np.arange(matrix.shape[0]), np.concatenate([held[0], first + held[1]]))
+    factor = Cholesky(matrix[free][:, free])
+    rows = sp.vstack(apart).tocsr()[np.arange(3 * count).reshape(3, count).T.ravel()][:, free]
+    columns = [rows @ factor.solve(rows[i : i + AT_ONCE].T.toarray()) for i in range(0, 3 * count, AT_ONCE)]
+    return np.hstack(columns)
+
+
+def along_motion(
+    one: BoltedJointSpring, preload: float, motion: Array, loads: Sequence[float]
+) -> tuple[Array, Array]:
+    """What `Elements.along` tells, of the reduced joint."""
+    names = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z", "E_loss")
+    rows = np.array(along(one, [load * motion for load in loads], preload, names))
+    return -rows[:, :6] @ motion, rows[:, 6]
+
+
+@contextmanager
+def finer(modes: int, count: int):
+    """The reduction with so many modes and patches."""
+    kept = [
+        (module, name, getattr(module, name)) for module in (bodies, reduction, spring) for name in ("MODES",)
+    ]
+    kept.append((spring, "PATCHES", spring.PATCHES))
+    try:
+        for module, name, _ in kept:
+            setattr(module, name, count if name == "PATCHES" else modes)
+        spring.patches.cache_clear()
+        yield
+    finally:
+        for module, name, value in kept:
+            setattr(module, name, value)
+        spring.patches.cache_clear()
+
+
+def way(amplitude: float) -> Array:
+    """Loads of a whole cycle from its top on, after the way there."""
+    down = amplitude * np.linspace(1.0, -1.0, STEPS + 1)[1:]
+    return np.concatenate([amplitude * np.linspace(0.0, 1.0, STEPS + 1)[1:], down, -down])
+
+
+def misses(full: Mapping[str, tuple[Array, Array]], found: Mapping[str, tuple[Array, Array]]) -> list[str]:
+    """Cells of a table: force less that of `full` on the first way and on cycles, over the largest force of
+    the first way; heat of each cycle over that of `full`."""
+    most = np.max(np.abs(full["first"][0]))
+    first = np.max(np.abs(found["first"][0] - full["first"][0])) / most
+    cells = [f"{first:.1%}"]
+    for name in full:
+        if name != "first":
+            force = found[name][0] - full[name][0]
+            heat, expected = (each[name][1][-1] - each[name][1][STEPS - 1] for each in (found, full))
+            cells += [f"{np.max(np.abs(force)) / most:.1%}", f"{heat / expected:.3f}"]
+    return cells
+
+
+def cases() -> dict[str, Array]:
+    """Ways through loads."""
+    return {"first": np.array(LEVELS)} | {f"{level:g}": way(level) for level in CYCLES}
+
+
+def compared(name: str, why: bool) -> None:
+    """Print rows of the table."""
+    attached, drawing, wrench = JOINTS[name]
+    joint = Joint.of(attached, drawing)
+    elements = Elements.clamped(joint, wrench)
+    ways = cases()
+    full = {key: elements.along(list(loads)) for key, loads in ways.items()}
+    slips = np.max(np.abs(full["first"][0])) / elements.stiffness
+    for label, (modes, count) in (WHY if why else dict([next(iter(WHY.items()))])).items():
+        with finer(modes, count):
+            one = joint.spring
+            if label != "as it is":
+                base = BoltedJointSpring.of(joint.rigid.values)
+                made = reduction.elastic_bodies(joint.linear, base, joint.normal, joint.preload)
+                one = BoltedJointSpring.of(with_bodies(joint.rigid, made, attached).values)
+            found = {
+                key: along_motion(one, joint.preload, elements.motion, list(loads))
+                for key, loads in ways.items()
+            }
+        patches_, row = elements.loops.beam.area.size, misses(full, found)
+        print(f"| {name} | {label} | {patches_} | {slips:.2f} | " + " | ".join(row) + " |", flush=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("joints", nargs="*", choices=[*JOINTS, []], default=list(JOINTS))
+    parser.add_argument("--why", action="store_true", help="more modes, more patches")
+    given = parser.parse_args(arguments)
+    cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
+    print("| joint | reduction | patches | most force | first way | " + " | ".join(cells) + " |")
+    print("|---|" + "---|" * (4 + len(cells)))
+    for name in given.joints:
+        compared(name, given.why)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,72 @@
+"""What the proofs of the whole bolted joint stand on (benchmarks/whole_joint_nodes.py, measured_beam.py)."""
+
+from dataclasses import replace
+from importlib.resources import files
+
+import brake_reuss_cases as cases
+import measured_beam
+import numpy as np
+import pytest
+from lap_beam_reduction import patches
+from whole_joint_forms import PRESS, Lap, by_hand
+from whole_joint_nodes import STEPS, Elements, way
+
+
+def test_the_form_of_the_lap_is_that_of_the_scan():
+    """Cells of the file [um]: row 27 of 54 (y = -0.25 mm and 0.25 mm), column 100 of 246."""
+    gap, x = cases.form(), np.linspace(-61.206e-3, 61.206e-3, 246)[100]
+    text = (files("jointfmu_models") / "reference" / "brake_reuss_lap_form.csv").read_text()
+    rows = [line.split(",") for line in text.splitlines() if not line.startswith("#")]
+    expected = 0.5 * sum(float(rows[i][100]) for i in (26, 27))
+    y = 0.5 * 26.4e-3 / 53
+    assert 1e6 * gap(np.array([x]), np.array([y]))[0] == pytest.approx(expected, rel=1e-6)
+    places = np.meshgrid(np.linspace(-0.06, 0.06, 25), np.linspace(0.0, 12.7e-3, 7))
+    assert 0.0 <= gap(*places).min() < 6e-6 < 90e-6 < gap(*places).max() < 110e-6
+    np.testing.assert_allclose(gap(*places), gap(places[0], -places[1]))
+
+
+def test_a_crown_touches_first_where_it_is_highest():
+    x = np.linspace(-0.06, 0.06, 25)
+    for height, first in ((2e-5, 12), (-2e-5, 0)):
+        gap = measured_beam.crown(height, 0.12)(x, 0.0 * x)
+        assert gap.argmin() == first
+        assert np.ptp(gap) == pytest.approx(2e-5)
+        assert gap.min() == pytest.approx(0.0, abs=1e-18)
+
+
+def test_draws_fill_their_intervals():
+    draws = measured_beam.samples()
+    for values, (low, high, _) in zip(draws.T, measured_beam.UNKNOWN.values(), strict=True):
+        assert low <= values.min() < low + 0.1 * (high - low)
+        assert high - 0.15 * (high - low) < values.max() <= high
+
+
+def test_a_bar_of_any_width_has_the_frequency_of_a_square_one():
+    square = cases.beam()
+    assert cases.solid_bar(replace(square, width=0.01)) == pytest.approx(cases.solid_bar(square), rel=1e-12)
+
+
+def test_vdi_2230_by_hand():
+    """M16 through 2 x 20 mm under 60 kN with 30 kN at its heads."""
+    factor, added, opens = by_hand(5.575e8, 2.487e9, 9.4e10, 30e3)
+    assert (round(factor, 3), round(added, -2), round(opens, 2)) == (0.187, 5600.0, 1.23)
+
+
+@pytest.mark.slow
+def test_elements_with_friction_are_linear_first_and_slip_at_last():
+    """A thin lap under an even pressure: its linear stiffness, then Coulomb's force, over any mesh."""
+    lap = Lap.of(0.5)
+    _, spring, _ = lap.linear(4.0)
+    bodies = replace(lap.bodies, interface=patches(lap.bodies.interface))
+    area = bodies.interface.area
+    friction = lap.values.mu * PRESS
+    elements = Elements.of(bodies, np.full(area.size, PRESS / area.sum()), spring, friction, np.eye(6)[0])
+    (small, most), (none, heat) = elements.along([1e-3, 2.0])
+    assert small == pytest.approx(1e-3 * elements.stiffness, rel=1e-6)
+    assert none == pytest.approx(0.0, abs=1e-9 * heat)
+    # plates that are pulled and held flat press with their weight as before: PRESS, to the mesh's edges
+    assert most / elements.motion[0] == pytest.approx(friction, rel=5e-3)
+    force, loss = elements.along(list(way(0.6)))
+    f, x = force[STEPS - 1 :], way(0.6)[STEPS - 1 :]
+    work = 0.5 * np.sum((f[1:] + f[:-1]) * np.diff(x))
+    assert loss[-1] - loss[STEPS - 1] == pytest.approx(work, rel=0.03)  # trapezia of 8 steps each way

@@ -1,0 +1,96 @@
+"""What a running FMU takes: no allocation after initialization, less than a page of stack in any function."""
+
+import ctypes
+import platform
+import sys
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from joint_cases import CASES
+from jointfmu_fmu_src.native import compiler
+from jointfmu_fmu_src.system.fmu import build_system
+from jointfmu_tools.systems.assembly import assembly
+from jointfmu_tools.systems.system import system
+
+from jointfmu.joints import MODELS
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="the counted library is built for Linux"),
+]
+THIS = f"{'aarch64' if platform.machine() in ('arm64', 'aarch64') else 'x86_64'}-linux"
+COUNTED = """
+#include <stdlib.h>
+__attribute__((visibility("default"))) long allocations;
+void *counted_malloc(size_t n) { allocations++; return malloc(n); }
+void *counted_calloc(size_t n, size_t size) { allocations++; return calloc(n, size); }
+void *counted_realloc(void *p, size_t n) { allocations++; return realloc(p, n); }
+"""
+OPTIONS = (
+    *(f"-D{name}=counted_{name}" for name in ("malloc", "calloc", "realloc")),
+    "-Wframe-larger-than=4096",
+    "-Wvla",
+    "-Walloca",
+    "-Werror",
+)
+"""Also refused: a function with more than a page of stack, and room on it that grows."""
+
+
+def counted(fmu, folder):
+    """The FMU unpacked, with its own sources compiled so that allocations are counted."""
+    unzipped = Path(fmpy.extract(str(fmu), str(folder)))
+    files = {
+        path.name: path.read_text(encoding="utf-8")
+        for path in (unzipped / "sources").iterdir()
+        if path.suffix in (".c", ".h")
+    }
+    for name, text in files.items():
+        if "alloc(" in text and name.endswith(".c"):
+            declared = "void *counted_malloc(size_t); void *counted_calloc(size_t, size_t);\n"
+            files[name] = f"#include <stddef.h>\n{declared}void *counted_realloc(void *, size_t);\n{text}"
+    files["counted.c"] = "#undef malloc\n#undef calloc\n#undef realloc\n" + COUNTED
+    units = [name for name in files if name.endswith(".c") and name not in ("windows.c", "fmi3.c")]
+    (built,) = compiler.libraries(fmu.stem, files, units, [THIS], linked=OPTIONS).values()
+    (library,) = (unzipped / "binaries" / fmpy.platform).glob("*.so")
+    library.write_bytes(built)
+    return unzipped
+
+
+def grown(unzipped, spans, step, steps):
+    """Allocations after initialization, over steps with random inputs out of {input: (low, high)}."""
+    description = fmpy.read_model_description(str(unzipped))
+    refs = {v.name: v.valueReference for v in description.modelVariables}
+    fmu = fmpy.instantiate_fmu(str(unzipped), description, "CoSimulation")
+    fmu.setupExperiment(startTime=0.0)
+    fmu.enterInitializationMode()
+    fmu.exitInitializationMode()
+    count = ctypes.c_long.in_dll(fmu.dll, "allocations")
+    before, draw = count.value, np.random.default_rng(1)
+    outputs = [v.valueReference for v in description.modelVariables if v.causality == "output"]
+    seen = []
+    for k in range(steps):
+        fmu.setReal([refs[name] for name in spans], draw.uniform(*zip(*spans.values(), strict=True)).tolist())
+        fmu.doStep(k * step, step)
+        seen.append(fmu.getReal(outputs))
+    after = count.value
+    fmu.terminate()
+    fmu.freeInstance()
+    assert before > 0
+    assert np.isfinite(seen).all()
+    assert len({tuple(row) for row in seen}) > 1
+    return after - before
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_joint_allocates_nothing_after_initialization(name, native, tmp_path):
+    assert (
+        grown(counted(native / "fmi2" / f"{name}.fmu", tmp_path), dict(CASES[name].numbers.span), 1.0, 300)
+        == 0
+    )
+
+
+def test_a_system_allocates_nothing_after_initialization(tmp_path):
+    (fmu,) = build_system(assembly(system("robot_joint")), tmp_path, ("2",), (THIS,))
+    assert grown(counted(fmu, tmp_path / "unpacked"), {"load.tau_in": (-0.03, 0.03)}, 1e-2, 150) == 0

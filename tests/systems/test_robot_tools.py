@@ -1,0 +1,30 @@
+"""The pages of Drake and Pinocchio: their code runs where these are installed, and says what `robot` says."""
+
+import json
+import re
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from jointfmu_tools import cli
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize(("page", "package"), [("drake", "pydrake"), ("pinocchio", "pinocchio")])
+def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, monkeypatch):
+    """Least squares of the plain MJCF are within 3 % of the drives here."""
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    pytest.importorskip("mujoco")
+    monkeypatch.chdir(ROOT)
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / f"docs/tools/{page}.md").read_text(), re.DOTALL)
+    exec(compile(code, page, "exec"), {})
+    said = capsys.readouterr().out
+    *wound, moved = map(float, re.findall(r"\d+\.\d*", said))
+    words = "--drive joint2=CSG-40-100 joint3=CSG-25-100 --payload 3 --pose joint2=0.7 joint3=0.8 --json"
+    assert cli.main(["robot", "models/robots/six_axis.xml", *words.split(), "--out", str(tmp_path)]) == 0
+    expected = json.loads(capsys.readouterr().out)
+    assert 1e-3 * moved == pytest.approx(expected["tip_error"], rel=0.03)
+    for angle, name in zip(wound[1:3], ("joint2", "joint3"), strict=True):
+        assert 1e-3 * angle == pytest.approx(expected["wind_up"][name], rel=0.03)
