@@ -58,6 +58,7 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
     assert (round(min(found.values()), 3), round(max(found.values()), 3)) == (0.02, 0.042)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kelvin", [253.15, 353.15])
 def test_a_drive_in_the_cold_and_in_the_warm_holds_what_it_bears(kelvin):
     """1e5 steps under 0.7 of the limit there, shaken by 0.1 of it: not 1e-12 rad of drift.
