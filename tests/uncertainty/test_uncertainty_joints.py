@@ -71,6 +71,14 @@ def test_pattern_of_the_bolts_may_be_uncertain():
     assert found.refused.count == 0
 
 
+def test_slip_force_has_the_band_of_friction():
+    task = pose(default("bolted_joint"), {"mu": "0.1..0.3"}, None, 4)
+    found = propagate.bands(task, propagate.design(task, 1024, 0)[0])
+    slip, mu = found.quantiles["slip_force"][:, -1], 0.1 + 0.2 * np.array(propagate.QUANTILES)
+    assert slip == pytest.approx(mu / task.values["mu"] * found.nominal["slip_force"][-1], rel=2e-3)
+    assert np.ptp(found.quantiles["K_zz"][:, -1]) == 0.0
+
+
 def test_nominal_is_the_parameter_file():
     task = pose(default("gear_contact"), {"A_0": "+-1%", "surface1.G": 3e-10}, None, 4)
     changed = default("gear_contact").with_values({"surface1.G": 3e-10}, "user", "")

@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from jointfmu.contact.laws import mindlin
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, shear_ratio
+from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_pressure, shear_ratio, slip_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -88,8 +88,8 @@ class Places:
 def evaluate(
     parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m] and approach [m] (n, m) at preloads factor (n, 1) times loads (m)
-    that embedding has left.
+    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m], approach [m] and slip_force [N] (n, m) at preloads factor (n, 1)
+    times loads (m) that embedding has left.
 
     The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
     values : by structured name, numbers or samples (n); samples of the pattern go one by one
@@ -154,18 +154,21 @@ def _evaluate(
     curves = {"K_zz": K, "K_xx": rho * K, "C_zz": C, "C_xx": tangential, "approach": approach}
     zero = np.zeros((factor.size, int(np.sum(~touching))))
     curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
-    return curves | {"K_zz": curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness}
+    slip = np.broadcast_to(slip_force(joint, factor * loads), curves["K_zz"].shape)
+    return curves | {"K_zz": curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness, "slip_force": slip}
 
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
-    """Stiffness, damping and approach (m) of the spring on all nodes, in full stick, at preloads (m) [N]
-    that embedding has left.
+    """Stiffness, damping, approach and slip force (m) of the spring on all nodes, in full stick, at preloads
+    (m) [N] that embedding has left.
     """
     alone = replace(interface_alone(joint), memory=False, embedding=0.0)
     spring, rest = BoltedJointSpring.of_nodes(alone), (0.0, 0.0, 0.0)
     states = [spring.motion(float(load), 0.0, rest, rest) for load in loads]
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
-    return curves | {"approach": approach(spring, loads)}
+    pressure = node_pressure(alone, spring.shape.equal, spring.shape.tilt, loads[:, None], 0.0)
+    slip = alone.A_0 * spring.foundation().friction * (pressure @ spring.shape.share)
+    return curves | {"approach": approach(spring, loads), "slip_force": slip}
 
 
 def approach(spring: BoltedJointSpring, loads: Array) -> Array:
@@ -194,6 +197,7 @@ REDUCED = Reduced(
     outputs=(
         *(KIND.variables[name] for name in _OUTPUTS),
         Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),
+        Variable("slip_force", "N", "shear force at which all of the interface slips", 1e4),
     ),
     to=lambda joint: 30e3,
     most=lambda joint: joint.H * joint.A_0 / joint.n_bolts,

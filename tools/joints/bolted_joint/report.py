@@ -9,7 +9,7 @@ from jointfmu.joints.bolted_joint.compliances import (
     Compliances,
 )
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import working_preload
+from jointfmu.joints.bolted_joint.law import slip_force, working_preload
 from jointfmu.joints.bolted_joint.outputs import bolt_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
@@ -34,7 +34,7 @@ def whole_joint(course: Course) -> list[Figure]:
     found = spring.compliances(preload, moment)
     left = float(working_preload(joint, preload))
     opening = found.opening_load(left)
-    limit = joint.mu * joint.n_bolts * left
+    limit = float(slip_force(joint, left))
     panel = _bolt_forces(spring, preload, moment, opening * found.whole[2])
     text = _text(found, left, moment) + (
         f" It takes {_told(opening, 'N')} along z to open the interface everywhere, by these stiffnesses, "

@@ -180,6 +180,11 @@ def working_preload(joint: Bolted, preload: Number) -> Number:
     return where(preload >= joint.embedding, preload - joint.embedding, 0.0 * preload)
 
 
+def slip_force(joint: Bolted, left: Number) -> Number:
+    """Shear [N] at which all of the interface slips, mu n F, under bolt forces left (...) [N]."""
+    return joint.mu * joint.n_bolts * left
+
+
 def bolt_pressures(joint: Bolted, preload: Number, moment: Number) -> tuple[Number, Number]:
     """What `equal` and `tilt` of the pressure shape stand for [Pa]."""
     left = working_preload(joint, preload)

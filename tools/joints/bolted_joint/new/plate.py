@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, working_preload
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, slip_force, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
@@ -248,14 +248,15 @@ def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str
     """
     joint = file.values
     left = float(working_preload(joint, preload))
-    shear = LOSS_AT * joint.mu * joint.n_bolts * left
+    shear = LOSS_AT * float(slip_force(joint, left))
     slip, loss = "shear force at which all of the interface slips", f"loss factor at {shear:.3g} N of shear"
     low, high = file.ranges.get("mu", (joint.mu, joint.mu))
     facts = {}
     for name, mu in (("", joint.mu), ("_low", low), ("_high", high))[: 3 if high > low else 1]:
         text = f"; with mu = {mu:g}"
-        facts[f"slip_force{name}"] = (mu * joint.n_bolts * left, "N", slip + text)
-        facts[f"loss_factor{name}"] = (_loss_factor(replace(joint, mu=mu), preload, shear), "1", loss + text)
+        other = replace(joint, mu=mu)
+        facts[f"slip_force{name}"] = (float(slip_force(other, left)), "N", slip + text)
+        facts[f"loss_factor{name}"] = (_loss_factor(other, preload, shear), "1", loss + text)
     return facts
 
 
