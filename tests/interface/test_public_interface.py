@@ -188,7 +188,7 @@ sys.modules.update(dict.fromkeys(("matplotlib", "casadi")))
 import jointfmu
 drive = jointfmu.drive("CSG-25-100")
 assert drive.wind_up(48.0) > 0.0 and len(repr(drive)) > 1000
-for call in (drive.plot, drive.build, lambda: drive.report("a.html")):
+for call in (drive.plot, drive.build):
     try:
         call()
     except ValueError as error:
@@ -197,5 +197,5 @@ for call in (drive.plot, drive.build, lambda: drive.report("a.html")):
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
     said = done.stdout.splitlines()
-    assert len(said) == 3
+    assert len(said) == 2
     assert all("is missing" in line and "pip install 'jointfmu[build]'" in line for line in said)

@@ -147,9 +147,9 @@ _RUN = """(async () => {{
   const lab = await laboratory, cases = {cases};
   const about = lab.known.modules.find((m) => m.name === {name} && m.law === {law});
   const joint = await Joint.of(about), outputs = about.variables.filter((v) => v.causality === "output");
-  return cases.map(({{ values, path }}) => {{
+  return cases.map(({{ values, path, refusal }}) => {{
     joint.messages.clear();
-    if (!joint.begin(new Map(Object.entries(values)))) return [...joint.messages];
+    if (!joint.begin(new Map(Object.entries(values)))) return [[...joint.messages], [joint.asShown(refusal)]];
     return path.map((inputs) => {{
       joint.step(inputs);
       return Object.fromEntries(outputs.map((v) => [v.name, joint.get(v.name)]));
@@ -160,10 +160,12 @@ _RUN = """(async () => {{
 
 @needed
 def test_chromium_gives_the_numbers_and_refusals(module: Module, cases: list[Case], shown: Any) -> None:
-    asked = json.dumps([{"values": case.values, "path": case.path} for case in cases])
+    """A refusal is that of the package, in the units of the sliders."""
+    asked = json.dumps([{"values": c.values, "path": c.path, "refusal": c.refusal} for c in cases])
     name, law = json.dumps(module.model.name), json.dumps(module.files[0].law)
     for case, found in zip(cases, shown.run(_RUN.format(cases=asked, name=name, law=law)), strict=True):
         if case.refusal:
-            assert found == [case.refusal]
+            said, meant = found
+            assert said == meant
         else:
             compare(case, found)

@@ -46,7 +46,7 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     rows = [line.split() for line in table.splitlines()[2:]]
     flavours = [(name, flavour) for name in MODELS for flavour in ("fmi2", "fmi3", "python")]
     native = [
-        (name, flavour) for name in (*module.LOOPS, *module.PASS_THROUGH) for flavour in ("fmi2", "fmi3")
+        (name, flavour) for name in (*module.OTHERS, *module.PASS_THROUGH) for flavour in ("fmi2", "fmi3")
     ]
     assert [tuple(row[:2]) for row in rows] == [*flavours, *native]
     assert all(float(row[2].replace(",", "")) > 0.0 for row in rows)

@@ -203,6 +203,8 @@ class Joint:
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
         try:
+            import matplotlib  # noqa: F401
+
             from ..report.course import Course
             from ..report.figure import drawn
             from ..report.joint import curves, looped

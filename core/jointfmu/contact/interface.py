@@ -28,7 +28,7 @@ SIDE = 1e-9
 """Where a regime ends its derivative is taken this far inside, in log-area [1]."""
 _NOT_REPRESENTABLE = (
     "the parameters give a reference area of {} m2 or a load that is not representable; "
-    "is D close to the end of its interval, or another one extreme?"
+    "is D close to the end of its interval, or G, h or another one extreme?"
 )
 _BLOCK = 16384
 

@@ -63,7 +63,7 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
     if (!good) {
         text_add(why, "the parameters give a reference area of ");
         text_number(why, spots->reference, 6);
-        text_add(why, " m2 or a load that is not representable; is D close to the end of its interval, or another one extreme?");
+        text_add(why, " m2 or a load that is not representable; is D close to the end of its interval, or G, h or another one extreme?");
     }
     return good;
 }

@@ -176,7 +176,8 @@ class _Aim:
             friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * CASES :]]), TINY)
         exact = _exact(nodes, reach)
-        held, hold = over(exact, share), HOLDS / np.maximum(over(np.abs(exact), share), TINY)
+        held, size = over(exact, share), over(np.abs(exact), share)
+        hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0
         return cls(motions, reach, scale, hold, held, np.concatenate([scale * friction, hold * held]))
 
     def values(self, points: Array) -> Array:
