@@ -51,7 +51,7 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     assert [tuple(row[:2]) for row in rows] == [*flavours, *native]
     assert all(float(row[2].replace(",", "")) > 0.0 for row in rows)
     assert [row[3] for row in rows if row[0] == "PassThrough"] == ["1.0", "1.0"]
-    assert len(promised.splitlines()) == 2 * (5 + len(module.LOOPS) + len(MODELS))
+    assert len(promised.splitlines()) == 2 * (5 + len(module.OTHERS) + len(MODELS))
     assert all(" us of " in line for line in promised.splitlines())
 
 

@@ -934,7 +934,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
     """Until the middle of the motion; the layer in which sliders cease to stick leaves 1e-3 of friction."""
     rumoca = pytest.importorskip("rumoca")
     stop = 0.6
-    found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-6)
+    found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
     own = system("six_axis_robot")
     run = simulate_system(own, built / "fmi2", stop=stop)
     _, wound, _ = windup(own, run)
