@@ -118,7 +118,8 @@ def _in_a_plane(
     """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
 
     A turn by g = K way/limit so ends within g^3 of where a slipping force does, whatever the limit does on
-    the way. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by Hermite's rule, of
+    the way; a limit that falls far turns it by no more than its size, so that a force against the shift does
+    not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by Hermite's rule, of
     the angle between force and shift.
     """
     (before, limit), (e_x, e_y, way) = limits, unit
@@ -130,8 +131,13 @@ def _in_a_plane(
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
     left = share * (carries * way)
-    g, beyond_it = left * per_limit, (square - squared) * per_limit * per_limit
-    more = where(slips, left * (0.25 * beyond_it - 1 / 12 * (g * g)), 0.0)
+    # the larger limit that it slipped at, and how little of its square is left of one that shrinks
+    larger = np.minimum(np.maximum(before * before, squared), np.maximum(square, squared))
+    per_larger = np.minimum(1.0 / np.maximum(larger, NOTHING), LARGEST)
+    kept = squared * per_larger
+    lost = 1.0 - kept
+    shrunk = 0.25 * lost / np.sqrt(kept * kept + lost * lost / 16.0)
+    more = where(slips, left * (shrunk + (0.25 * (square - larger) - left * left / 12.0) * per_larger), 0.0)
     ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
     size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
     per_size = np.sqrt(size2) / size2

@@ -325,7 +325,10 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+        if (n >= NEWTON_STEPS / 2) { /* tangents of a further motion are too far off; the package has no more */
+            exact(joint, at, way->memory, NULL);
+            kept = 0;
+        } else if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
             jacobian(joint, at, way->memory);
             kept = 0;
         }
