@@ -119,8 +119,8 @@ def _in_a_plane(
 
     A turn by g = K way/limit so ends within g^3 of where a slipping force does, whatever the limit does on
     the way; a limit that falls far turns it by no more than its size, so that a force against the shift does
-    not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by Hermite's rule, of
-    the angle between force and shift.
+    not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by
+    Hermite's rule, of the angle between force and shift.
     """
     (before, limit), (e_x, e_y, way) = limits, unit
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
