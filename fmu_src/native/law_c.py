@@ -13,7 +13,7 @@ from ..joint_parts.graph import Graph
 from ..joint_parts.native import NativePart, shared_definitions
 from .emit import HELPERS, function
 
-_SHORT = 120
+_SHORT = 150
 """Lines of a function that is worth to be inline: what a step evaluates is short."""
 _SERIES = ("law_load", "law_table", "law_state")
 """Functions of which there is one for every regime of the law."""

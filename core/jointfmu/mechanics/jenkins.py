@@ -131,13 +131,13 @@ def _in_a_plane(
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
     left = share * (carries * way)
-    # the larger limit that it slipped at, and how little of its square is left of one that shrinks
-    larger = np.minimum(np.maximum(before * before, squared), np.maximum(square, squared))
-    per_larger = np.minimum(1.0 / np.maximum(larger, NOTHING), LARGEST)
-    kept = squared * per_larger
-    lost = 1.0 - kept
-    shrunk = 0.25 * lost / np.sqrt(kept * kept + lost * lost / 16.0)
-    more = where(slips, left * (shrunk + (0.25 * (square - larger) - left * left / 12.0) * per_larger), 0.0)
+    part = 1.0 / np.maximum(np.maximum(squared, square), NOTHING)  # all that follows is in parts of the trial
+    ends = squared * part
+    larger = np.minimum(np.maximum(before * before * part, ends), 1.0)
+    lost = larger - ends  # by a limit that shrinks, from where it slips on
+    turns, shrinks = 0.25 * (1.0 - larger) - left * left * (part / 12.0), ends * ends + lost * lost / 16.0
+    more_by = (0.25 * lost * ends * larger + turns * shrinks) / np.maximum(shrinks * larger, NOTHING)
+    more = where(slips, left * more_by, 0.0)
     ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
     size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
     per_size = np.sqrt(size2) / size2
