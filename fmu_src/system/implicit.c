@@ -272,7 +272,9 @@ Status instance_advance(Instance *m, double size)
         const bool cut = last || h < next;
         if (tried == MOST_STEPS) {
             text_clear(&w->why);
-            text_add(&w->why, "more than 100000 of them are needed");
+            text_add(&w->why, "more than ");
+            text_number(&w->why, MOST_STEPS, 6);
+            text_add(&w->why, " of them are needed");
             return refuse(m, time, h);
         }
         for (size_t i = 0; i < N_BODIES; i++) {

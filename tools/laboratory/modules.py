@@ -33,10 +33,8 @@ class Module:
 
     def sources(self) -> dict[str, str]:
         """{file name: text} of all C sources: those of the FMU, and what the page calls."""
-        from jointfmu_fmu_src.native.generate import (
-            sources,
-            token,
-        )  # needs casadi, pages of the report do not
+        # needs casadi, pages of the report do not
+        from jointfmu_fmu_src.native.generate import sources, token
 
         files = sources(self.model.name, self.files[0])
         added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}

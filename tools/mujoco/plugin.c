@@ -77,7 +77,7 @@ static bool configure(Coupling *c, const mjModel *m, int instance)
             return false;
     }
     c->instance->dirty = c->instance->parameters_changed = true;
-    return instance_set_experiment(c->instance, "init", 0.0, false, 0.0) == OK &&
+    return instance_set_experiment(c->instance, "init", 0.0, 0.0, false, 0.0) == OK &&
            instance_change(c->instance, "init", BOTH | INSTANTIATED, INITIALIZATION) == OK &&
            instance_initialize(c->instance, "init") == OK;
 }

@@ -124,14 +124,15 @@ def _in_a_plane(
     """
     (before, limit), (e_x, e_y, way) = limits, unit
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
-    size = np.sqrt(np.maximum(np.maximum(squared, square), NOTHING))
+    largest = np.maximum(np.maximum(squared, square), NOTHING)
+    size = np.sqrt(largest)
     slips, out = beyond(tried, limit) > 0.0, size - limit
     margin = np.maximum(before * size - (force[0] * tried[0] + force[1] * tried[1]), 0.0)
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
     left = share * (carries * way)
-    part = 1.0 / np.maximum(np.maximum(squared, square), NOTHING)  # all that follows is in parts of the trial
+    part = 1.0 / largest  # what follows up to `more` is in parts of the trial
     ends = squared * part
     larger = np.minimum(np.maximum(before * before * part, ends), 1.0)
     lost = larger - ends  # by a limit that shrinks, from where it slips on

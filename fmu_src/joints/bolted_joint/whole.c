@@ -325,11 +325,12 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        if (n >= NEWTON_STEPS / 2) { /* tangents of a further motion are too far off; the package has no more */
-            exact(joint, at, way->memory, NULL);
-            kept = 0;
-        } else if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
-            jacobian(joint, at, way->memory);
+        const bool far = n >= NEWTON_STEPS / 2; /* tangents do not get there; the package has no more */
+        if (far || !(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+            if (far)
+                exact(joint, at, way->memory, NULL);
+            else
+                jacobian(joint, at, way->memory);
             kept = 0;
         }
         before = left;

@@ -70,10 +70,8 @@ fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nC
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance,
                                fmi2Real startTime, fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
-    if (instance_set_experiment(c, __func__, startTime, stopTimeDefined != fmi2False, stopTime) != OK)
-        return fmi2Error;
-    ((Instance *)c)->now.tolerance = toleranceDefined ? tolerance : 0.0;
-    return fmi2OK;
+    return STATUS(instance_set_experiment(c, __func__, toleranceDefined ? tolerance : 0.0, startTime,
+                                          stopTimeDefined != fmi2False, stopTime));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c)

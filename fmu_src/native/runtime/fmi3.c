@@ -92,9 +92,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
                                        fmi3Float64 tolerance, fmi3Float64 startTime,
                                        fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
-    if (instance_set_experiment(instance, __func__, startTime, stopTimeDefined, stopTime) != OK)
+    if (instance_set_experiment(instance, __func__, toleranceDefined ? tolerance : 0.0, startTime, stopTimeDefined,
+                                stopTime) != OK)
         return fmi3Error;
-    ((Instance *)instance)->now.tolerance = toleranceDefined ? tolerance : 0.0;
     return STATUS(instance_change(instance, __func__, BOTH | INSTANTIATED, INITIALIZATION));
 }
 

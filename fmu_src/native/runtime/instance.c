@@ -229,8 +229,8 @@ void instance_enter(Instance *m, unsigned mode)
     instance_report(m, OK, LOG_EVENTS, text.line);
 }
 
-Status instance_set_experiment(Instance *m, const char *function, double start, bool stop_defined,
-                               double stop)
+Status instance_set_experiment(Instance *m, const char *function, double tolerance, double start,
+                               bool stop_defined, double stop)
 {
     if (!instance_allows(m, function, BOTH | INSTANTIATED))
         return ERROR;
@@ -249,6 +249,7 @@ Status instance_set_experiment(Instance *m, const char *function, double start, 
     m->now.values[0] = m->now.start = start;
     m->dirty = true;
     m->now.stop = stop_defined ? stop : INFINITY;
+    m->now.tolerance = tolerance;
     return OK;
 }
 

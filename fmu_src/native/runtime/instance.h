@@ -99,9 +99,9 @@ void instance_enter(Instance *m, unsigned mode);
 /* The same for the functions that do no more, where they are allowed. */
 Status instance_change(Instance *m, const char *function, unsigned where, unsigned mode);
 Status instance_set_time(Instance *m, const char *function, double time);
-/* Set the times of the experiment, before initialization. */
-Status instance_set_experiment(Instance *m, const char *function, double start, bool stop_defined,
-                               double stop);
+/* Set tolerance (0: none is stated) and times of the experiment, before initialization. */
+Status instance_set_experiment(Instance *m, const char *function, double tolerance, double start,
+                               bool stop_defined, double stop);
 Status instance_select_logs(Instance *m, const char *function, bool on, size_t n,
                             const char *const categories[]);
 void instance_report(const Instance *m, Status status, unsigned category, const char *line);

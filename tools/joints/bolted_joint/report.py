@@ -5,9 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from jointfmu.joints.bolted_joint.compliances import (
-    Compliances,
-)
+from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import slip_force, working_preload
 from jointfmu.joints.bolted_joint.outputs import bolt_force

@@ -72,7 +72,7 @@ class Compliances(NamedTuple):
         and their shares [1] in the compliance."""
         each = np.stack([1.0 / self.whole, 1.0 / self.rigid, self.members, self.bolts])
         return [
-            (stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
+            (_stiffness_name(name), unit, each[:, i].tolist(), self.shares[:, i].tolist())
             for i, (name, unit) in enumerate(DIRECTIONS.items())
         ]
 
@@ -92,6 +92,6 @@ class Compliances(NamedTuple):
         return tension / (1.0 / len(force) - float(force.mean()))
 
 
-def stiffness_name(direction: str) -> str:
+def _stiffness_name(direction: str) -> str:
     """A direction as its stiffness is called: K_zz, K_rx."""
     return f"K_{direction if direction.startswith('r') else 2 * direction}"

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, PARTS, Compliances, stiffness_name
+from jointfmu.joints.bolted_joint.compliances import PARTS, Compliances
 from jointfmu.parameters import ParameterFile
 
 from . import ATTACHED
@@ -44,17 +44,15 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
 def _stiffnesses(found: Compliances, attached: str) -> Facts:
     """Of the whole joint, then of its members, in all directions."""
     rows, members = {}, {}
-    for i, (direction, unit) in enumerate(DIRECTIONS.items()):
-        name = stiffness_name(direction)
-        shares = ", ".join(f"{found.shares[k, i]:.0%} {part}" for k, part in enumerate(PARTS))
+    for name, unit, (whole, interface, alone, _), parts in found.rows():
+        shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, PARTS, strict=True))
         rows[f"whole_{name}"] = (
-            1.0 / found.whole[i],
+            whole,
             unit,
             f"of the whole joint between {ATTACHED[attached]}; of its energy {shares}; the interface alone "
-            f"is {found.whole[i] / found.rigid[i]:.3g} times as stiff",
+            f"is {interface / whole:.3g} times as stiff",
         )
-        text = "of its members, as a spring in series with the rest"
-        members[f"members_{name}"] = (float(found.members[i]), unit, text)
+        members[f"members_{name}"] = (alone, unit, "of its members, as a spring in series with the rest")
     return rows | members
 
 
