@@ -12,6 +12,7 @@ stiff against all modes as that of the finite elements.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.linalg as la
@@ -228,11 +229,12 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     moved = {"opening": opening, "patch_z": means @ traces[2], "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
     most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
-    rounded = {name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()}
+    rounded: dict[str, Any] = {
+        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
+    }
     places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
-    return ElasticBodies(
-        stiffness=_listed(1.0 / most**2), **rounded, **{name: _listed(each) for name, each in places.items()}
-    )
+    rounded |= {name: _listed(each) for name, each in places.items()}
+    return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
 
 
 def _listed(values: Array) -> tuple[float, ...]:

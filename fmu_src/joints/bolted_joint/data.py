@@ -1,7 +1,7 @@
 """The bolted joint's points as data: whatever gives the pressure, its C has a field of points."""
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,8 @@ def _stands(joint: Bolted) -> Mapping[str, object]:
 
 def _one_mode(bolts: int) -> dict[str, object]:
     """Bodies of one mode, one patch and so many bolts."""
-    values: dict[str, tuple[float, ...]] = {item.name: (0.0,) for item in fields(ElasticBodies)}
+    stated = [item.name for item in fields(ElasticBodies) if item.default is MISSING]
+    values: dict[str, tuple[float, ...]] = dict.fromkeys(stated, (0.0,))
     values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolts)}
     return {f"bodies.{name}": value for name, value in values.items()}
 

@@ -94,7 +94,9 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
-    (figure,) = report.whole_joint(Course(model, joint.file))
+    picture, figure = report.joint_figures(Course(model, joint.file))
+    assert "side 1: 10 mm" in picture.pictures[1]
+    assert "the load enters at the outer faces" in picture.pictures[1]
     assert [row[0] for row in figure.table[1:]] == list(AXES)
     assert f"{1e-6 / found.whole[2]:.4g} N/µm" in figure.table[3]
     (panel,) = figure.panels

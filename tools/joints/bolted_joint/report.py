@@ -1,25 +1,65 @@
-"""What the page of a user's bolted joint shows of the whole: interface, members and bolts side by side."""
+"""What the page of a user's bolted joint shows: a picture of it, and the whole beside its parts."""
 
 from collections.abc import Callable
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
+from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import slip_force, working_preload
 from jointfmu.joints.bolted_joint.outputs import bolt_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
+from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import ParameterFile
 
 from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
+from .picture import Layout, plan, section
 
 BEYOND = 4.0
 """Way that is drawn over that at which all is open [1]."""
+
+
+def joint_figures(course: Course) -> list[Figure]:
+    """The joint as a picture, then in numbers."""
+    return [pictured(course), *whole_joint(course)]
+
+
+def pictured(course: Course) -> Figure:
+    """The joint from above, and from the front where the file says how thick its sides are."""
+    joint = course.file.values
+    preload, moment = _tight(course)
+    bodies, bolts = joint.bodies, Layout.of(joint).bolts
+    pictures = [plan(joint, preload, moment)]
+    if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
+        pictures.append(section(joint))
+    text = (
+        "The tightened interface from side 2, grey where it is open; crosses are the patches that carry the "
+        "friction. "
+    )
+    if isinstance(joint.pattern, NodalField):
+        text += "The pressure comes as points, whose discs have their areas: the outline is not in the file. "
+    text += (
+        "Bolts are numbered as the FMU's F_bolt. " if len(bolts) else "The file has no places of the bolts. "
+    )
+    text += (
+        "Hatched is what moves with the bodies that the joint connects; the section is schematic."
+        if joint.elastic
+        else "The sides are rigid: the FMU is the interface"
+        + (" with its bolts." if joint.bolt_stiffness else " alone.")
+    )
+    return Figure("The joint", text, pictures=pictures)
+
+
+def _tight(course: Course) -> tuple[float, float]:
+    """Preload [N] and moment [N.m]."""
+    preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
+    return preload, moment
 
 
 def whole_joint(course: Course) -> list[Figure]:
@@ -28,7 +68,7 @@ def whole_joint(course: Course) -> list[Figure]:
     if not joint.elastic:
         return []
     assert isinstance(spring, BoltedJointSpring)
-    preload, moment = (float(course.about.get(name, 0.0)) for name in ("preload", "moment"))
+    preload, moment = _tight(course)
     found = spring.compliances(preload, moment)
     left = float(working_preload(joint, preload))
     opening = found.opening_load(left)
@@ -84,6 +124,6 @@ def _bolt_forces(spring: BoltedJointSpring, preload: float, moment: float, opens
     return Panel("Bolts under a force along z", "force that pulls [kN]", "force of a bolt [kN]", series)
 
 
-FIGURES = {"BoltedJoint": whole_joint}
+FIGURES = {"BoltedJoint": joint_figures}
 BESIDE: dict[str, Callable[[Model, ParameterFile], list[Beside]]] = {}
 """No catalogue prints what a bolted joint does."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...quantity import check, series
+from ...quantity import check, choice, quantity, series
 
 Array = NDArray[np.float64]
 
@@ -52,6 +52,15 @@ class ElasticBodies:
     y: tuple[float, ...] = series("m", "places of the patches across the rows, from the centroid")
     bolt_x: tuple[float, ...] = series("m", "places of the bolts along the rows, from the centroid")
     bolt_y: tuple[float, ...] = series("m", "places of the bolts across the rows, from the centroid")
+    attached: str = choice(
+        "unstated", "faces", "edge", "heads", doc="what of the bodies moves with what the joint connects"
+    )
+    thickness: tuple[float, ...] = series(
+        "m", "thickness of side 1 and 2 at the bolts, for pictures", gt=0.0, optional=True
+    )
+    head_diameter: float = quantity(
+        "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
+    )
 
     def __post_init__(self) -> None:
         check(self)
@@ -61,6 +70,7 @@ class ElasticBodies:
         counts = {"y": patches, "bolt_y": bolts, "stretch": bolts * modes}
         counts |= {f"patch_{axis}": patches * modes for axis in "xyz"}
         counts["opening"] = modes * max(len(self.opening) // modes, 1)
+        counts |= {"thickness": 2} if self.thickness else {}
         for name, count in counts.items():
             if (given := len(getattr(self, name))) != count:
                 raise ValueError(f"bodies.{name} has {given} numbers, expected {count} with {modes} modes")

@@ -85,10 +85,14 @@ class BoltedPlate:
         return self.length * self.width - 0.25 * np.pi * len(self.x) * self.hole_diameter**2
 
     @property
+    def centroid(self) -> Array:
+        """Of the contact (2) [m], from the middle of the plate."""
+        return np.asarray(-0.25 * np.pi * self.hole_diameter**2 / self.area * self.bolts.sum(axis=0))
+
+    @property
     def bolt_means(self) -> Means:
         """Means of x, y [m], x^2, y^2, x y [m2] of the bolts, from the centroid of the contact."""
-        holes = 0.25 * np.pi * self.hole_diameter**2
-        return means(self.bolts + holes / self.area * self.bolts.sum(axis=0))
+        return means(self.bolts - self.centroid)
 
     @property
     def rows(self) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """The plates of a drawing by finite elements: the pressure between them, and the stiffness of the whole."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -16,6 +16,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
+from jointfmu.quantity import flatten
 
 from ....drawing.vdi2230 import ClampedPart
 from . import ATTACHED
@@ -104,10 +105,15 @@ def whole_of(
         from ....fem.whole_joint import WholeJoint
 
         step("members by finite elements")
-        joint = WholeJoint.of(assembly(), attached)
+        clamped = assembly()
+        joint = WholeJoint.of(clamped, attached)
         springs = _springs(file, preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
-        bodies = elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload)
+        bodies = replace(
+            elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
+            thickness=(clamped.side1.clamped, clamped.side2.clamped),
+            head_diameter=clamped.bolts.head_diameter,
+        )
         return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
 
     return _with_packages("the whole joint", solved)
@@ -115,9 +121,9 @@ def whole_of(
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
     """The joint between elastic sides."""
-    values = replace(file.values, sides="elastic", bodies=bodies)
+    values = replace(file.values, sides="elastic", bodies=replace(bodies, attached=attached))
     source = f"finite elements of the bodies between {ATTACHED[attached]}, reduced to modes"
-    names = [f"bodies.{item.name}" for item in fields(bodies)]
+    names = [f"bodies.{name}" for name, value in flatten(bodies).items() if value != ()]
     stated = "the whole joint between what it connects; rigid: the interface alone"
     return replace(
         file,

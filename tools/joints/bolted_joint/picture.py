@@ -1,0 +1,285 @@
+"""The joint as a picture: its interface from above with pressure and bolts, and a section with its sides."""
+
+from dataclasses import dataclass, field
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointfmu.joints.bolted_joint.bodies import ElasticBodies
+from jointfmu.joints.bolted_joint.law import Bolted, pressures
+from jointfmu.joints.bolted_joint.spring import patches
+from jointfmu.mechanics.footprint.bolts import BoltPattern, pressure_shape
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import NodalField
+
+Array = NDArray[np.float64]
+
+WIDE, HIGH = 420.0, 330.0
+"""Most that the plan takes of the picture [px]."""
+EDGE, TICK = 64.0, 9.0
+"""Free on all sides, and size of hatching [px]."""
+THIN = 70.0
+"""Least height of both sides in the section [px]: below it z is stretched."""
+VIRIDIS = np.array(
+    [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]], dtype=np.float64
+)
+INK, SOFT, RED, OPEN = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
+
+
+@dataclass
+class Sheet:
+    """SVG elements, in pixels, on white paper."""
+
+    width: float
+    height: float
+    parts: list[str] = field(default_factory=list)
+
+    def put(self, kind: str, text: str = "", /, **given: object) -> None:
+        """An element; `_` in names of attributes is `-`."""
+        told = " ".join(
+            f'{name.replace("_", "-")}="{f"{value:.1f}" if isinstance(value, float) else value}"'
+            for name, value in given.items()
+        )
+        self.parts.append(f"<{kind} {told}>{escape(text)}</{kind}>" if text else f"<{kind} {told}/>")
+
+    def line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:
+        """A line, perhaps dashed."""
+        more = {"stroke_dasharray": dash} if dash else {}
+        self.put("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=stroke, **more)
+
+    def text(
+        self, x: float, y: float, text: str, anchor: str = "middle", fill: str = INK, /, **more: object
+    ) -> None:
+        """A line of text."""
+        self.put("text", text, x=x, y=y, text_anchor=anchor, fill=fill, **more)
+
+    def held(self, x1: float, y1: float, x2: float, y2: float) -> None:
+        """The sign of an attachment along a line, hatched on its left."""
+        self.put("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=RED, stroke_width=2)
+        along = np.array([x2 - x1, y2 - y1])
+        size = float(np.hypot(*along))
+        along = along / size
+        out = TICK * (np.array([along[1], -along[0]]) + along)
+        for place in np.arange(0.0, size - 0.5 * TICK, TICK):
+            x, y = np.array([x1, y1]) + place * along
+            self.line(x, y, x + out[0], y + out[1], RED)
+
+    def arrow(self, x: float, y: float, dx: float, dy: float) -> None:
+        """Of a load, from a place."""
+        self.put("line", x1=x, y1=y, x2=x + dx, y2=y + dy, stroke=RED, stroke_width=2.5)
+        tip, back = np.array([x + dx, y + dy]), np.array([dx, dy]) / np.hypot(dx, dy) * 10.0
+        side = 0.4 * np.array([back[1], -back[0]])
+        corners = (tip, tip - back + side, tip - back - side)
+        self.put("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in corners), fill=RED)
+
+    def svg(self, label: str) -> str:
+        """The picture."""
+        head = (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} {self.height:.0f}" '
+            f'width="{self.width:.0f}" role="img" aria-label="{escape(label)}" font-size="13" '
+            'font-family="system-ui, sans-serif">'
+        )
+        paper = f'<rect width="{self.width:.0f}" height="{self.height:.0f}" fill="#fff"/>'
+        return head + paper + "".join(self.parts) + "</svg>"
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What lies where in a joint's plane, from the centroid of its contact [m].
+
+    bolts   : (b, 2), none where the file does not say
+    outline : rectangles (lower corner, upper corner) of the contact, the outer one first; none of a field
+    extent  : (2, 2) lowest and highest places
+    hole, head : diameters, 0 where the file does not say
+    """
+
+    bolts: Array
+    outline: tuple[Array, ...]
+    extent: Array
+    hole: float
+    head: float
+
+    @classmethod
+    def of(cls, joint: Bolted) -> "Layout":
+        """Of a joint's parameters."""
+        pattern = joint.pattern
+        head = joint.bodies.head_diameter if isinstance(joint.bodies, ElasticBodies) else 0.0
+        if isinstance(pattern, NodalField):
+            shape = pressure_shape(pattern)
+            half = np.sqrt(joint.A_0 * shape.share / np.pi)[:, None]
+            extent = np.stack([np.min(shape.position - half, 0), np.max(shape.position + half, 0)])
+            bolts = np.zeros((0, 2))
+            if isinstance(joint.bodies, ElasticBodies):
+                bolts = np.column_stack([joint.bodies.bolt_x, joint.bodies.bolt_y])
+            return cls(bolts, (), extent, 0.0, head)
+        if isinstance(pattern, BoltedPlate):
+            half = 0.5 * np.array([[-pattern.length, -pattern.width], [pattern.length, pattern.width]])
+            outline = (half - pattern.centroid,)
+            return cls(pattern.bolts - pattern.centroid, outline, outline[0], pattern.hole_diameter, head)
+        return cls(pattern.bolts, frame := _frame(pattern), frame[0], pattern.hole_diameter, head)
+
+
+def _frame(pattern: BoltPattern) -> tuple[Array, Array]:
+    half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
+    signs = np.array([[-1.0], [1.0]])
+    return signs * (half + 0.5 * pattern.flange_width), signs * (half - 0.5 * pattern.flange_width)
+
+
+def plan(joint: Bolted, preload: float, moment: float) -> str:
+    """The tightened interface from side 2: pressure, friction's patches, bolts with numbers, attachments."""
+    shape, layout = pressure_shape(joint.pattern), Layout.of(joint)
+    p = np.asarray(pressures(joint, shape, preload, moment))
+    low, high = layout.extent
+    scale = min(WIDE / (high - low)[0], HIGH / (high - low)[1])
+    size = scale * (high - low)
+    sheet = Sheet(max(size[0], 260.0) + 2.0 * EDGE + 90.0, max(size[1], 150.0) + 2.0 * EDGE)
+
+    def at(place: Array) -> Array:
+        return np.array([EDGE, EDGE]) + scale * np.array([place[0] - low[0], high[1] - place[1]])
+
+    cells, points = np.sqrt(joint.A_0 * shape.share), isinstance(joint.pattern, NodalField)
+    top = float(p.max())
+    for i in np.argsort(-cells, kind="stable"):
+        (x, y), side, value = at(shape.position[i]), float(scale * cells[i]), float(p[i])
+        fill = _colour(value / top) if value > 0.0 else OPEN
+        if points:
+            sheet.put("circle", cx=x, cy=y, r=side / np.sqrt(np.pi), fill=fill, fill_opacity=0.85)
+        else:
+            corner = {"x": x - 0.51 * side, "y": y - 0.51 * side}
+            sheet.put("rect", **corner, width=1.02 * side, height=1.02 * side, fill=fill)
+    for lower, upper in layout.outline:
+        (x1, y2), (x2, y1) = at(lower), at(upper)
+        sheet.put("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=INK)
+    friction = patches(joint.pattern)
+    for place in friction.position[np.asarray(pressures(joint, friction, preload, moment)) > 0.0]:
+        x, y = at(place)
+        for dx, dy in ((3.0, 0.0), (0.0, 3.0)):
+            sheet.put("line", x1=x - dx, y1=y - dy, x2=x + dx, y2=y + dy, stroke="#fff", stroke_width=3)
+            sheet.line(x - dx, y - dy, x + dx, y + dy)
+    attached = _attached(joint)
+    _bolts(sheet, np.array([at(bolt) for bolt in layout.bolts]), layout, scale, attached == "heads")
+    (x1, y2), (x2, y1) = at(low), at(high)
+    if attached == "edge":
+        sheet.held(x1, y2, x1, y1)
+        sheet.held(x2, y1, x2, y2)
+        sheet.text(x1 - 14.0, y1 - 10.0, "edge of side 1", "start", RED)
+        sheet.text(x2 + 14.0, y1 - 10.0, "edge of side 2", "end", RED)
+    if attached == "faces":
+        for ends in ((x1, y1, x2, y1), (x2, y1, x2, y2), (x2, y2, x1, y2), (x1, y2, x1, y1)):
+            sheet.held(*ends)
+    told = {"faces": "attached: outer faces of both sides", "heads": "attached: under heads and nuts"}
+    if attached in told:
+        sheet.text(x1, y1 - 22.0, told[attached], "start", RED)
+    sheet.text(0.5 * (x1 + x2), y2 + 26.0, f"{1e3 * (high - low)[0]:.4g} mm, x to the right", "middle", SOFT)
+    turned = f"rotate(-90 {x1 - 26.0:.1f} {0.5 * (y1 + y2):.1f})"
+    sheet.text(
+        x1 - 26.0, 0.5 * (y1 + y2), f"{1e3 * (high - low)[1]:.4g} mm, y up", "middle", SOFT, transform=turned
+    )
+    _bar(sheet, sheet.width - 98.0, EDGE, sheet.height - 2.0 * EDGE, top)
+    moved = f", {moment:g} N m" if moment else ""
+    sheet.text(EDGE, 22.0, f"{preload / 1e3:.4g} kN in each bolt{moved}: up to {top / 1e6:.4g} MPa", "start")
+    return sheet.svg("The interface from above: pressure, bolts, attachments")
+
+
+def _attached(joint: Bolted) -> str:
+    bodies = joint.bodies
+    return bodies.attached if joint.elastic and isinstance(bodies, ElasticBodies) else ""
+
+
+def _colour(part: float) -> str:
+    """Viridis of a part [1] of the greatest pressure."""
+    place = np.linspace(0.0, 1.0, len(VIRIDIS))
+    return "#" + "".join(f"{round(float(np.interp(part, place, column))):02x}" for column in VIRIDIS.T)
+
+
+def _bar(sheet: Sheet, x: float, y: float, height: float, top: float) -> None:
+    steps = 40
+    for k in range(steps):
+        place = y + height * (1.0 - (k + 1) / steps)
+        sheet.put(
+            "rect", x=x, y=place, width=16.0, height=height / steps + 0.6, fill=_colour((k + 0.5) / steps)
+        )
+    for part in (0.0, 0.25, 0.5, 0.75, 1.0):
+        sheet.text(x + 22.0, y + height * (1.0 - part) + 4.0, f"{part * top / 1e6:.3g}", "start")
+    sheet.text(x - 8.0, y - 12.0, "pressure [MPa]", "start")
+
+
+def _bolts(sheet: Sheet, at: Array, layout: Layout, scale: float, held: bool) -> None:
+    """Holes, heads, centre lines and numbers of bolts at (b, 2) [px]."""
+    hole, head = 0.5 * scale * layout.hole, 0.5 * scale * layout.head
+    for number, (x, y) in enumerate(at, start=1):
+        reach = max(hole, head, 6.0) + 7.0
+        if hole:
+            sheet.put("circle", cx=x, cy=y, r=hole, fill="#fff", stroke=INK)
+        if head and held:
+            wide = max(head - hole, 4.0)
+            ring = {"stroke_width": wide, "stroke_dasharray": "2 4", "stroke_opacity": 0.9}
+            sheet.put("circle", cx=x, cy=y, r=head - 0.5 * wide, fill="none", stroke=RED, **ring)
+        if head:
+            sheet.put("circle", cx=x, cy=y, r=head, fill="none", stroke=INK, stroke_width=1.5)
+        for dx, dy in ((reach, 0.0), (0.0, reach)):
+            sheet.line(x - dx, y - dy, x + dx, y + dy, INK, "9 3 2 3")
+        side = reach * 0.72
+        halo = {"stroke": "#fff", "stroke_width": 3, "paint_order": "stroke", "font_weight": 600}
+        sheet.text(x + side, y - side, str(number), "start", **halo)
+
+
+def section(joint: Bolted) -> str:
+    """Both sides from the front with their thicknesses, the bolts, and where the load enters."""
+    bodies = joint.bodies
+    assert isinstance(bodies, ElasticBodies)
+    layout, attached = Layout.of(joint), _attached(joint)
+    (low, _), (high, _) = layout.extent
+    scale = WIDE / (high - low)
+    first, second = bodies.thickness
+    up = max(scale, THIN / (first + second))
+    head = max(0.35 * scale * layout.head, 7.0)
+    middle = EDGE + head + up * second
+    bottom, top = middle + up * first, middle - up * second
+    x1, x2 = EDGE, EDGE + WIDE
+    sheet = Sheet(WIDE + 2.0 * EDGE + 60.0, bottom + head + EDGE)
+    for y, height, fill in ((top, up * second, "#dfe6ef"), (middle, up * first, "#eef1f5")):
+        sheet.put("rect", x=x1, y=y, width=WIDE, height=height, fill=fill, stroke=INK)
+    for y, name, thick in (
+        (0.5 * (top + middle), "side 2", second),
+        (0.5 * (middle + bottom), "side 1", first),
+    ):
+        sheet.text(x2 + 20.0, y + 4.0, f"{name}: {1e3 * thick:.4g} mm", "start", SOFT)
+    places = x1 + scale * (layout.bolts[:, 0] - low)
+    for x in np.unique(np.round(places, 1)):
+        _bolt(sheet, x, (top, bottom), 0.5 * scale * layout.head, head, attached == "heads")
+        names = ", ".join(str(j + 1) for j in np.flatnonzero(np.abs(places - x) < 0.1))
+        sheet.text(x, bottom + head + 24.0, names)
+    enters = {"faces": "the outer faces", "edge": "the edges", "heads": "what lies under heads and nuts"}
+    if attached == "edge":
+        sheet.held(x1, bottom, x1, middle)
+        sheet.held(x2, top, x2, middle)
+        sheet.arrow(x2 + 14.0, top - 14.0, 40.0, 0.0)
+        sheet.arrow(x1 - 14.0, bottom + 14.0, -40.0, 0.0)
+    elif attached in enters:
+        if attached == "faces":
+            sheet.held(x1, top, x2, top)
+            sheet.held(x2, bottom, x1, bottom)
+        for x in (x1, x2) if attached == "faces" else (np.min(places), np.max(places)):
+            beside = 0.5 * scale * layout.head + 12.0 if attached == "heads" else 0.0
+            sheet.arrow(x + beside, top - 14.0, 0.0, -34.0)
+            sheet.arrow(x + beside, bottom + 14.0, 0.0, 34.0)
+    if attached in enters:
+        sheet.text(x1, 22.0, f"the load enters at {enters[attached]} (hatched)", "start", RED)
+    if up > 1.01 * scale:
+        sheet.text(x1, sheet.height - 10.0, f"z drawn {up / scale:.2g} times as large as x", "start", SOFT)
+    return sheet.svg("Both sides from the front, with bolts and attachments")
+
+
+def _bolt(sheet: Sheet, x: float, ends: tuple[float, float], half: float, head: float, held: bool) -> None:
+    """One bolt through both sides, with head and nut; schematic."""
+    (top, bottom), shank = ends, 0.6 * half
+    sheet.put("rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=INK)
+    for y in (top - head, bottom):
+        sheet.put("rect", x=x - half, y=y, width=2.0 * half, height=head, fill="#fff", stroke=INK)
+    if held:
+        under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
+        for y in ends:
+            sheet.put("line", x1=x - half, y1=y, x2=x + half, y2=y, **under)
+    sheet.line(x, top - head - 8.0, x, bottom + head + 8.0, INK, "9 3 2 3")
