@@ -77,6 +77,10 @@ def test_slip_force_has_the_band_of_friction():
     slip, mu = found.quantiles["slip_force"][:, -1], 0.1 + 0.2 * np.array(propagate.QUANTILES)
     assert slip == pytest.approx(mu / task.values["mu"] * found.nominal["slip_force"][-1], rel=2e-3)
     assert np.ptp(found.quantiles["K_zz"][:, -1]) == 0.0
+    # loss goes about as 1/mu under an equal shear, faster as more slips
+    lost = found.quantiles["loss_factor"][::-1, -1] * mu
+    assert np.all(np.diff(lost) < 0.0)
+    assert lost[0] / lost[-1] < 1.5
 
 
 def test_nominal_is_the_parameter_file():

@@ -6,7 +6,7 @@ over the log of the pressure whose places relative to the end of the ramp are th
 one matrix for all of them.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -27,6 +27,7 @@ from ...batch.approach import held, tabulate
 from ...batch.chebyshev import discrete_gauss
 from ...batch.samples import columns
 from ...uncertainty.reduced import Reduced
+from .loss import SHEAR, loss_factor, loss_factors, shear_at
 
 Array = NDArray[np.float64]
 
@@ -38,6 +39,8 @@ _POWER = 0.8
 """The stiffness grows about like this power of the pressure; what is left is interpolated."""
 _PLAN = ("pattern.", "plate.")
 """Prefixes of what decides the distribution of the pressure."""
+FEW = 7
+"""Loads at which the loss factor is computed [1]."""
 _BELOW = 1e-6
 """Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
 
@@ -88,8 +91,8 @@ class Places:
 def evaluate(
     parameters: type[Any], values: Mapping[str, Any], loads: Array, factor: Array
 ) -> dict[str, Array]:
-    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m], approach [m] and slip_force [N] (n, m) at preloads factor (n, 1)
-    times loads (m) that embedding has left.
+    """K_zz, K_xx [N/m], C_zz, C_xx [N.s/m], approach [m], slip_force [N] and loss_factor [1] (n, m) at
+    preloads factor (n, 1) times loads (m) that embedding has left.
 
     The approach is the integral of dF/K_zz over the force F of all bolts, from zero.
     values : by structured name, numbers or samples (n); samples of the pattern go one by one
@@ -155,12 +158,41 @@ def _evaluate(
     zero = np.zeros((factor.size, int(np.sum(~touching))))
     curves = {name: np.concatenate([zero, value], axis=1) for name, value in curves.items()}
     slip = np.broadcast_to(slip_force(joint, factor * loads), curves["K_zz"].shape)
-    return curves | {"K_zz": curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness, "slip_force": slip}
+    curves["K_zz"] = curves["K_zz"] + joint.n_bolts * joint.bolt_stiffness
+    few, between = _few(ramp)
+    lost = loss_factors(_pressed(table["k"], places, few), equal, shares, joint.mu, (factor.size, few.size))
+    lost = lost @ between
+    return curves | {"slip_force": slip, "loss_factor": np.concatenate([zero, lost], axis=1)}
+
+
+def _few(ramp: Array) -> tuple[Array, Array]:
+    """Few loads, as logs (f), and what carries values there to the ramp (f, m): the loss hardly changes."""
+    if ramp.size <= FEW:
+        return ramp, np.eye(ramp.size)
+    few = np.linspace(ramp[0], ramp[-1], FEW)
+    return few, np.asarray(CubicSpline(few, np.eye(FEW))(ramp).T)
+
+
+def _pressed(log_k: Array, places: Places, ramp: Array) -> Callable[[Array], Array]:
+    """Stiffness (n, m, e) at pressures over the mean ones (n, m, e) of a ramp (m), from its log (n, t) at the
+    table's places; beyond the places it goes as a power."""
+    first, last = places.table[0], places.table[-1]
+    rest = log_k - _POWER * places.table
+    row = np.arange(len(log_k))[:, None, None]
+
+    def stiffness(pressure: Array) -> Array:
+        x = np.log(pressure) + ramp[:, None]
+        at = (np.clip(x, first, last) - first) / CELL
+        i = np.minimum(at.astype(np.int64), places.table.size - 2)
+        low, high = rest[row, i], rest[row, i + 1]
+        return np.asarray(np.exp(low + (at - i) * (high - low) + _POWER * x))
+
+    return stiffness
 
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
-    """Stiffness, damping, approach and slip force (m) of the spring on all nodes, in full stick, at preloads
-    (m) [N] that embedding has left.
+    """Stiffness, damping, approach, slip force and loss factor (m) of the spring on all nodes, in full stick,
+    at preloads (m) [N] that embedding has left.
     """
     alone = replace(interface_alone(joint), memory=False, embedding=0.0)
     spring, rest = BoltedJointSpring.of_nodes(alone), (0.0, 0.0, 0.0)
@@ -168,7 +200,9 @@ def exact(joint: Bolted, loads: Array) -> dict[str, Array]:
     curves = {name: np.array([state[name] for state in states]) for name in _OUTPUTS}
     pressure = node_pressure(alone, spring.shape.equal, spring.shape.tilt, loads[:, None], 0.0)
     slip = alone.A_0 * spring.foundation().friction * (pressure @ spring.shape.share)
-    return curves | {"approach": approach(spring, loads), "slip_force": slip}
+    lost = [loss_factor(spring, each, shear_at(alone, each)) if each > 0.0 else 0.0 for each in loads]
+    found = {"approach": approach(spring, loads), "slip_force": slip, "loss_factor": np.array(lost)}
+    return curves | found
 
 
 def approach(spring: BoltedJointSpring, loads: Array) -> Array:
@@ -198,6 +232,7 @@ REDUCED = Reduced(
         *(KIND.variables[name] for name in _OUTPUTS),
         Variable("approach", "m", "approach of the two sides by tightening, from no preload", 1e-6),
         Variable("slip_force", "N", "shear force at which all of the interface slips", 1e4),
+        Variable("loss_factor", "1", f"of a loop under a shear of {SHEAR:g} times the bolts' force", 0.1),
     ),
     to=lambda joint: 30e3,
     most=lambda joint: joint.H * joint.A_0 / joint.n_bolts,

@@ -19,6 +19,7 @@ from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
+from .loss import friction_band
 from .picture import Layout, plan, section
 
 BEYOND = 4.0
@@ -27,7 +28,7 @@ BEYOND = 4.0
 
 def joint_figures(course: Course) -> list[Figure]:
     """The joint as a picture, then in numbers."""
-    return [pictured(course), *whole_joint(course)]
+    return [pictured(course), *whole_joint(course), *friction(course)]
 
 
 def pictured(course: Course) -> Figure:
@@ -54,6 +55,21 @@ def pictured(course: Course) -> Figure:
         + (" with its bolts." if joint.bolt_stiffness else " alone.")
     )
     return Figure("The joint", text, pictures=pictures)
+
+
+def friction(course: Course) -> list[Figure]:
+    """What the range of mu does to slip and loss, where the file states one."""
+    if "mu" not in course.file.ranges:
+        return []
+    shear, rows = friction_band(course.file, _tight(course)[0])
+    table = [("mu", "all slips at", f"loss factor at {_told(shear, 'N')} of shear")]
+    for row in sorted(rows):
+        table.append((f"{row.mu:.4g}", _told(row.slip_force, "N"), f"{row.loss_factor:.3g}"))
+    text = (
+        f"The number known least: {course.file.sources['mu']}. The loss is that of the interface between "
+        "rigid sides, under the same shear force."
+    )
+    return [Figure("What the friction may be", text, table=table)]
 
 
 def _tight(course: Course) -> tuple[float, float]:

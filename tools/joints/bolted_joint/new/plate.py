@@ -1,12 +1,11 @@
 """The parameters of a bolted joint from the drawing of its plates."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, slip_force, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
@@ -17,6 +16,7 @@ from ....drawing.reading import number, numbers
 from ....drawing.sheet import Sheet
 from ....drawing.tables import Thread, classes, thread_source
 from ....pressure import overload
+from ..loss import friction_band
 from . import layout, whole
 from .computed import Plates, with_computed_field
 
@@ -237,40 +237,16 @@ def _embedding(sheet: Sheet, given: Given, one: Clamped, heights: faces.Heights)
     return loss
 
 
-LOSS_AT = 0.1
-"""Shear over mu times the normal force [1] at which the loss factor is told."""
-
-
 def _friction(file: ParameterFile, preload: float) -> dict[str, tuple[float, str, str]]:
-    """The shear at which all slips and the loss factor at a part of it, with the range of mu beside them.
-
-    The loss factor is that of a loop of the interface between rigid sides, under the same shear force.
-    """
-    joint = file.values
-    left = float(working_preload(joint, preload))
-    shear = LOSS_AT * float(slip_force(joint, left))
+    """The shear at which all slips and the loss factor at a part of it, with the range of mu beside them."""
+    shear, rows = friction_band(file, preload)
     slip, loss = "shear force at which all of the interface slips", f"loss factor at {shear:.3g} N of shear"
-    low, high = file.ranges.get("mu", (joint.mu, joint.mu))
     facts = {}
-    for name, mu in (("", joint.mu), ("_low", low), ("_high", high))[: 3 if high > low else 1]:
-        text = f"; with mu = {mu:g}"
-        other = replace(joint, mu=mu)
-        facts[f"slip_force{name}"] = (float(slip_force(other, left)), "N", slip + text)
-        facts[f"loss_factor{name}"] = (_loss_factor(other, preload, shear), "1", loss + text)
+    for name, row in zip(("", "_low", "_high"), rows, strict=False):
+        text = f"; with mu = {row.mu:g}"
+        facts[f"slip_force{name}"] = (row.slip_force, "N", slip + text)
+        facts[f"loss_factor{name}"] = (row.loss_factor, "1", loss + text)
     return facts
-
-
-def _loss_factor(joint: Bolted, preload: float, shear: float) -> float:
-    """Loss over 2 pi times the stored energy of a loop with an amplitude of the shear force [N]."""
-    spring = BoltedJointSpring.of(joint)
-    law, share = spring.foundation(), spring.patches.share
-    approach = spring.curve.inverse(pressures(joint, spring.patches, preload, 0.0))
-    reach = law.friction / law.ratio * float(np.max(approach - spring.curve.displacement[0]))
-    size = reach * np.linspace(0.0, 1.0, 400)[1:] ** 2
-    force = joint.A_0 * (law.backbone(approach, size[:, None]) @ share)
-    amplitude = float(np.interp(shear, force, size))
-    lost, stored = (float(share @ each) for each in law.loop(approach, np.full(approach.size, amplitude)))
-    return lost / (2.0 * np.pi * stored)
 
 
 def _facts(
