@@ -82,6 +82,11 @@ class Trials:
     before: Memory
     told: str
 
+    @property
+    def difference(self) -> float:
+        """Step [m] of differences that stand for derivatives."""
+        return DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
+
     def place(self, part: float) -> Place:
         """Where it is after a part [1] of the way."""
         if part == 1.0:
@@ -114,7 +119,7 @@ class Trials:
     def tangents(self, place: Place, amplitude: Array) -> Array:
         """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
         approach = self.approaches(place, amplitude)[1]
-        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
+        step = self.difference
 
         def traction(further: Array) -> Array:
             return self._way(place, amplitude, approach, further).moved.traction

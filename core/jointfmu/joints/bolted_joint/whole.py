@@ -7,7 +7,8 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
 
 at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the symmetric
 part H = G^T W G + S of the slope, W the tangents of points, patches and bolts, which Broyden's update carries
-on; the part of H that is left to the attachments where a follows is the stiffness of the whole.
+on; where that stalls, with the exact derivative of r. The part of H that is left to the attachments where a
+follows is the stiffness of the whole.
 """
 
 from collections.abc import Sequence
@@ -67,6 +68,10 @@ class Trials(Protocol[T]):
     @property
     def told(self) -> str:
         """The place, as text."""
+
+    @property
+    def difference(self) -> float:
+        """Step [m] of differences that stand for derivatives."""
 
     def place(self, part: float) -> Place:
         """Where it is after a part [1] of the way."""
@@ -183,6 +188,20 @@ class Whole:
             rate = (found[0] - amplitude) / (part - done)
             amplitude, done, step = found[0], part, 2.0 * step
 
+    def _exact(self, trials: "Trials[T]", tight: Array, place: Place, amplitude: Array) -> Array:
+        """Derivative (k, k) [N/m] of the residual by the amplitudes, by central differences.
+
+        Beside the tangents it has how the normal force acts on friction: it is not symmetric.
+        """
+
+        def there(further: Array) -> Array:
+            moved = amplitude + further
+            return self.residual(trials.at(place, moved), tight, place, moved)[0]
+
+        steps = trials.difference * np.eye(amplitude.size)
+        rises = [there(step) - there(-step) for step in steps]
+        return np.stack(rises, axis=1) / (2.0 * trials.difference)
+
     def _newton(
         self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array
     ) -> tuple[Array, T] | float:
@@ -192,11 +211,14 @@ class Whole:
         r, least = self.residual(at, tight, place, amplitude)
         before, J = 0.0, np.eye(r.size)
         steps: list[Array] = []
-        for _ in range(STEPS):
+        for n in range(STEPS):
             left = float(np.max(np.abs(r)))
             if left <= close * least:
                 return amplitude, at
-            if not left < CHORD * before:
+            far = n >= STEPS // 2  # tangents do not get there
+            if far:
+                J, steps = self._exact(trials, tight, place, amplitude), []
+            elif not left < CHORD * before:
                 J, steps = self.slope(at.stiffness, trials.tangents(place, amplitude))[6:, 6:], []
             step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
             steps.append(step)
