@@ -46,6 +46,22 @@ class BoltedInterface(InterfaceLaw, Protocol):
         """What gives the pressure; tables [pattern], [plate] and [field] of a parameter file."""
 
 
+class BoltLayout(Protocol):
+    """What parameters say of their bolts: 0 or nothing where they do not."""
+
+    @property
+    def bolts(self) -> Array:
+        """Places (b, 2) [m] from the centroid of the contact."""
+
+    @property
+    def hole(self) -> float:
+        """Diameter [m]."""
+
+    @property
+    def head(self) -> float:
+        """Outer diameter [m] of what presses."""
+
+
 @dataclass(frozen=True, slots=True)
 class Clamping:
     """How such a joint carries its bolts' forces: `FIELD` of the file field.py in its folder.
@@ -53,12 +69,14 @@ class Clamping:
     pressures   : node pressures (m, n) [Pa] of parameters, a shape (n), preloads (m) [N] per bolt and moments
                   (m) [N.m]: (preload n_bolts equal + moment/L_a tilt)/A_0, and 0 where that is negative
     shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
+    layout      : places of its bolts and sizes of holes and heads, as far as parameters have them
     whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
                   force [N] that tightens each bolt
     """
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
+    layout: Callable[[Any], BoltLayout]
     whole: Callable[[ParameterFile, Any, float, str], ParameterFile]
 
 

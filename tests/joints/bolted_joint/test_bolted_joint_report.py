@@ -5,7 +5,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from jointfmu_tools.joints.bolted_joint.picture import Layout, plan
+from jointfmu_tools.joints.bolted_joint.layout import Layout
+from jointfmu_tools.joints.bolted_joint.picture import plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
 from jointfmu_tools.report.course import Course
 

@@ -14,6 +14,7 @@ from jointfmu_tools.joints.bolted_joint.new import computed, whole
 from jointfmu_tools.report.course import Course
 
 from jointfmu.joints import KINDS
+from jointfmu.joints.bolted_joint import trials
 from jointfmu.joints.bolted_joint import whole as equilibrium
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import interface_alone
@@ -94,9 +95,10 @@ def test_the_report_states_the_whole_beside_its_parts(made):
     np.testing.assert_allclose(found.bolt_force[:, 2], fe.bolt_force[:, 2], rtol=0.05)
 
     model = KINDS[joint.file.joint].models[0]
-    picture, figure = report.joint_figures(Course(model, joint.file))
+    picture, figure, friction = report.joint_figures(Course(model, joint.file))
     assert "side 1: 10 mm" in picture.pictures[1]
     assert "the load enters at the outer faces" in picture.pictures[1]
+    assert [row[0] for row in friction.table[1:]] == ["0.1", "0.15", "0.3"]
     assert [row[0] for row in figure.table[1:]] == list(AXES)
     assert f"{1e-6 / found.whole[2]:.4g} N/µm" in figure.table[3]
     (panel,) = figure.panels
@@ -262,6 +264,47 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     assert "--sides elastic beside --tapped" in line
 
 
+def test_where_tangents_stall_the_exact_derivative_goes_on(made, monkeypatch):
+    """Tangents of a fiftieth find no equilibrium: the same forces without them. A path far into slip and
+    opening on which the true ones stall is found without parts."""
+    spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
+    unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
+    names = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+
+    def gone(a, b, steps):
+        memory, forces = spring.at_rest(), []
+        for angle in np.linspace(0.0, 2.0 * np.pi, 25)[:steps]:
+            six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
+            out, memory = at(spring, *six, memory=memory, preload=15e3)
+            forces.append([out[name] for name in names])
+        return np.array(forces)
+
+    def tangent_only(self, way, tight, place, amplitude):
+        there = way.at(place, amplitude).stiffness
+        return self.slope(there, way.tangents(place, amplitude))[6:, 6:]
+
+    whole_type, trials_type = equilibrium.Whole, trials.Trials
+    a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit / 8.0
+    expected, tangents, newton = gone(a, b, 4), trials_type.tangents, whole_type._newton
+    with monkeypatch.context() as patch:
+        patch.setattr(trials_type, "tangents", lambda *args: 0.02 * tangents(*args))
+        np.testing.assert_allclose(gone(a, b, 4), expected, rtol=1e-9, atol=1e-5)
+        patch.setattr(whole_type, "_exact", tangent_only)
+        with pytest.raises(ValueError, match="find no equilibrium"):
+            gone(a, b, 4)
+    for _ in range(40):
+        a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
+    found = []
+
+    def watched(*args):
+        found.append(newton(*args))
+        return found[-1]
+
+    monkeypatch.setattr(whole_type, "_newton", watched)
+    gone(a, b, 15)
+    assert len(found) == 15
+
+
 def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
@@ -317,12 +360,14 @@ def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, cap
 
 
 @pytest.mark.slow
-def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path):
+def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys):
     """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
     less than the interface has of the compliance; a field alone leaves no body behind."""
     drawn, out = made(*FOUR, "--embedding", "800", preload=15e3), tmp_path / "whole.toml"
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
-    assert cli.main([*words, "--refinement", "0.5", "--attached", "faces", "--out", str(out)]) == 0
+    field, back = tmp_path / "field.csv", tmp_path / "back.toml"
+    both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
+    assert cli.main([*words, "--refinement", "0.5", *both]) == 0
     spring = BoltedJointSpring.of(load(out).values)
     assert spring.joint.elastic
     found, before = spring.compliances(15e3), drawn.spring.compliances(15e3)
@@ -330,3 +375,19 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path):
     assert found.bolts == pytest.approx(before.bolts, rel=1e-3)
     assert cli.main([*words, "--refinement", "0.5", "--out", str(out)]) == 0
     assert not load(out).values.elastic
+    # its field brought back, with plates of the rectangle around it: on a finer mesh the same joint
+    again = ["footprint", "import", str(field), "--open", "keep", *words[3:]]
+    assert cli.main([*again, "--thickness", "10", "10", "--out", str(back)]) == 0
+    returned = BoltedJointSpring.of(load(back).values)
+    assert returned.joint.elastic
+    np.testing.assert_allclose(returned.compliances(15e3).whole, found.whole, rtol=0.05)
+    np.testing.assert_allclose(returned.joint.pattern.bolt_means, spring.joint.pattern.bolt_means, atol=1e-6)
+    capsys.readouterr()
+    for wrong, told in (
+        (["--thickness", "1", "10"], "side1 is 1 mm thick, expected at least 1.3"),
+        (["--attached", "edge"], "--attached edge without --thickness"),
+        (["--thickness", "10", "10", "--bolts", "1,1"], "--bolts has 1 places, expected 4"),
+        (["--bolts", "1,1", "2,2", "3,3", "80,1"], "bolt 4 at (80, 1) mm is outside the contact"),
+    ):
+        assert told in refused_line(capsys, *again, *wrong, "--out", str(tmp_path / "none.toml"))
+        assert not (tmp_path / "none.toml").exists()

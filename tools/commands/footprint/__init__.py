@@ -13,6 +13,8 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
+from ...fields.clamped import clamping
+from . import bodies
 from . import compute as footprint_compute
 from .finite_elements import joint_file
 
@@ -68,6 +70,7 @@ def _import(steps: Commands) -> None:
     )
     step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
     step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    bodies.arguments(step)
     step.set_defaults(options=OPTIONS)
 
 
@@ -82,10 +85,13 @@ def _run_import(args: argparse.Namespace) -> int:
     from ...fields.joint_parameters import FORCE_ERROR, with_field
 
     start = joint_file(args.params)
+    bodies.check(args, start)
     field, tilted = _reading(args).field(args.file, args.moment_file)
     source = f"nodal contact result {args.file.name}"
     if args.moment_file:
         source += f" and {args.moment_file.name}"
+    at = bodies.places(args, start, field)
+    plates, told = bodies.assembly(args, start, field, at) if args.thickness else (None, [])
     file, reduction = with_field(
         start,
         field,
@@ -93,9 +99,13 @@ def _run_import(args: argparse.Namespace) -> int:
         source,
         tilted=tilted,
         moment=args.moment,
+        bolts=at,
         tolerance=FORCE_ERROR if args.force_tolerance is None else args.force_tolerance,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
+    if plates:
+        preload = args.preload + file.values.embedding
+        file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces")
     if args.plot:
         figure.draw(field, reduction, args.plot)
     if args.out:
@@ -104,6 +114,8 @@ def _run_import(args: argparse.Namespace) -> int:
     found = judge(
         KINDS[file.joint].law_of(file.values), [facts["p_mean"]], known_height(file), facts["p_max"]
     )
+    facts |= {"outline": told[0]} if told else {}
+    found = found.with_warnings(told[1:])
     scaled = facts["force_of_the_bolts"] / field.force - 1.0
     if abs(scaled) > FORCE_ERROR:
         text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
@@ -190,4 +202,6 @@ def _lines(facts: dict[str, Any], before: float) -> list[str]:
         lines.append(
             f"larger moments open nodes: within {facts['deviation_beyond']:.1e} until a row is unloaded"
         )
+    if "outline" in facts:
+        lines.append(facts["outline"])
     return [*lines, *(f"wrote {path}" for path in facts["written"])]

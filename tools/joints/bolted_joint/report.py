@@ -19,8 +19,9 @@ from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
+from .layout import Layout
 from .loss import friction_band
-from .picture import Layout, plan, section
+from .picture import plan, section
 
 BEYOND = 4.0
 """Way that is drawn over that at which all is open [1]."""
