@@ -67,6 +67,25 @@ class Plate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TappedPlate(Plate):
+    """A plate with blind holes as deep as the threads that hold the bolts."""
+
+    depth: float = quantity("m", "depth of the threads from the contact", gt=0.0)
+
+    def __post_init__(self) -> None:
+        check(self)
+        if not self.depth < self.thickness:
+            raise ValueError(
+                f"thickness = {self.thickness:g} m is outside ({self.depth:g}, inf): deeper than its threads"
+            )
+
+    def layers(self) -> tuple[Layer, ...]:
+        """The slabs of the body, from the contact outward."""
+        half = (0.5 * self.length, 0.5 * self.width)
+        return Layer(0.0, self.depth, half, drilled=True), Layer(self.depth, self.thickness, half)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BoxSection:
     """A rectangular box open at the contact: a flange there, four walls, a floor at the far end."""
 
@@ -114,7 +133,7 @@ class BoxSection:
         return 0.5 * self.length - inset, 0.5 * self.width - inset
 
 
-Body = Plate | BoxSection
+Body = Plate | TappedPlate | BoxSection
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,6 +221,8 @@ def check_bolts(assembly: Assembly) -> None:
 def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
     """What keeps a disc on the flange from lying flat; None if nothing does."""
     flange, *rest = body.layers()
+    if isinstance(body, TappedPlate):
+        return None  # nothing lies on it
     if not _within(x, y, radius, flange.outer) or _meets(x, y, radius, flange.inner):
         return "reaches beyond the flange"
     if rest and _meets(x, y, radius, rest[0].outer) and not _within(x, y, radius, rest[0].inner):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshHex, MeshQuad
 
-from .geometry import Array, Assembly, Body, Layer, rectangles
+from .geometry import Array, Assembly, Body, Layer, TappedPlate, rectangles
 
 Index = NDArray[np.int64]
 
@@ -18,6 +18,8 @@ SIZE_AT_HOLES = 1.0 / 10.0
 """Edge of an element at a hole over the hole's circumference [1], at refinement 1."""
 ELEMENTS_ACROSS = 4
 """Elements across the narrowest strip of the contact at refinement 1."""
+WALL = 1.02
+"""Diameter around the walls of a hole over its own [1]."""
 LAYERS = 2
 """Layers of elements through the thickness under a bolt's head at refinement 1."""
 
@@ -167,7 +169,7 @@ def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0
     """Extrude the plan into one body: side 1 towards -z, side 2 towards +z.
 
     Its named boundaries are `contact`, all of its face on z = 0, and `head1`, `head2`, ... under the
-    heads of the bolts.
+    heads of the bolts, or the walls of their threads.
     """
     body = assembly.side1 if side == 1 else assembly.side2
     heights, owner = levels(body, refinement, 2.0 * sizes(assembly, refinement)[1])
@@ -183,7 +185,7 @@ def body_mesh(plan: Plan, assembly: Assembly, side: int, refinement: float = 1.0
     used, cells = np.unique(corners, return_inverse=True)
     points = np.concatenate([np.tile(plan.points, heights.size), np.repeat(heights, count)[None]])
     mesh = MeshHex(np.ascontiguousarray(points[:, used]), np.ascontiguousarray(cells.reshape(8, -1)))
-    return mesh.with_boundaries(_boundaries(mesh, assembly, body.clamped if side == 2 else -body.clamped))
+    return mesh.with_boundaries(_boundaries(mesh, assembly, side))
 
 
 def levels(body: Body, refinement: float, tall: float) -> tuple[Array, list[int]]:
@@ -207,15 +209,19 @@ def _hexahedra(lower: Index, upper: Index) -> Index:
     return np.stack([g, c, f, h, b, d, e, a])
 
 
-def _boundaries(mesh: MeshHex, assembly: Assembly, heads_at: float) -> dict[str, Index]:
-    bolts = assembly.bolts
+def _boundaries(mesh: MeshHex, assembly: Assembly, side: int) -> dict[str, Index]:
+    bolts, body = assembly.bolts, assembly.side1 if side == 1 else assembly.side2
+    heads_at = body.clamped if side == 2 else -body.clamped
     x, y, z = mesh.p[:, mesh.facets].mean(axis=1)
     free = np.zeros(z.size, dtype=bool)
     free[mesh.boundary_facets()] = True
     slack = 1e-9 + 1e-6 * abs(heads_at)
     boundaries = {"contact": np.flatnonzero(free & (np.abs(z) < slack))}
     flat = free & (np.abs(mesh.p[2, mesh.facets] - heads_at).max(axis=0) < slack)
+    reach = bolts.head_diameter
+    if isinstance(body, TappedPlate):
+        flat, reach = free & (np.ptp(mesh.p[2, mesh.facets], axis=0) > slack), WALL * bolts.hole_diameter
     for i, at in enumerate(bolts.positions):
-        under = np.hypot(x - at[0], y - at[1]) < 0.5 * bolts.head_diameter
+        under = np.hypot(x - at[0], y - at[1]) < 0.5 * reach
         boundaries[f"head{i + 1}"] = np.flatnonzero(flat & under)
     return boundaries

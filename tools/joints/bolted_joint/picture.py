@@ -190,16 +190,16 @@ def section(joint: Bolted) -> str:
     assert isinstance(bodies, ElasticBodies)
     layout, attached = Layout.of(joint), _attached(joint)
     (low, _), (high, _) = layout.extent
-    scale = WIDE / (high - low)
     first, second = bodies.thickness
+    scale = min(WIDE / (high - low), HIGH / (first + second))
     up = max(scale, THIN / (first + second))
     head = max(0.35 * scale * layout.head, 7.0)
     middle = EDGE + head + up * second
     bottom, top = middle + up * first, middle - up * second
-    x1, x2 = EDGE, EDGE + WIDE
-    sheet = Sheet(WIDE + 2.0 * EDGE + 60.0, bottom + head + EDGE)
+    x1, x2 = EDGE, EDGE + scale * (high - low)
+    sheet = Sheet(max(x2 - x1, 300.0) + 2.0 * EDGE + 60.0, bottom + head + EDGE)
     for y, height, fill in ((top, up * second, "#dfe6ef"), (middle, up * first, "#eef1f5")):
-        sheet.put("rect", x=x1, y=y, width=WIDE, height=height, fill=fill, stroke=INK)
+        sheet.put("rect", x=x1, y=y, width=x2 - x1, height=height, fill=fill, stroke=INK)
     for y, name, thick in (
         (0.5 * (top + middle), "side 2", second),
         (0.5 * (middle + bottom), "side 1", first),
@@ -207,7 +207,8 @@ def section(joint: Bolted) -> str:
         sheet.text(x2 + 20.0, y + 4.0, f"{name}: {1e3 * thick:.4g} mm", "start", SOFT)
     places = x1 + scale * (layout.bolts[:, 0] - low)
     for x in np.unique(np.round(places, 1)):
-        _bolt(sheet, x, (top, bottom), 0.5 * scale * layout.head, head, attached == "heads")
+        ends = (middle - up * bodies.thread_depth if bodies.thread_depth else top, bottom)
+        _bolt(sheet, x, ends, 0.5 * scale * layout.head, head, attached == "heads", bodies.thread_depth > 0.0)
         names = ", ".join(str(j + 1) for j in np.flatnonzero(np.abs(places - x) < 0.1))
         sheet.text(x, bottom + head + 24.0, names)
     enters = {"faces": "the outer faces", "edge": "the edges", "heads": "what lies under heads and nuts"}
@@ -231,14 +232,16 @@ def section(joint: Bolted) -> str:
     return sheet.svg("Both sides from the front, with bolts and attachments")
 
 
-def _bolt(sheet: Sheet, x: float, ends: tuple[float, float], half: float, head: float, held: bool) -> None:
-    """One bolt through both sides, with head and nut; schematic."""
+def _bolt(
+    sheet: Sheet, x: float, ends: tuple[float, float], half: float, head: float, held: bool, tapped: bool
+) -> None:
+    """One bolt with head and nut, or to the end of its thread; schematic."""
     (top, bottom), shank = ends, 0.6 * half
     sheet.put("rect", x=x - shank, y=top, width=2.0 * shank, height=bottom - top, fill="#fff", stroke=INK)
-    for y in (top - head, bottom):
+    for y in (bottom,) if tapped else (top - head, bottom):
         sheet.put("rect", x=x - half, y=y, width=2.0 * half, height=head, fill="#fff", stroke=INK)
     if held:
         under = {"stroke": RED, "stroke_width": 5, "stroke_dasharray": "2 3"}
-        for y in ends:
+        for y in (bottom,) if tapped else ends:
             sheet.put("line", x1=x - half, y1=y, x2=x + half, y2=y, **under)
     sheet.line(x, top - head - 8.0, x, bottom + head + 8.0, INK, "9 3 2 3")

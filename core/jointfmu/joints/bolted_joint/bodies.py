@@ -61,6 +61,9 @@ class ElasticBodies:
     head_diameter: float = quantity(
         "m", "outer diameter of what lies under heads and nuts, for pictures", ge=0.0, default=0.0
     )
+    thread_depth: float = quantity(
+        "m", "depth of the threads in side 2, for pictures; 0: bolts go through", ge=0.0, default=0.0
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -32,7 +32,8 @@ T = TypeVar("T")
 @dataclass(frozen=True, slots=True)
 class Plates:
     """Two plates with their bolts: layers and density [kg/m3] of side 1 and 2, bearing [m] the diameter under
-    head and nut, preload [N] of each bolt and tension [N] that embedding leaves of it."""
+    head and nut, preload [N] of each bolt and tension [N] that embedding leaves of it, depth [m] of its
+    thread in side 2 (0: it goes through)."""
 
     plate: BoltedPlate
     layers: tuple[ClampedPart, ...]
@@ -40,11 +41,12 @@ class Plates:
     density: tuple[float, ...]
     preload: float
     tension: float
+    depth: float = 0.0
 
     def assembly(self, file: ParameterFile) -> "Assembly":
         """The bodies. Raises ValueError for heads that overlap or leave the plate."""
         from ....fem.bolts import BoltList
-        from ....fem.geometry import Assembly, Plate
+        from ....fem.geometry import Assembly, Plate, TappedPlate
 
         sides = [
             Plate(
@@ -57,6 +59,8 @@ class Plates:
             )
             for i, layer in enumerate(self.layers)
         ]
+        if self.depth:
+            sides[1] = TappedPlate(**flatten(sides[1]), depth=self.depth)
         at = self.plate
         bolts = BoltList(x=at.x, y=at.y, hole_diameter=at.hole_diameter, head_diameter=self.bearing)
         return Assembly(file.name, sides[0], sides[1], bolts)
@@ -114,6 +118,7 @@ def whole_of(
             elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
             thickness=(clamped.side1.clamped, clamped.side2.clamped),
             head_diameter=clamped.bolts.head_diameter,
+            thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
         return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
 

@@ -26,7 +26,9 @@ SAME = 1e-6
 """How far the thicknesses may be from the grip [1]."""
 LONGEST = 50
 """Most grip over the diameter of the thread: beyond it a bolt is a tie rod."""
-ALONE = "the FMU is the interface alone: members and bolts of a tapped joint are not computed"
+ALONE = "the FMU is the interface alone: for the whole joint state --thickness of both plates"
+ENGAGED = 1.0
+"""Depth of a thread that holds the bolt over its diameter [1]: a usual one in steel."""
 LARGE = 16e-3
 """Diameter [m] above which the second strengths of a class hold."""
 
@@ -64,8 +66,12 @@ def joint(given: Given) -> NewJoint:
     hole, hole_source = _hole(given, thread)
     moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
-        if given["tapped"] and value and given[name] == value:
+        if not (given["tapped"] and value and given[name] == value):
+            continue
+        if name == "field":
             raise ValueError(f"--{name} {value} beside --tapped: expected a head or nut on both sides for it")
+        if given["thickness"] is None:
+            raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
     one = clamped(given, thread, (length, width), at, hole, moduli)
     plate = BoltedPlate(
         length=length,
@@ -92,11 +98,14 @@ def joint(given: Given) -> NewJoint:
     name = f"plate {given['plate']} with {given['bolts']}"
     file = sheet.file(name, None if law == "roughness" else heights.stated)
     density = tuple(material.numbers["density"].value for material in faces.materials(given))
-    plates = Plates(plate, one.layers, one.bearing, density, preload, preload - loss)
+    layers, depth = one.layers, 0.0
+    if given["tapped"] and given["thickness"] is not None:
+        layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
+    plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
     if given["field"] == "computed":
         file = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
-    if given["tapped"]:
+    if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
     found = whole.facts(file, plates, given["attached"] or "faces", given["sides"])
     return NewJoint(found.file, facts | found.facts, [*warnings, *found.warnings])
@@ -155,14 +164,26 @@ def _thicknesses(given: Given) -> list[float]:
     thick = [number("grip", text, "mm", "m") for text in given["grip"]]
     if given["thickness"] is None:
         return thick
-    each = [number("thickness", text, "mm", "m") for text in given["thickness"]]
-    if len(each) != 2:
-        raise ValueError(f"--thickness has {len(each)} values, expected that of each plate")
+    each = _each(given)
+    if given["tapped"]:
+        if abs(each[0] - sum(thick)) > SAME * each[0]:
+            raise ValueError(
+                f"--thickness = {each[0] * 1e3:g} mm of side 1 contradicts --grip = {sum(thick) * 1e3:g} mm: "
+                "expected the same, the thread is in side 2"
+            )
+        return thick
     if abs(sum(each) - sum(thick)) > SAME * sum(thick):
         raise ValueError(
             f"--thickness = {each[0] * 1e3:g} and {each[1] * 1e3:g} mm contradicts --grip = "
             f"{sum(thick) * 1e3:g} mm: expected their sum"
         )
+    return each
+
+
+def _each(given: Given) -> list[float]:
+    each = [number("thickness", text, "mm", "m") for text in given["thickness"]]
+    if len(each) != 2:
+        raise ValueError(f"--thickness has {len(each)} values, expected that of each plate")
     return each
 
 
