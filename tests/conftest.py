@@ -27,6 +27,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell's background job ignores it, and so would the commands that tests interrupt.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Asserts are rewritten once, not by every process in every run, and commands start as they do for users.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
 os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
 
