@@ -19,7 +19,6 @@ NEEDED = {
     "modelica_model": ("rumoca",),
 }
 """{script: packages beside those of the extra `build`}."""
-FAST = {"drive_resonance"}
 PAGE = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
 
 
@@ -27,9 +26,8 @@ def stem(path: Path) -> str:
     return path.stem
 
 
-@pytest.mark.parametrize(
-    "script", [pytest.param(s, marks=() if s.stem in FAST else pytest.mark.slow) for s in SCRIPTS], ids=stem
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("script", SCRIPTS, ids=stem)
 def test_an_example_runs_and_writes_its_picture(script: Path, tmp_path: Path) -> None:
     for package in ("matplotlib", *NEEDED.get(script.stem, ())):
         if find_spec(package) is None:
