@@ -101,7 +101,7 @@ def test_an_example_runs(
     line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
-    monkeypatch.setenv(CACHE, str(folder / "parts"))  # which may hold a hundred thousand files of other builds
+    monkeypatch.setenv(CACHE, str(folder / "parts"))  # a user's may be large
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 

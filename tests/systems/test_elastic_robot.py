@@ -10,7 +10,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.robots import pictures
 
@@ -98,7 +98,8 @@ def test_plugin_and_system_wind_up_as_the_plain_file(tmp_path, capsys):
         "--plugin",
         "--fmu",
     ]
-    said = made(capsys, ROBOT, tmp_path, *words)
+    with here_alone():
+        said = made(capsys, ROBOT, tmp_path, *words)
     (library,) = (path for path in said["written"] if Path(path).stem == "CSG_40_100")
     mujoco.mj_loadPluginLibrary(library)
     spec = mujoco.MjSpec.from_file(str(tmp_path / "six_axis_plugin.xml"))

@@ -70,8 +70,9 @@ def combined(weights: Array, rows: Array) -> Array:
 def product(one: Array, other: Array) -> Array:
     """(m, k) sums over n of one (m, n) times other (k, n)."""
     out = np.zeros((len(one), len(other)))
+    term = np.empty_like(out)
     for left, right in zip(one.T, other.T, strict=True):
-        out += left[:, None] * right
+        out += np.multiply(left[:, None], right, out=term)
     return out
 
 
