@@ -1,23 +1,35 @@
-"""What the memory of the Modelica library's drive costs an implicit solver.
+"""What memory in the Modelica library costs an implicit solver.
 
 `python benchmarks/modelica_memory.py` prints steps, right-hand sides and Jacobians of scipy's BDF on the
-equations of the component, a motor and a hanging link that are pushed to and fro and left to stop: hysteresis
-from the last turn of the wind-up on, as the component has it, and as one state for each slider.
+equations of the components: a motor and a hanging link that are pushed to and fro and left to stop, with
+hysteresis from the last turn of the wind-up on, as the drive has it, and as one state for each slider; a mass
+that rings along x, y and z on a bolted joint, with friction from where its path last turned, as the joint has
+it, and as two states for each slider. BDF takes Jacobians by differences of the states' usual size.
 """
 
 import math
 from dataclasses import replace
 
 import numpy as np
+from jointfmu_tools.joints.bolted_joint.modelica.tight import tightened
 from scipy.integrate import solve_ivp
+from scipy.interpolate import BPoly
 from validity_tables import heading, row
 
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.friction import LIMITS, limits, viscous
 from jointfmu.joints.harmonic_drive.kinematic_error import kinematic_error
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted, wind_up
 from jointfmu.joints.harmonic_drive.spring import State as Spring
+from jointfmu.mechanics.sliders import SPREAD
 from jointfmu.parameters import default
 
+CHANGED, BENT, STILL = 0.02, 0.2, 1e-4
+"""Of the bolted joint, as the component has them [1]."""
+PARTS = 4
+"""Of a path, as the function `slide` has them."""
+MASS, RINGING = 20.0, (0.7, 0.5, 0.1)
+"""[kg]; amplitudes along x and y over the shift of gross slip, along z over the compression [1]."""
 FRICTION = {"friction_coulomb": 0.004, "friction_stribeck": 0.003, "stribeck_speed": 2.0, "load_loss": 0.15}
 OTHERS = {"friction_viscous": 1e-5, "error_2": 2e-4, "hysteresis_loss": 2.9e-4}
 MOTOR, LINK, WEIGHT, STOP = 1e-5, 0.05, 9.80665 * 0.2, 0.6
@@ -98,6 +110,111 @@ class Drive:
         return *counts, size, events
 
 
+class Bolted:
+    """The equations: states s, v, perhaps forces (2, n) of the sliders."""
+
+    def __init__(self, kept):
+        spring = BoltedJointSpring.of_nodes(default("bolted_joint").values)
+        found = tightened(spring, 9e3, 0.0)
+        rows, self.kept, self.tight = found.table.rows, kept, found.force
+        self.load = BPoly.from_derivatives(rows[:, 0], rows[:, 1:4])
+        self.curve = [self.load, self.load.derivative(), self.load.derivative(2)]
+        self.shear, self.mu, self.heights = found.shear, spring.joint.mu, found.heights
+        self.K, self.Q = found.sliders.T
+        stiff = float(self.curve[1](0.0))
+        self.reach = np.array([self.mu / self.shear, self.mu / self.shear, 1.0]) * self.tight / stiff
+        self.rate = np.sqrt(stiff * np.array([self.shear, self.shear, 1.0]) / MASS)
+        self.keep(np.zeros((2, self.K.size)), np.zeros(3), self.K, self.Q)
+
+    def keep(self, force, s, stiffness, friction):
+        self.last = force, s, stiffness, friction, self.tight + float(self.load(-s[2]))
+
+    def sliders(self, c, v_c):
+        """Stiffness, friction and their rates, of the sliders that slip earlier, then of the others."""
+        load, stiff, bend = (float(part(c)) for part in self.curve)
+        h, g, k = self.heights.T
+        on, far = c > h[:-1], c > h[1:]
+        inside = np.clip(c, h[:-1], h[1:]) - h[:-1]
+        S = np.where(on, np.maximum(np.minimum(stiff, k[1:]) - k[:-1], 0.0), 0.0)
+        grow = np.where(on & ~far, bend, 0.0)
+        first = np.where(on, np.minimum(self.tight + load, g[1:]) - g[:-1] - k[:-1] * inside, 0.0)
+        apart = np.minimum(S * SPREAD * inside, np.maximum(first, 0.0))
+        widen = np.where(on & ~far, np.minimum(SPREAD * (S + grow * inside), S), 0.0)
+        N = np.maximum(first, 0.0) + S * np.maximum(c - h[1:], 0.0)
+        half = 0.5 * self.shear * np.array([S, S]), 0.5 * self.mu * np.array([N - apart, N + apart])
+        rates = 0.5 * self.shear * np.array([grow, grow]), 0.5 * self.mu * np.array([S - widen, S + widen])
+        return *(x.ravel() for x in half), *(x.ravel() * v_c for x in rates)
+
+    def slid(self, s):
+        """Forces of the sliders, straight from where they were last kept, stiffness and friction."""
+        force, place, first, most, _ = self.last
+        K, Q, _, _ = self.sliders(-s[2], 0.0)
+        before = first
+        for part in np.arange(1, PARTS + 1) / PARTS:
+            here, limit = first + (K - first) * part, most + (Q - most) * part
+            falls = here < before
+            keeps = np.where(falls, here / np.where(before > 0.0, before, 1.0), 1.0)
+            carries = np.where(falls, here, 0.5 * (before + here))
+            force = keeps * force + carries * (s[:2] - place[:2])[:, None] / PARTS
+            force = force * np.minimum(1.0, limit / np.maximum(np.hypot(*force), 1e-60))
+            before = here
+        return force, K, Q
+
+    def rates(self, t, x):
+        s, v = x[:3], x[3:6]
+        if self.kept:
+            held, more = self.slid(s)[0], np.zeros(0)
+        else:
+            q = x[6:].reshape(2, -1)
+            K, Q, K_rate, Q_rate = self.sliders(-s[2], -v[2])
+            stuck, size = (
+                K * v[:2, None] + np.where(K_rate < 0.0, q * K_rate / np.maximum(K, 1.0), 0.0),
+                np.hypot(*q),
+            )
+            along = np.sum(q * stuck, axis=0) / np.maximum(size, 1e-60)
+            layer = np.clip((size - Q) / (LAYER * Q + 1e-9), 0.0, 1.0)
+            more = stuck - layer * np.maximum(along - Q_rate, 0.0) * q / np.maximum(size, 1e-60)
+            held = q * np.where(size > Q, Q / np.maximum(size, 1e-60), 1.0)
+        force = np.array([*-held.sum(axis=1), float(self.load(-s[2]))])
+        return np.concatenate([v, force / MASS, more.ravel()])
+
+    def turned(self, t, x):
+        u, v = x[:2] - self.last[1][:2], x[3:5]
+        across, along = abs(u[0] * v[1] - u[1] * v[0]), u @ v
+        return across - BENT * along - STILL * self.reach[0] * math.hypot(*v)
+
+    def changed(self, t, x):
+        return abs(self.tight + float(self.load(-x[2])) - self.last[4]) - CHANGED * self.tight
+
+    def run(self, tolerance, stop):
+        """Steps, right-hand sides but those of Jacobians, Jacobians, states and events."""
+        amplitude = np.array(RINGING) * self.reach
+        x = np.concatenate([[0.0, amplitude[1], 0.0], amplitude * self.rate * [1.0, 0.0, 1.0]])
+        usual = np.concatenate([self.reach, self.reach * self.rate])
+        if not self.kept:
+            x, usual = (np.append(a, np.full(2 * self.K.size, b)) for a, b in ((x, 0.0), (usual, 100.0)))
+
+        def jacobian(t, x):
+            here, steps = self.rates(t, x), 1e-7 * np.maximum(np.abs(x), usual)
+            return np.column_stack([(self.rates(t, x + d) - here) / d.sum() for d in np.diag(steps)])
+
+        for event in (Bolted.turned, Bolted.changed):
+            event.terminal, event.direction = True, 1.0
+        t, counts, events = 0.0, np.zeros(3, dtype=int), 0
+        while t < stop:
+            found = solve_ivp(
+                self.rates, (t, stop), x, "BDF", rtol=tolerance, atol=tolerance * usual, jac=jacobian,
+                events=[self.turned, self.changed] if self.kept else None,
+            )  # fmt: skip
+            counts += len(found.t), found.nfev, found.njev
+            t, x = found.t[-1], found.y[:, -1]
+            if found.status == 1:
+                force, K, Q = self.slid(x[:3])
+                self.keep(force, x[:3], K, Q)
+                events += 1
+        return *counts, x.size, events
+
+
 def main():
     """Print the table."""
     names = "steps", "right-hand sides", "Jacobians", "states", "events"
@@ -110,6 +227,15 @@ def main():
                     what + ("from the last turn" if turns else "as states"),
                     *Drive(friction, turns).run(tolerance),
                 )
+    heading("A mass on a bolted joint, BDF", "friction", *names)
+    for kept, tolerance, stop in (
+        (False, 1e-6, 4e-4),
+        (True, 1e-6, 4e-4),
+        (True, 1e-6, 2e-2),
+        (True, 1e-8, 2e-2),
+    ):
+        what = "from the last turn" if kept else "as states"
+        row(f"{stop * 1e3:g} ms, {tolerance:g}, {what}", *Bolted(kept).run(tolerance, stop))
 
 
 if __name__ == "__main__":

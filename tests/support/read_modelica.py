@@ -164,7 +164,8 @@ class Read:
         """A function of the library."""
         function = self.library["Functions"].classes[name]
         inputs = [n for n, s in function.symbols.items() if "input" in s.prefixes]
-        local: Env = dict(zip(inputs, operands, strict=True))
+        local: Env = {n: self.value(_binding(s), {}) for n, s in function.symbols.items() if _fixed(s)}
+        local |= zip(inputs, operands, strict=True)
         self._run(function.statements, local)
         (output,) = (n for n, s in function.symbols.items() if "output" in s.prefixes)
         return local[output]
@@ -179,10 +180,8 @@ class Read:
             else:
                 (target,) = statement.left
                 value, places = self.value(statement.right, local), _indices(target)
-                if places:  # items come one after the other
-                    before = local.get(target.name, [])[: int(self.value(places[0], local)) - 1]
-                    value = [*before, value]
-                local[target.name] = value
+                at = [int(self.value(place, local)) - 1 for place in places]
+                local[target.name] = _set(local.get(target.name) if at else None, at, value)
 
     def _variable(self, x: Any, local: Env) -> Any:
         name = _name(x)
@@ -199,6 +198,15 @@ class Read:
     def _index(self, i: Any, local: Env) -> Any:
         whole = type(i).__name__ == "Slice" and getattr(i.stop, "value", 1) is None
         return None if whole else self.value(i, local)
+
+
+def _set(found: Any, at: list[int], value: Any) -> Any:
+    """An array with an item in a place, which may be the one after its last."""
+    if not at:
+        return value
+    items = list(found or [])
+    here = items[at[0]] if at[0] < len(items) else None
+    return [*items[: at[0]], _set(here, at[1:], value), *items[at[0] + 1 :]]
 
 
 def _binding(symbol: Any) -> Any:

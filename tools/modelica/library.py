@@ -39,6 +39,7 @@ _FUNCTIONS = (
     "linear",
     "segment",
     "limited",
+    "slide",
     "frictionLimit",
     "smoothStep",
     "loadDerivative",

@@ -29,7 +29,11 @@ protected
   parameter Real h[n + 1]=data.heights[:, 1] "Approach at which the springs of a pair begin to touch [m]";
   parameter Real g[n + 1]=data.heights[:, 2] "Normal force there [N]";
   parameter Real k[n + 1]=data.heights[:, 3] "Normal stiffness there [N/m]";
-  constant Real layer=1e-3 "Width over friction of the layer beyond the circle in which a slider ceases to stick";
+  parameter Modelica.Units.SI.Length still=1e-4*data.mu*data.tight/(data.shear*JointStiffness.Functions.stiffness(0, data.table)) "Way back or across from which on the path has turned";
+  parameter Real K_t0[2*n]=data.sliders[:, 1] "Stiffness of the sliders at tightening [N/m]";
+  parameter Real Q_t0[2*n]=data.sliders[:, 2] "Their friction there [N]";
+  constant Real bent=0.2 "Across over along, from which on a path has turned as well";
+  constant Real changed=0.02 "Change of the normal force over that at tightening after which the sliders' forces are kept";
   constant Real spread=0.288675134594813 "1/sqrt(12)";
   Real c "Approach from the tightened state [m]";
   Real v_c "Its rate [m/s]";
@@ -44,11 +48,17 @@ protected
   Real K_rate[2*n] "Its rate [N/m/s]";
   Real Q[2*n] "Their friction [N]";
   Real Q_rate[2*n] "Its rate [N/s]";
-  Real q[2, 2*n](each start=0, each fixed=true, each nominal=100) "Their forces along x and y [N]";
-  Real trial[2, 2*n] "Rates of their forces while they stick [N/s]";
+  discrete Real q_0[2, 2*n](each start=0, each fixed=true, each nominal=100) "Their forces where they were last kept [N]";
+  discrete Real K_0[2*n](start=K_t0, each fixed=true) "Their stiffness there [N/m]";
+  discrete Real Q_0[2*n](start=Q_t0, each fixed=true) "Their friction there [N]";
+  discrete Modelica.Units.SI.Position s_0[2](each start=0, each fixed=true, each nominal=1e-6) "Shift there";
+  discrete Modelica.Units.SI.Force G_0(start=data.tight, fixed=true, nominal=1e4) "Normal force there";
+  Boolean turned(start=false, fixed=true) "The path since then has turned";
+  Boolean loaded(start=false, fixed=true) "The normal force has changed since then";
+  Real u[2] "Shift since then [m]";
+  Real q[2, 2*n](each nominal=100) "Their forces along x and y [N]";
   Real size_q[2*n] "Size of their forces [N]";
-  Real slip[2*n] "What friction takes from the rate of that size [N/s]";
-  Real held[2*n] "Part of their forces inside the friction circle";
+  Real slips[2*n] "Rate at which those at their friction slip, times their force [W]";
   Real heat[2*n] "Power that they dissipate [W]";
   Real square "Of the shift [m2]";
   Real R "Without memory: tangential stiffness while nothing slips over that of the force from the origin";
@@ -61,7 +71,7 @@ equation
     S[i] = noEvent(if c > h[i] then max(min(K_n, k[i + 1]) - k[i], 0) else 0);
     grow[i] = noEvent(if c > h[i] and c < h[i + 1] then bend else 0);
     N[i] = noEvent(if c > h[i] then max(min(G, g[i + 1]) - g[i] - k[i]*(min(c, h[i + 1]) - h[i]) + S[i]*max(c - h[i + 1], 0), 0) else 0);
-    apart[i] = noEvent(min(S[i]*spread*(min(max(c, h[i]), h[i + 1]) - h[i]), N[i]));
+    apart[i] = noEvent(min(S[i]*spread*(min(max(c, h[i]), h[i + 1]) - h[i]), N[i] - S[i]*max(c - h[i + 1], 0)));
     widen[i] = noEvent(if c > h[i] and c < h[i + 1] then min(spread*(S[i] + grow[i]*(c - h[i])), S[i]) else 0);
     K[i] = 0.5*data.shear*S[i];
     K[n + i] = K[i];
@@ -72,16 +82,22 @@ equation
     Q_rate[i] = 0.5*data.mu*(S[i] - widen[i])*v_c;
     Q_rate[n + i] = 0.5*data.mu*(S[i] + widen[i])*v_c;
   end for;
+  // from where they were last kept on the sliders have come straight
+  u = {s_rel[1] - s_0[1], s_rel[2] - s_0[2]};
+  turned = (if memory then abs(u[1]*v_rel[2] - u[2]*v_rel[1]) - bent*(u[1]*v_rel[1] + u[2]*v_rel[2]) else -1) > still*sqrt(v_rel[1]^2 + v_rel[2]^2);
+  loaded = (if memory then abs(G - G_0) else 0) > changed*data.tight;
+  when {pre(turned), pre(loaded)} then
+    q_0 = JointStiffness.Functions.slide(pre(q_0), {s_rel[1] - pre(s_0[1]), s_rel[2] - pre(s_0[2])}, pre(K_0), K, pre(Q_0), Q);
+    K_0 = K;
+    Q_0 = Q;
+    s_0 = {s_rel[1], s_rel[2]};
+    G_0 = G;
+  end when;
+  q = JointStiffness.Functions.slide(q_0, u, K_0, K, Q_0, Q);
   for j in 1:2*n loop
-    // springs that lift off take their force along; beyond the friction circle the force only turns
-    for a in 1:2 loop
-      trial[a, j] = K[j]*v_rel[a] + noEvent(if K_rate[j] < 0 then q[a, j]*K_rate[j]/max(K[j], 1) else 0);
-      der(q[a, j]) = if memory then trial[a, j] - slip[j]*q[a, j]/max(size_q[j], Modelica.Constants.small) else 0;
-    end for;
     size_q[j] = noEvent(sqrt(max(q[1, j]^2 + q[2, j]^2, 0)));
-    slip[j] = noEvent(if size_q[j] > Q[j] then min((size_q[j] - Q[j])/(layer*Q[j] + 1e-9), 1)*max((q[1, j]*trial[1, j] + q[2, j]*trial[2, j])/max(size_q[j], Modelica.Constants.small) - Q_rate[j], 0) else 0);
-    held[j] = noEvent(if size_q[j] > Q[j] then Q[j]/size_q[j] else 1);
-    heat[j] = (Q[j]*slip[j] + 0.5*size_q[j]^2*abs(K_rate[j])/max(K[j], 1))/max(K[j], 1);
+    slips[j] = noEvent(if size_q[j] > (1 - 1e-9)*Q[j] then max(q[1, j]*v_rel[1] + q[2, j]*v_rel[2] - Q[j]*Q_rate[j]/max(K[j], 1), 0) else 0);
+    heat[j] = slips[j] + 0.5*size_q[j]^2*abs(K_rate[j])/max(K[j], 1)^2;
   end for;
   square = s_rel[1]^2 + s_rel[2]^2;
   R = sqrt(1 + square*(K_t/max(data.mu*data.tight, Modelica.Constants.small))^2);
@@ -97,7 +113,7 @@ equation
   C_n = if damping and plastic_damping then eta_n*sqrt(mass*max(K_n, 0)) else 0;
   C_t = if damping then data.eta_t*sqrt(mass*max(K_t, 0)) else 0;
   for a in 1:2 loop
-    f[a] = -(if memory then q[a, :]*held else K_t/R*s_rel[a]) - C_t*v_rel[a];
+    f[a] = -(if memory then sum(q[a, :]) else K_t/R*s_rel[a]) - C_t*v_rel[a];
   end for;
   f[3] = JointStiffness.Functions.load(-s_rel[3], data.table)
     + (if memory then 0 else data.shear*bend*square/(R*(1 + R)))
@@ -130,12 +146,11 @@ equation
 <p>K<sub>N</sub> = ∫ k<sub>n</sub> n da′, &emsp; K<sub>T</sub> = ∫ 8 G′ r (1 − x)<sup>1/3</sup> n da′, &emsp; dp/dδ = K<sub>N</sub>/A<sub>0</sub> (Eqs. 14, 22)</p>
 <p>C<sub>n</sub> = η<sub>n</sub> (m K<sub>N</sub>)<sup>1/2</sup> if plastic_damping, else 0, &emsp; η<sub>n</sub> = Σ W<sub>plastic</sub> / Σ W<sub>elastic</sub> (Eqs. 16-20, corrected)</p>
 <p>C<sub>t</sub> = η<sub>t</sub> (m K<sub>T</sub>)<sup>1/2</sup>, &emsp; 1/η<sub>t</sub> = (5π/12) H<sub>2</sub>/H<sub>1</sub> − 1, &emsp; of Mindlin's loop at x = traction_ratio (Eq. 29, corrected)</p>
-<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of 28 sliders, whose forces along x and y are states; each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
+<p>All nodes of the joint at its preload and moment add up to one curve g(c) of the total force over the approach c = -s<sub>z</sub>, from which normal force and friction follow: f<sub>z</sub> = g(c) - g(0) - n k s<sub>z</sub>. Friction is that of 28 sliders, whose forces along x and y go straight on from where they were last kept (an event): where the shift has turned, or the normal force has changed by a fiftieth of the tightened one. Each takes together springs that touch one after the other, of the tangential stiffness &rho; g''(h) dh at the height h, and slips at &mu; times their normal force. The sums of their stiffness, &rho; g'(c), and of their friction, &mu; g(c), are exact at every approach.</p>
 <p>With <code>memory=false</code> shear is elastic, grows to &mu; g(0) and reacts on the normal force, with the FMU's law for the sum of its nodes: R = (1 + (&rho; g'(c) u/(&mu; g(0)))<sup>2</sup>)<sup>&frac12;</sup> at the shift u, f<sub>x</sub> = -&rho; g'(c) s<sub>x</sub>/R, f<sub>z</sub> as above and &rho; g''(c) u<sup>2</sup>/(R (1 + R)).</p>
 <h4>Not in this table</h4>
 <ul>
 <li>Preload and moment are those of the record <code>data</code> and cannot change during a simulation. The FMU takes both as inputs.</li>
-<li>With memory an implicit solver takes a hundred times as many Jacobians as with the FMU in its wrapper: take that, or <code>memory=false</code>, for longer runs.</li>
 <li>Side 2 does not turn: rotations, moments and contact pressures are the FMU's.</li>
 <li>The FMU has sliders of its own on each of its patches: where few of them slip, at a small part of the friction limit, the two differ in what a loop loses.</li>
 <li>The normal dissipation factor is interpolated linearly, within 0.001.</li>

@@ -16,5 +16,7 @@ record BoltedJoint "A bolted joint at a fixed preload and moment"
     "Approach from the tightened state [m], force above tightening [N], stiffness [N/m], its derivative before and after [N/m2]";
   parameter Real heights[:, 3]
     "Approach from the tightened state [m], normal force [N] and stiffness [N/m] there: between them the springs of a slider";
+  parameter Real sliders[:, 2]
+    "Stiffness [N/m] and friction [N] of the sliders at tightening, first of those that slip earlier";
   parameter Real eta_n[:, 2] "Approach from the tightened state [m], normal dissipation factor";
 end BoltedJoint;

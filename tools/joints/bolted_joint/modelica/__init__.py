@@ -39,7 +39,12 @@ def _record(name: str, spring: BoltedJointSpring, preload: float, moment: float)
         name=identifier(f"{name} {force}" + (f" {moment:g} Nm" if moment else "")),
         title=f"{name}, {force} per bolt" + (f" and {moment:g} N m" if moment else ""),
         table=tight.table,
-        values=values | {"heights": matrix(tight.heights), "eta_n": matrix(tight.damping)},
+        values=values
+        | {
+            "heights": matrix(tight.heights),
+            "sliders": matrix(tight.sliders),
+            "eta_n": matrix(tight.damping),
+        },
         more="; where the force is below the one at tightening, relative to that",
     )
 

@@ -8,6 +8,7 @@ from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import NOTHING
+from jointfmu.mechanics.sliders import Foundation
 
 from ....modelica.tables import Array, InterpolationTable, thinned
 
@@ -34,6 +35,8 @@ class Tightened(NamedTuple):
     force   : of the interface at tightening [N]
     heights : rows (n, 3) of approach [m], normal force [N] and stiffness [N/m], between which the springs of
               friction are taken together
+    sliders : rows (2 n - 2, 2) of stiffness [N/m] and friction [N] at tightening, of those that slip earlier
+              first
     """
 
     table: InterpolationTable
@@ -41,6 +44,7 @@ class Tightened(NamedTuple):
     shear: float
     force: float
     heights: Array
+    sliders: Array
 
 
 def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tightened:
@@ -81,7 +85,10 @@ def tightened(spring: BoltedJointSpring, preload: float, moment: float) -> Tight
     heights = np.concatenate([[first], first * np.geomspace(1.0, EARLIEST, BELOW)[1:], [0.0], levels])
     force, normal, _ = total(heights)
     rows = np.column_stack([heights, force, normal])
-    return Tightened(table, damping, float(shear_ratio(spring.joint)), at_rest, rows)
+    ratio = float(shear_ratio(spring.joint))
+    carried = Foundation(whole, ratio, spring.joint.mu, heights).carried(0.0)
+    sliders = np.column_stack([np.concatenate([x[::2], x[1::2]]) for x in (carried.stiffness, carried.limit)])
+    return Tightened(table, damping, ratio, at_rest, rows, sliders)
 
 
 def _dissipation(spring: BoltedJointSpring, approach: Array) -> float:
