@@ -70,9 +70,8 @@ def combined(weights: Array, rows: Array) -> Array:
 def product(one: Array, other: Array) -> Array:
     """(m, k) sums over n of one (m, n) times other (k, n)."""
     out = np.zeros((len(one), len(other)))
-    term = np.empty_like(out)
-    for left, right in zip(one.T, other.T, strict=True):
-        out += np.multiply(left[:, None], right, out=term)
+    for left, right in zip(one.T.copy(), other.T.copy(), strict=True):
+        out += left[:, None] * right
     return out
 
 
