@@ -1,8 +1,8 @@
 """Pictures for the command line: one style, one way to save (matplotlib, loaded only when drawing)."""
 
 import io
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,12 +41,7 @@ def check(path: str | Path) -> None:
     if Path(path).suffix.lower() not in FORMATS:
         raise ValueError(f"{path}: suffix {Path(path).suffix!r} is no picture, allowed are .png, .svg")
     check_writable(path)
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        raise ValueError(
-            "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
-        ) from None
+    _rc_context()
 
 
 def shown(unit: str, values: NDArray[np.float64]) -> tuple[str, float]:
@@ -73,11 +68,22 @@ def drawing(path: str | Path, size: tuple[float, float] = (7.2, 4.2)) -> Iterato
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The common style, also as a decorator of what draws: `@plots.style()`."""
-    from matplotlib import rc_context
+    """The common style, also as a decorator of what draws: `@plots.style()`.
 
-    with rc_context(STYLE):
+    Raises ValueError if matplotlib is missing.
+    """
+    with _rc_context()(STYLE):
         yield
+
+
+def _rc_context() -> Callable[..., AbstractContextManager[None, bool | None]]:
+    try:
+        from matplotlib import rc_context
+    except ImportError:
+        raise ValueError(
+            "the package matplotlib is missing, needed for plots; install it with: pip install matplotlib"
+        ) from None
+    return rc_context
 
 
 def figure(size: tuple[float, float]) -> "Figure":

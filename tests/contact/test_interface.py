@@ -202,7 +202,7 @@ def test_impossible_spots_are_refused(law, area):
     [
         (ZHAO, {"surface.D": 1.001}),
         (YU, {"surface1.D": 1.001, "surface2.D": 1.001}),
-        (default("bolted_joint", "roughness").values, {"h": 1e300}),
+        (default("bolted_joint", "roughness").values, {"longest_wave": 1e300}),
     ],
     ids=["zhao", "yu", "roughness"],
 )

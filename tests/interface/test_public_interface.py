@@ -188,7 +188,8 @@ sys.modules.update(dict.fromkeys(("matplotlib", "casadi")))
 import jointfmu
 drive = jointfmu.drive("CSG-25-100")
 assert drive.wind_up(48.0) > 0.0 and len(repr(drive)) > 1000
-for call in (drive.plot, drive.build):
+law = jointfmu.law("roughness", h=1e-6)
+for call in (drive.build, drive.plot, law.plot, law.at_pressure([1e6, 2e6]).plot):
     try:
         call()
     except ValueError as error:
@@ -197,5 +198,6 @@ for call in (drive.plot, drive.build):
     monkeypatch.setenv("JOINTFMU_CACHE", str(tmp_path / "nothing kept"))
     done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
     said = done.stdout.splitlines()
-    assert len(said) == 2
-    assert all("is missing" in line and "pip install 'jointfmu[build]'" in line for line in said)
+    assert len(said) == 4
+    assert all(text in said[0] for text in ("casadi is missing", "pip install 'jointfmu[build]'"))
+    assert all("matplotlib is missing" in line and "pip install matplotlib" in line for line in said[1:])

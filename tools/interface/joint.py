@@ -200,11 +200,10 @@ class Joint:
         shown = [name for name in rows[0] if name in columns or name not in rest]
         return Frame({name: [row[name] for row in rows] for name in shown}, units, tuple(warned))
 
+    @plots.style()
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
         try:
-            import matplotlib  # noqa: F401
-
             from ..report.course import Course
             from ..report.figure import drawn
             from ..report.joint import curves, looped
@@ -215,9 +214,8 @@ class Joint:
         loops = course.loops() if course.model.loop else None
         if loops and any(loop.loss for loop in loops.loops):
             panels += looped(course, loops).panels
-        with plots.style():
-            figure = plots.figure((4.4 * len(panels), 3.8))
-            drawn(figure, panels)
+        figure = plots.figure((4.4 * len(panels), 3.8))
+        drawn(figure, panels)
         return figure
 
     def save(self, path: str | Path) -> Path:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...quantity import Number, check, group, quantity
 from ..powerlaw import Power, Spots
+from ..roughness import ROUGHEST
 from ..surface import Elastic, contact_modulus, contact_shear_modulus
 from .persson import bearing_curve, contact_shares
 
@@ -33,7 +34,12 @@ _SIZE = 0.25
 class RoughSurfaces:
     """What the law `roughness` knows of the two surfaces."""
 
-    h: float = quantity("m", "rms height of both surfaces together, of all waves up to longest_wave", gt=0.0)
+    h: float = quantity(
+        "m",
+        "rms height of both surfaces together, of all waves up to longest_wave",
+        gt=0.0,
+        le=10.0 * ROUGHEST,
+    )
     gamma: float = quantity("1", "approach over h by which the pressure grows e-fold", gt=0.0)
     longest_wave: float = quantity("m", "longest wave of the roughness", gt=0.0)
     hurst: float = quantity("1", "Hurst exponent of the roughness", gt=0.0, lt=1.0)

@@ -23,6 +23,8 @@ CORNER = 0.04
 within 0.4 % of the lines."""
 SHARPEST = 1e-6
 """Half-width [1] that stands for none: the angle at a corner then is within 1e-7 of the lines."""
+STIFFEST = 1e12
+"""Largest stiffness of a drive [N.m/rad]: more than a solid shaft of steel of its size has."""
 MOST_POINTS = 1000
 """Most points of a measured table."""
 LEAST_SLOPE, LARGEST_SLOPE = 1.0 / 3.0, 3.0
@@ -81,9 +83,9 @@ class CatalogueDrive(Given):
     and the stiffness jumps at T1 and T2, within SHARPEST: a kink of the torque, of which no event tells.
     """
 
-    K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0)
-    K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0)
-    K3: float = quantity("N.m/rad", "stiffness above T2", gt=0.0)
+    K1: float = quantity("N.m/rad", "stiffness below T1", gt=0.0, le=STIFFEST)
+    K2: float = quantity("N.m/rad", "stiffness between T1 and T2", gt=0.0, le=STIFFEST)
+    K3: float = quantity("N.m/rad", "stiffness above T2", gt=0.0, le=STIFFEST)
     T1: float = quantity("N.m", "torque at the first corner", gt=0.0)
     T2: float = quantity("N.m", "torque at the second corner", gt=0.0)
     corner: float = quantity(
