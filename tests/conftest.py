@@ -7,16 +7,17 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache, partial
+from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
 from filelock import FileLock
+from fmpy import platform_tuple
 from hypothesis import settings
 from jointfmu_fmu_src.native.cache import CACHE, COMPILER, compiler_cache, parts
-from jointfmu_fmu_src.native.compiler import libraries
+from jointfmu_fmu_src.native.compiler import TARGETS, libraries
 
 from jointfmu.fmi.host import Instance
 
@@ -27,10 +28,16 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell's background job ignores it, and so would the commands that tests interrupt.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
+# Asserts are rewritten once, not by every process in every run, and commands start as they do for users.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the processes of xdist, which share the cores
 os.environ.setdefault(COMPILER, str(compiler_cache()))  # tests without kept parts compile with a warm cache
 
 HERE = Path(__file__).parent
+RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
+"""Options of zig as FMUs are linked here. Others let it compile its part of the C runtime first, 4 s with
+optimization, 20 s without."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
 
@@ -162,12 +169,16 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 @contextmanager
 def here_alone() -> Iterator[None]:
     """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
-    from fmpy import platform_tuple
     from jointfmu_fmu_src.native import kept
+    from jointfmu_fmu_src.system import fmu as system
+
+    def here(*files: Any, **options: Any) -> dict[str, bytes]:
+        return libraries(*files[:3], [platform_tuple], **options)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(CACHE, str(parts() / "here"))
-        patch.setattr(kept, "libraries", partial(libraries, platforms=[platform_tuple]))
+        patch.setattr(kept, "libraries", here)
+        patch.setattr(system, "libraries", here)
         yield
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_fmu_src.native.build import build as native_build
+from jointfmu_fmu_src.native.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.parser import parser
@@ -100,6 +101,7 @@ def test_an_example_runs(
     line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(folder)
+    monkeypatch.setenv(CACHE, str(folder / "parts"))  # a user's may be large
     assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 

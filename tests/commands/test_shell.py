@@ -85,6 +85,7 @@ def test_a_shell_that_is_unknown(capsys: pytest.CaptureFixture[str]):
     assert "'bash', 'zsh'" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_second_build_says_what_it_replaces(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     def build(*words: str) -> tuple[str, str]:
         out = ["--flavour", "python", "--out", str(tmp_path / "dist"), *words]

@@ -9,7 +9,7 @@ from typing import Any
 
 import lief
 import pytest
-from conftest import Fmu, run_host
+from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build
 from jointfmu_fmu_src.native import cache, kept
@@ -161,8 +161,8 @@ def test_the_table_in_c_has_the_bytes_of_the_binaries(name: str, native: Path, t
     data = data_of(model, file, given, {k: v for k, v in files.items() if k != "data.c"})
     for part, text in {**files, "print.c": PRINTED}.items():
         (tmp_path / part).write_text(text)
-    command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", "data.c", "print.c", "-o", "print")
-    subprocess.run(command, cwd=tmp_path, check=True)
+    command = (sys.executable, "-m", "ziglang", "cc", "-std=c11", *RELEASED)
+    subprocess.run((*command, "data.c", "print.c", "-o", "print"), cwd=tmp_path, check=True)
     assert subprocess.run([tmp_path / "print"], capture_output=True).stdout == data.content
     for version in ("fmi2", "fmi3"):
         for path, content in members(native / version / f"{name}.fmu").items():

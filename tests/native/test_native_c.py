@@ -18,7 +18,9 @@ from typing import NamedTuple
 import fmpy
 import lief
 import pytest
+from conftest import RELEASED
 from joint_cases import JOINTS
+from jointfmu_fmu_src.native.compiler import TARGETS
 from jointfmu_fmu_src.native.generate import COMMON, RUNTIME, sources, token
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
@@ -36,6 +38,7 @@ COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m",
 SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "undefined"}
 """The first that is installed is taken. Zig has no runtime of the address sanitizer."""
 PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
+LINUX, HERE = (("-target", TARGETS[place]) for place in ("x86_64-linux", fmpy.platform_tuple))
 VERSIONS = ("2", "3")
 FUZZ_CALLS = 500_000 // (len(MODELS) * len(VERSIONS))
 
@@ -54,7 +57,7 @@ mathematical library what is exact: the same bits on every machine."""
 
 def sanitized(compiler: str) -> tuple[str, ...]:
     """A compiler's options for its sanitizers."""
-    return ("-O1", "-g", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
+    return ("-O1", "-g1", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
 
 
 UNDEFINED = 0
@@ -174,7 +177,7 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
 def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
     if shutil.which(COMPILERS[compiler][0]) is None:
         pytest.skip(f"{compiler} is not installed")
-    assert builder.objects(compiler, name, *PLAIN)
+    assert builder.objects(compiler, name, *PLAIN, *(HERE if compiler == "zig" else ()))
 
 
 def test_files_use_each_other_in_one_direction() -> None:
@@ -188,7 +191,7 @@ def test_files_use_each_other_in_one_direction() -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
-    (merged,) = builder.objects("zig", name, *PLAIN, "-target", "x86_64-linux-gnu")
+    (merged,) = builder.objects("zig", name, *PLAIN, *LINUX)
     binary = lief.parse(str(merged))
     assert isinstance(binary, lief.ELF.Binary)
     sizes = {str(section.name): section.size for section in binary.sections}
@@ -253,11 +256,11 @@ def test_fuzz(sanitizing: str, builder: Builder, name: str, version: str) -> Non
 def test_a_library_exports_all_and_leaves_nothing_behind(builder: Builder, name: str) -> None:
     """As hosts use it: loaded at run time, without sanitizers, whose allocator shows no growth."""
     library, host = builder.work / f"{name}.so", builder.work / "lifecycle"
-    zig, objects = COMPILERS["zig"], map(str, builder.objects("zig", name, *PLAIN))
-    builder.call(builder.work, *zig, "-shared", *objects, "-lm", "-o", str(library))
+    zig, objects = COMPILERS["zig"], map(str, builder.objects("zig", name, *PLAIN, *HERE))
+    builder.call(builder.work, *zig, *RELEASED, "-shared", *objects, "-lm", "-o", str(library))
     if not host.exists():
         found = ("-D_GNU_SOURCE", "-isystem", str(FMI_HEADERS), "-ldl", "-lm")
-        options = (*STRICT, "-O1", "-fno-sanitize=all", *found)
+        options = (*STRICT, *RELEASED, "-fno-sanitize=all", *found)
         builder.call(builder.work, *zig, str(HOSTS / "lifecycle.c"), *options, "-o", str(host))
     for version in VERSIONS:
         builder.call(builder.work, str(host), str(library), version, *c_of(name).arguments)

@@ -20,6 +20,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy import read_model_description
+from jointfmu_fmu_src.native.compiler import TARGETS
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
@@ -63,7 +64,7 @@ class Machine(NamedTuple):
 
 
 HERE = Machine(
-    "x86_64-linux-gnu.2.34",
+    TARGETS["x86_64-linux"],
     ("-ldl", "-lpthread"),
     {"fmi2": "linux64", "fmi3": "x86_64-linux"},
     "so",
@@ -72,7 +73,7 @@ HERE = Machine(
 )
 OTHERS = {
     "windows": Machine(
-        "x86_64-windows-gnu",
+        TARGETS["x86_64-windows"],
         (),
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
         "dll",
@@ -80,7 +81,7 @@ OTHERS = {
         HERE.needs | {"wine": all(shutil.which(program) for program in ("wine", "wineserver"))},
     ),
     "aarch64": Machine(
-        "aarch64-linux-gnu.2.34",
+        TARGETS["aarch64-linux"],
         ("-ldl", "-lpthread"),
         {"fmi2": "aarch64-linux", "fmi3": "aarch64-linux"},
         "so",
@@ -131,7 +132,7 @@ def run(native: Path, tmp_path_factory: pytest.TempPathFactory, wine: dict[str, 
         m = OTHERS.get(machine, HERE)
         file = work / f"{program}-{machine}.exe"
         include = Path(fmpy.__file__).parent / "c-code"
-        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-O1", "-g0"]
+        compile_ = [sys.executable, "-m", "ziglang", "cc", "-target", m.target, "-std=gnu11", "-O2", "-s"]
         sources = [str(HOSTS / f"{program}.c"), "-I", str(include)]
         done = subprocess.run(
             [*compile_, *sources, *m.options, "-o", str(file)], capture_output=True, text=True, cwd=work

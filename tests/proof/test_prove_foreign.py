@@ -8,7 +8,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import RELEASED, refused_line
 from numpy.typing import NDArray
 from proofs import BOTH, copy, needs, other_manifest, proved, replaced
 
@@ -27,7 +27,7 @@ def neuron(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("neuron")
     library = folder / f"Neuron{fmpy.sharedLibraryExtension}"
     headers = Path(fmpy.__file__).parent / "c-code"
-    command = [sys.executable, "-m", "ziglang", "cc", "-O1", "-shared", "-fPIC", f"-I{headers}"]
+    command = [sys.executable, "-m", "ziglang", "cc", *RELEASED, "-shared", "-fPIC", f"-I{headers}"]
     subprocess.run([*command, *SOURCE.glob("*.c"), "-lm", "-o", library], check=True)
     with zipfile.ZipFile(folder / "Neuron.fmu", "w") as archive:
         archive.write(SOURCE / "modelDescription.xml", "modelDescription.xml")

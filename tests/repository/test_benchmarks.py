@@ -55,6 +55,7 @@ def test_native_fmus(fmus, tmp_path, monkeypatch, capsys):
     assert all(" us of " in line for line in promised.splitlines())
 
 
+@pytest.mark.slow
 def test_mujoco_plugin():
     """In a process of its own: MuJoCo takes a plugin of a name once, and dies of a second one."""
     pytest.importorskip("mujoco")

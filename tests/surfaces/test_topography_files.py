@@ -291,6 +291,7 @@ def test_plot(folder, capsys, suffix):
     assert (b"PNG" in start) if suffix == "png" else (b"<?xml" in start)
 
 
+@pytest.mark.slow
 def test_written_parameters_build(folder, line, capsys):
     """A flank smooth enough for the law, which leaves too rough ones no elastic spot."""
     (folder / "line.csv").write_text(csvfile.text(replace(line, z=0.01 * line.z)))

@@ -1,15 +1,18 @@
 """A robot with elastic axes: what `jointfmu robot` writes, run in MuJoCo beside what it says."""
 
+import io
 import json
 import re
+from contextlib import redirect_stdout
 from importlib.util import find_spec
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import here_alone, refused_line
 from jointfmu_tools import cli
+from jointfmu_tools.robots import pictures
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -30,10 +33,19 @@ def made(capsys, robot, out, *words):
     return json.loads(capsys.readouterr().out)
 
 
+@pytest.fixture(scope="module")
+def six(tmp_path_factory):
+    out, shown = tmp_path_factory.mktemp("six"), io.StringIO()
+    words = ["robot", str(ROBOT), "--out", str(out), "--json", "--drive", *DRIVES, *POSE, "--payload", "3"]
+    with redirect_stdout(shown):
+        assert cli.main(words) == 0
+    return json.loads(shown.getvalue()), mujoco.MjModel.from_xml_path(str(out / "six_axis_elastic.xml"))
+
+
 @pytest.fixture
-def six(tmp_path, capsys):
-    said = made(capsys, ROBOT, tmp_path, "--drive", *DRIVES, *POSE, "--payload", "3")
-    return said, mujoco.MjModel.from_xml_path(str(tmp_path / "six_axis_elastic.xml"))
+def few_poses(monkeypatch):
+    """A coarser grid, where any will do."""
+    monkeypatch.setattr(pictures, "POINTS", 7)
 
 
 def held(spec, payload):
@@ -86,7 +98,8 @@ def test_plugin_and_system_wind_up_as_the_plain_file(tmp_path, capsys):
         "--plugin",
         "--fmu",
     ]
-    said = made(capsys, ROBOT, tmp_path, *words)
+    with here_alone():
+        said = made(capsys, ROBOT, tmp_path, *words)
     (library,) = (path for path in said["written"] if Path(path).stem == "CSG_40_100")
     mujoco.mj_loadPluginLibrary(library)
     spec = mujoco.MjSpec.from_file(str(tmp_path / "six_axis_plugin.xml"))
@@ -147,7 +160,7 @@ def test_a_servo_holds_the_axis_as_before(six):
     assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0
 
 
-def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys):
+def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, few_poses):
     words = ["--drive", "joint2=CSG-40-100", "joint3=CSG-25-100", "--payload", "3"]
     free = made(capsys, ROBOT, tmp_path / "free", *words)
     posed = made(capsys, ROBOT, tmp_path / "posed", *words, *POSE)
@@ -158,7 +171,7 @@ def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys):
     assert free["tip_error"] > posed["tip_error"]
 
 
-def test_seven_axes_of_a_urdf(tmp_path, capsys):
+def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     """URDF has no armature: said for each axis. One axis hangs upright, so its weight winds nothing."""
     links = "".join(LINK.format(i, i - 1, "0 1 0" if i % 2 == 0 else "0 0 1", 8 - i) for i in range(1, 8))
     robot = tmp_path / "seven.urdf"

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import zipfile
 from collections.abc import Callable, Mapping
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from types import MappingProxyType
@@ -64,7 +65,6 @@ Array = NDArray[np.float64]
 Values = dict[str, float]
 
 DRIVE = HarmonicDriveSpring.of(default("harmonic_drive").values)
-BOLTED = BoltedJointSpring.of(default("bolted_joint").values)
 ROBOT = HarmonicDriveSpring.of(system("robot_joint").joints["drive"].file.values)
 LINK = system("robot_joint").values["link.J"]
 ROBOT_AXES = ("base", "shoulder", "elbow", "forearm", "wrist", "hand")
@@ -73,6 +73,12 @@ SCHEMAS = {
     "2.0": Path(__file__).parent / "ssp2",
 }
 """The schemas of SSP, 2.0 as published (2.0.1-rc.2)."""
+
+
+@cache
+def bolted() -> BoltedJointSpring:
+    """Not while tests are collected: its patches take a second."""
+    return BoltedJointSpring.of(default("bolted_joint").values)
 
 
 @pytest.fixture(scope="session")
@@ -642,7 +648,7 @@ def test_the_bolted_column_converges_to_the_packages_law(built: Path) -> None:
         ForceProfile(**(defaults | pulse)),
         TranslationalMass(m=found["column.m"], lag_a=0.0, lag_b=0.0),
     )
-    stiffness, limit = column_sliders(BOLTED, found["joint.preload"])
+    stiffness, limit = column_sliders(bolted(), found["joint.preload"])
 
     def rates(time: float, x: Array) -> list[float]:
         f = float(load.outputs({"time": time, "f_in": 0.0})["f"])
@@ -971,7 +977,7 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     """The archive as fmpy runs it: the pulse uses half of the friction limit; afterwards frequency and
     damping follow the amplitude as for the pulled column, whose forces are passed on at once."""
     rows = simulated(built, "bolted_column", 2e-6, 0.02)
-    limit = BOLTED.joint.mu * 15e3 * BOLTED.joint.n_bolts
+    limit = bolted().joint.mu * 15e3 * bolted().joint.n_bolts
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.points(rows["time"][free], rows["column.s"][free])
@@ -1054,7 +1060,7 @@ def test_ring_takes_a_joint_and_a_body(built: Path, capsys: pytest.CaptureFixtur
     first = found["rows"][0]
     assert first["expected_frequency"] == pytest.approx(math.sqrt(working_point(0.0)[1] / 0.2) / math.tau)
     assert cli.main(["ring", "bolted_column", *folder, "--load", "20e3", "--inertia", "50"]) == 0
-    stiffness = BOLTED.motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
+    stiffness = bolted().motion(20e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
     (row,) = json.loads(capsys.readouterr().out)["rows"]
     assert row["expected_frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau)
 
@@ -1121,7 +1127,7 @@ def test_ring_down_in_shear(built: Path, capsys: pytest.CaptureFixture[str]) -> 
     arguments = ["--amplitude", "1e-8", "--load", "9e3", "--inertia", "50"]
     assert cli.main(["ring", "bolted_column", "--fmus", fmus, *arguments, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    stiffness = BOLTED.motion(9e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
+    stiffness = bolted().motion(9e3, 0.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))["K_xx"]
     assert rows[-1]["frequency"] == pytest.approx(math.sqrt(stiffness / 50.0) / math.tau, rel=5e-3)
 
 

@@ -26,7 +26,6 @@ Array = NDArray[np.float64]
 Force = Callable[[Array, bool], Array]
 
 JOINT = default("bolted_joint").values
-SPRING = BoltedJointSpring.of(JOINT)
 PRELOAD, MOMENT = 9e3, 1500.0
 AXES = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
@@ -100,11 +99,12 @@ def test_frames_that_are_turned_about_the_normal(degrees: float) -> None:
     """A block pushed in a turned frame gets the turned force, also in partial slip."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     turned = np.array([[c, -s], [s, c]])
-    rates, rest = (0.0,) * 6, SPRING.at_rest()
+    spring = BoltedJointSpring.of(JOINT)
+    rates, rest = (0.0,) * 6, spring.at_rest()
 
     def shear(u: Array) -> Array:
         place = Place((float(u[0]), float(u[1]), -1e-7))
-        found, _ = SPRING.evolve(PRELOAD, 0.0, place, rates, rest)
+        found, _ = spring.evolve(PRELOAD, 0.0, place, rates, rest)
         return np.array([found["f_x"], found["f_y"]], dtype=float)
 
     push = np.array([1e-6, 0.0])

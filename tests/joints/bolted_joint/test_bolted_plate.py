@@ -7,7 +7,7 @@ import pytest
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
 from jointfmu.mechanics.footprint.plate import BoltedPlate, cells, decay, lever
 from jointfmu.parameters import default, dump, load
 
@@ -54,8 +54,8 @@ def test_every_layout_balances_its_bolts(name):
     assert shape.share @ shape.position == pytest.approx([0.0, 0.0], abs=SUM)
     assert shape.share @ shape.equal == pytest.approx(1.0, rel=SUM)
     # the centre of pressure is that of the bolts, from the centroid of plate without holes
-    _, points = cells(pattern)
-    centroid = areas @ points / areas.sum()
+    _, places = cells(pattern)
+    centroid = areas @ places / areas.sum()
     centre = shape.share @ (shape.equal[:, None] * shape.position)
     assert centre == pytest.approx(pattern.bolts.mean(axis=0) - centroid, abs=1e-12)
     # a moment about x changes no force and is balanced by the pressure
@@ -200,6 +200,11 @@ def test_one_row_says_what_to_do():
 # The bolts' own stiffness
 
 
+def normal(pattern, **changes):
+    """The joint on the points of its normal force, on which its friction is too: no bolt knows of it."""
+    return BoltedJointSpring.of_nodes(joint(pattern, **changes), points(pattern))
+
+
 def test_without_bolt_stiffness_nothing_changes():
     old = default("bolted_joint").values
     assert old.bolt_stiffness == 0.0
@@ -217,7 +222,7 @@ def test_without_bolt_stiffness_nothing_changes():
 
 def test_bolts_carry_the_open_joint_and_the_stiffness_is_the_derivative():
     pattern = plate(*LAYOUTS["two by two"])
-    spring = BoltedJointSpring.of(joint(pattern, bolt_stiffness=3e8))
+    spring = normal(pattern, bolt_stiffness=3e8)
     far = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL)
     assert far["f_z"] == pytest.approx(-4 * (3e4 + 3e8 * 1e-4), rel=1e-12)
     assert far["K_zz"] == pytest.approx(4 * 3e8, rel=1e-12)
@@ -238,14 +243,14 @@ M12 = 3.416e8
 @pytest.mark.parametrize(("s_z", "by_hand"), [(1e-4, 1967.0), (3e-4, 4062.0)])
 def test_bolts_off_the_centre_turn_the_open_joint(s_z, by_hand):
     pattern = plate([-0.08, 0.08, 0.0], [-0.03, -0.03, 0.03])
-    spring = BoltedJointSpring.of(joint(pattern, bolt_stiffness=M12))
+    spring = normal(pattern, bolt_stiffness=M12)
     open_ = spring.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL)
     assert open_["m_x"] == pytest.approx(by_hand, rel=1e-3)  # printed to four digits
     assert open_["m_y"] == pytest.approx(0.0, abs=1e-6)
 
 
 def test_bolts_on_a_diagonal_couple_both_tilts():
-    spring = BoltedJointSpring.of(joint(plate([-0.08, 0.08], [-0.03, 0.03]), bolt_stiffness=M12))
+    spring = normal(plate([-0.08, 0.08], [-0.03, 0.03]), bolt_stiffness=M12)
     about_x = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (1e-4, 0.0, 0.0))
     assert about_x["m_y"] == pytest.approx(2 * M12 * 0.08 * 0.03 * 1e-4, rel=1e-9)  # 164 N.m
     about_y = spring.motion(3e4, 0.0, (0.0, 0.0, 1e-4), STILL, (0.0, 1e-4, 0.0))
@@ -255,11 +260,11 @@ def test_bolts_on_a_diagonal_couple_both_tilts():
 @pytest.mark.parametrize("name", LAYOUTS)
 def test_each_bolt_pulls_at_its_place(name):
     pattern = plate(*LAYOUTS[name])
-    free, held = (BoltedJointSpring.of(joint(pattern, bolt_stiffness=k)) for k in (0.0, M12))
+    free, held = (normal(pattern, bolt_stiffness=k) for k in (0.0, M12))
     s_z, turn = 1e-4, (2e-4, -3e-4, 1e-4)
     without, with_ = (one.motion(3e4, 0.0, (0.0, 0.0, s_z), STILL, turn) for one in (free, held))
-    areas, points = cells(pattern)
-    x, y = (pattern.bolts - areas @ points / areas.sum()).T
+    areas, places = cells(pattern)
+    x, y = (pattern.bolts - areas @ places / areas.sum()).T
     tension = M12 * (s_z + turn[0] * y - turn[1] * x)
     cut = 1e-3 * M12 * s_z  # the centroid of cells is that of the plate within their cut at a hole's edge
     assert with_["f_z"] - without["f_z"] == pytest.approx(-tension.sum(), rel=1e-3, abs=cut)

@@ -51,6 +51,7 @@ def test_the_law_is_the_stated_one():
     assert (law.load_loss.value, law.load_loss_back.value) == (pytest.approx(0.1), pytest.approx(0.05))
 
 
+@pytest.mark.slow
 def test_every_drive_has_friction_and_says_from_where():
     """The back-driving torque of CSF-17-100 leaves less than nothing for its loss."""
     for item in catalogue.items():

@@ -70,7 +70,7 @@ def combined(weights: Array, rows: Array) -> Array:
 def product(one: Array, other: Array) -> Array:
     """(m, k) sums over n of one (m, n) times other (k, n)."""
     out = np.zeros((len(one), len(other)))
-    for left, right in zip(one.T, other.T, strict=True):
+    for left, right in zip(one.T.copy(), other.T.copy(), strict=True):
         out += left[:, None] * right
     return out
 
