@@ -325,7 +325,7 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        const bool far = n >= NEWTON_STEPS / 2; /* tangents do not get there; the package has no more */
+        const bool far = n >= NEWTON_STEPS / 2; /* tangents do not get there */
         if (far || !(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
             if (far)
                 exact(joint, at, way->memory, NULL);
