@@ -71,13 +71,14 @@ Requirements
 """
 
 
-class _Related(NamedTuple):
-    """A line of the manifest."""
+class Related(NamedTuple):
+    """A line of the manifest; `labels` {interface: how it is run in it}, of experiments."""
 
     source: str
     type: str
     role: str
     doc: str
+    labels: Mapping[str, str] = {}
 
 
 def archive(
@@ -90,16 +91,17 @@ def archive(
 ) -> dict[str, bytes]:
     """{path in the FMU: content}."""
     members: dict[str, bytes] = {}
-    related: list[_Related] = []
+    related: list[Related] = []
 
     def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
         members[source] = content
-        related.append(_Related(source, kind, role, doc))
+        labels = _INTERFACES if kind == manifest.EXPERIMENTS else {}
+        related.append(Related(source, kind, role, doc, dict(list(labels.items())[: 2 if native else 1])))
 
     own, exposed = slug(parameters.name), model.parameter_fields()
     if native:
         address = "../../documentation/index.html"
-        related.append(_Related(address, "text/html", "requirement", "what the FMU takes, gives and refuses"))
+        related.append(Related(address, "text/html", "requirement", "what the FMU takes, gives and refuses"))
     add(
         f"parameters/{own}.toml",
         "application/toml",
@@ -109,7 +111,7 @@ def archive(
     )
     address = "../../documentation/fmi-ls-ref.txt"
     related.append(
-        _Related(address, "text/plain", "document", "what the experiments are, and their tolerance")
+        Related(address, "text/plain", "document", "what the experiments are, and their tolerance")
     )
     for file, _ in models:
         values = {name: value for name, value in flatten(file.values).items() if name in exposed}
@@ -131,8 +133,8 @@ def archive(
         members |= series
         for path in series:
             if path.endswith("_ref.csv"):
-                related.append(_Related(path, manifest.CSV, "result", "reference result of the package"))
-    members["fmi-ls-manifest.xml"] = _manifest(related, native)
+                related.append(Related(path, manifest.CSV, "result", "reference result of the package"))
+    members["fmi-ls-manifest.xml"] = manifest_xml(related)
     found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
     return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, native).encode()}
 
@@ -173,16 +175,16 @@ def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> byt
     return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
 
 
-def _manifest(related: Sequence[_Related], native: bool) -> bytes:
+def manifest_xml(related: Sequence[Related]) -> bytes:
+    """The manifest of FMI-LS-REF."""
     head = {"name": manifest.NAME, "version": manifest.VERSION, "description": manifest.DESCRIPTION}
     root = Element("fmiReferences", {"xmlns:fmi-ls": manifest.ATTRIBUTES})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
     for line in related:
         attributes = {"type": line.type, "source": line.source, "role": line.role, "description": line.doc}
         node = SubElement(root, "Related", attributes)
-        if line.type == manifest.EXPERIMENTS:
-            for interface, doc in list(_INTERFACES.items())[: 2 if native else 1]:
-                SubElement(node, "Label", name=manifest.LABELS[interface], description=doc)
+        for interface, doc in line.labels.items():
+            SubElement(node, "Label", name=manifest.LABELS[interface], description=doc)
     return serialized(root)
 
 

@@ -17,6 +17,7 @@ from ..native.licence import licence
 from ..native.page import plain_page
 from .assembly import Assembly
 from .code import sources
+from .proof import proof
 
 
 def build_system(
@@ -25,7 +26,7 @@ def build_system(
     versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(TARGETS),
 ) -> list[Path]:
-    """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu`; equal content gives equal files.
+    """Write `out/fmi2/NAME.fmu` and `out/fmi3/NAME.fmu` with their proof; equal content gives equal files.
 
     platforms : of its binaries, names of FMI 3.0
 
@@ -38,7 +39,7 @@ def build_system(
     data = _data(model, parameters, files)
     files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
-    written = []
+    written, found = [], None
     for version in versions:
         units = exported(files, version)
         built = libraries(model.name, files, units, platforms)
@@ -57,6 +58,9 @@ def build_system(
         target = out / f"fmi{version}" / f"{model.title}.fmu"
         with workshop(target) as work:
             pack(members, work / target.name)
+            if found is None:
+                found = proof(model, assembly.stop, work / target.name)
+            pack(members | found, work / target.name)
         written.append(target)
     return written
 

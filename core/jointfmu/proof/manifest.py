@@ -34,6 +34,8 @@ CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
 """Interfaces of FMUs."""
 LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
 """{interface: label of a file of experiments for it}; without such a label it is for all."""
+SCALES = "org.jointfmu.scales"
+"""Type of an experiment's annotation: the size of each output by which its tolerance counts."""
 PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
 """What an experiment is for; the first where a manifest does not say."""
 
@@ -56,6 +58,7 @@ class Experiment:
     settings  : {variable: start value}
     stimuli, references : inputs and expected results over time
     interfaces : for which it is
+    scales    : {output: size by which the tolerance counts, and not each value's own}
     unfit     : why it cannot be executed here; empty: it can
     """
 
@@ -69,6 +72,7 @@ class Experiment:
     stimuli: TimeSeries | None = None
     references: TimeSeries | None = None
     interfaces: Sequence[str] = INTERFACES
+    scales: Mapping[str, float] = field(default_factory=dict)
     unfit: str = ""
 
 
@@ -161,8 +165,22 @@ class Related:
             for tag in ("Stimuli", "References")
         )
         settings = self._settings(files["Parameters"]) if "Parameters" in files and not unfit else {}
-        numbers = start, stop, step, tolerance
-        return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, unfit)
+        numbers, scales = (start, stop, step, tolerance), self._scales(path, name, node)
+        return Experiment(name, purpose, *numbers, settings, stimuli, references, interfaces, scales, unfit)
+
+    def _scales(self, path: str, experiment: str, node: Element) -> dict[str, float]:
+        """What its annotation states."""
+        scales = {}
+        for scale in node.iterfind(f"Annotations/Annotation[@type='{SCALES}']/Scale"):
+            output = scale.get("name", "")
+            value = self._number(path, experiment, f"scale of {output}", scale.get("value", ""))
+            if value is None or not 0.0 < value < float("inf"):
+                text = (
+                    f"experiment {experiment!r} has scale of {output} = {value}, expected a positive number"
+                )
+                raise ValueError(f"{self.fmu}: {path}: {text}")
+            scales[output] = value
+        return scales
 
     def _number(self, path: str, experiment: str, key: str, value: str | None) -> float | None:
         try:

@@ -97,7 +97,8 @@ class ExperimentPlan:
         points = []
         for column, (name, reference) in zip(table.T, expected.columns.items(), strict=True):
             found, due = np.interp(at, times, column), reference[inside]
-            allowed = tolerance * np.maximum(np.abs(due), FLOOR * self.nominal[name])
+            size = np.maximum(np.abs(due), FLOOR * self.nominal[name])
+            allowed = tolerance * np.broadcast_to(self.experiment.scales.get(name, size), due.shape)
             with np.errstate(invalid="ignore"):
                 share = np.where(np.isfinite(found), np.abs(found - due) / allowed, np.inf)
             i = int(np.argmax(share))

@@ -1,0 +1,151 @@
+"""The proof inside the FMU of a system: its own experiment, judged by model exchange at a tight tolerance.
+
+The laws of the joints are proved by the joints' FMUs, against the package. What a system adds are wires,
+memory and the implicit step: references are of the same equations, integrated by CVode.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from xml.etree.ElementTree import Element, SubElement
+
+import numpy as np
+
+from jointfmu import __version__
+from jointfmu.fmi.host import unpacked
+from jointfmu.joints.model import Model
+from jointfmu.proof import exchange, manifest
+from jointfmu.proof.importers import interfaces
+from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
+from jointfmu.proof.series import TimeSeries, text
+from jointfmu.proof.task import Task
+
+from ..proof.files import Related, manifest_xml
+from ..xml_parts import serialized
+
+TOLERANCE, SOLVER = 5e-3, 1e-9
+"""Of an output [1], over its scale: what docs/systems.md promises of any step; of the references' solver."""
+SMALL = 1e-2
+"""Part of its nominal value [1] below which an output is judged by that part, not by its largest value."""
+STEP, LONGER = 1e-3, 10
+"""Communication step [s], of which an experiment has ten at least, and how many make the longer one."""
+FINE, MOST_STEPS, ROWS = 20_000, 100_000, 200
+"""Steps of model exchange at least, after each of which memory is accepted; communication steps at most: a
+longer experiment is proved up to them; about the rows of a file."""
+DIGITS = 7
+_TEXT = "documentation/fmi-ls-ref.txt"
+_PAGE = """\
+The proof inside this FMU
+
+The folder extra/{standard} holds the system's own experiment after FMI-LS-REF
+{version}, at communication steps of {short:g} s and {long:g} s, and in model exchange. jointfmu {own}
+has computed the reference results by model exchange of this FMU: CVode, relative tolerance {solver:g}, a
+completed integrator step every {fine:.3g} s. They prove the implicit step, not the laws: these are proved
+by the joints' own FMUs.
+
+How to run them
+  jointfmu prove FMU
+or by any importer: no value is set, steps are of stepSize.
+
+Tolerance
+  |value - reference| <= {tolerance:g} scale
+The annotation of each experiment states the scale of each output: its largest reference between start and
+end, or {small:g} of its nominal value if that is more.
+"""
+
+
+def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
+    """{path in the FMU: content}; where its experiment cannot be run here a text that says why.
+
+    stop : of the system's experiment [s]
+    """
+    step = min(STEP, stop / LONGER)
+    count = LONGER * min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // LONGER)
+    parts = -(-FINE // count)
+    fine = step / parts
+    try:
+        found = _exchanged(model, fmu, fine * np.arange(count * parts + 1), parts)
+    except Exception as error:  # fmpy raises bare Exception
+        return {_TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
+    scales = {
+        v.name: max(float(np.abs(found.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
+    }
+    short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
+    members = {path: _rows(found, n, count) for path, n in ((short, 1), (long, LONGER))}
+    runs = {
+        CO_SIMULATION: [(step, short), (LONGER * step, long)],
+        MODEL_EXCHANGE: [(fine, short)],
+    }
+    related = [
+        Related("../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"),
+        Related(f"../../{_TEXT}", "text/plain", "document", "experiments and tolerance"),
+        *(
+            Related(path, manifest.CSV, "result", "by model exchange at a tight tolerance")
+            for path in members
+        ),
+    ]
+    for interface, steps in runs.items():
+        path = f"{interface.replace(' ', '-')}.exp"
+        members[path] = _experiments(model, count * step, steps, scales)
+        labels = {interface: "steps of stepSize"}
+        related.append(Related(path, manifest.EXPERIMENTS, "experiment/validation", model.doc, labels))
+    members["fmi-ls-manifest.xml"] = manifest_xml(related)
+    page = _PAGE.format(
+        standard=manifest.NAME,
+        version=manifest.VERSION,
+        own=__version__,
+        short=step,
+        long=LONGER * step,
+        solver=SOLVER,
+        fine=fine,
+        tolerance=TOLERANCE,
+        small=SMALL,
+    )
+    placed = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
+    return placed | {_TEXT: page.encode()}
+
+
+def _exchanged(model: Model, fmu: Path, times: np.ndarray, every: int) -> TimeSeries:
+    """All outputs at some of the times, by model exchange; raises whatever prevents it."""
+    names, said = [v.name for v in model.outputs], list[str]()
+    if MODEL_EXCHANGE not in interfaces("fmpy"):
+        raise RuntimeError("fmpy has no solver for model exchange")
+    with unpacked(fmu, exchange=True) as (folder, _):
+        task = Task(
+            str(fmu),
+            folder,
+            MODEL_EXCHANGE,
+            times=times.tolist(),
+            outputs=names,
+            kinds=dict.fromkeys(names, "real"),
+            tolerance=SOLVER,
+        )
+        try:
+            rows = exchange.fmpy(task, said)
+        except Exception as error:
+            raise RuntimeError(f"its own experiment failed: {said[0] if said else error}") from None
+    table = np.array(rows[::every])
+    return TimeSeries(times[::every], dict(zip(names, table.T, strict=True)))
+
+
+def _rows(found: TimeSeries, step: int, count: int) -> bytes:
+    """A file of the results at some ends of steps, the first and the last among them."""
+    rows = np.append(np.arange(0, count, step * -(-count // (step * ROWS))), count)
+    columns = {name: column[rows] for name, column in found.columns.items()}
+    times = np.array([float(f"{time:.12g}") for time in found.time[rows]])
+    return text(TimeSeries(times, columns), DIGITS).encode()
+
+
+def _experiments(
+    model: Model, stop: float, steps: list[tuple[float, str]], scales: Mapping[str, float]
+) -> bytes:
+    root = Element("Experiments", name=f"{model.title}, its own experiment", description=model.doc)
+    for step, path in steps:
+        name = f"steps of {1e3 * step:g} ms"
+        node = SubElement(root, "Experiment", name=name, description=model.doc, tolerance=repr(TOLERANCE))
+        times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
+        SubElement(node, manifest.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
+        SubElement(node, "References", source=path)
+        given = SubElement(SubElement(node, "Annotations"), "Annotation", type=manifest.SCALES)
+        for output, scale in scales.items():
+            SubElement(given, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
+    return serialized(root)
