@@ -12,7 +12,10 @@ import numpy as np
 import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
+from jointfmu_tools.interface import drive
 from jointfmu_tools.robots import pictures
+
+from jointfmu.parameters import dump
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -230,6 +233,19 @@ def test_robots_of_others(name, count, tmp_path, capsys):
 )
 def test_refusals(words, line, tmp_path, capsys):
     assert re.search(line, refused_line(capsys, "robot", ROBOT, *words, "--out", tmp_path))
+
+
+@pytest.mark.parametrize("wanted", ["--plugin", "--fmu"])
+def test_drives_of_one_name_that_differ_are_refused(tmp_path, capsys, wanted):
+    """Each name is one plugin, and one file: the second would be the first."""
+    for folder, size in (("one", "CSG-14-100"), ("other", "CSG-17-100")):
+        (tmp_path / folder).mkdir()
+        text = dump(drive(size).file).replace(f'name = "{size}"', 'name = "mine"')
+        (tmp_path / folder / "mine.toml").write_text(text)
+    files = [f"joint{i}={tmp_path / folder / 'mine.toml'}" for i, folder in ((1, "one"), (2, "other"))]
+    line = refused_line(capsys, "robot", ROBOT, "--drive", *files, wanted, "--out", tmp_path / "out")
+    assert "the drives of joint1 and joint2 are both named 'mine' and differ" in line
+    assert not (tmp_path / "out").exists()
 
 
 def test_an_older_mujoco_is_refused(tmp_path, capsys, monkeypatch):

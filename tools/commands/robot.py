@@ -65,10 +65,13 @@ def run(args: argparse.Namespace) -> int:
     from ..interface import load
     from ..robots import elastic
     from ..robots import pictures as drawn
+    from ..robots.names import check_names
     from ..robots.transmission import transmission
 
     spec = elastic.read(args.robot)
     files = {joint: load(name).file for joint, name in names.items()}
+    if args.plugin or args.fmu:
+        check_names(files)
     axes = elastic.axes(spec, {joint: transmission(file) for joint, file in files.items()})
     model = spec.compile()
     pose, tip = elastic.posed(model, angles), elastic.body(model, args.tip, axes)
@@ -119,7 +122,7 @@ def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: A
     from jointfmu_fmu_src.system.fmu import build_system
 
     from ..robots import axes_system
-    from ..robots.plugged import identifier
+    from ..robots.names import identifier
     from ..systems.assembly import assembly
     from ..systems.system import read
 

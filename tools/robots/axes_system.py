@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from jointfmu.parameters import ParameterFile
 
 from .elastic import ElasticAxis
-from .plugged import identifier, spring_of
+from .names import identifier
+from .plugged import spring_of
 from .poses import inertia, torques
 
 Array = NDArray[np.float64]

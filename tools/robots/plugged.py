@@ -1,6 +1,5 @@
 """A robot with elastic axes whose drives are the plugin: all that the FMU has, beside the plain MJCF."""
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,11 +13,7 @@ from jointfmu.parameters import ParameterFile
 
 from ..mujoco import INPUTS, plugin
 from .elastic import MOTOR, ElasticAxis, with_drives
-
-
-def identifier(name: str) -> str:
-    """A name of letters, digits and _."""
-    return re.sub(r"\W", "_", name if name[:1].isalpha() else f"_{name}", flags=re.ASCII)
+from .names import identifier
 
 
 def spring_of(file: ParameterFile) -> str:

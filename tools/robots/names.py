@@ -1,0 +1,23 @@
+"""Names of drives as those of plugins and files."""
+
+import re
+from collections.abc import Mapping
+
+from jointfmu.parameters import ParameterFile, dump
+
+
+def identifier(name: str) -> str:
+    """A name of letters, digits and _."""
+    return re.sub(r"\W", "_", name if name[:1].isalpha() else f"_{name}", flags=re.ASCII)
+
+
+def check_names(files: Mapping[str, ParameterFile]) -> None:
+    """Raise ValueError if two drives of joints have one name and other numbers: each name is one plugin."""
+    first: dict[str, tuple[str, ParameterFile]] = {}
+    for joint, file in files.items():
+        other, known = first.setdefault(identifier(file.name), (joint, file))
+        if dump(known) != dump(file):
+            raise ValueError(
+                f"the drives of {other} and {joint} are both named {file.name!r} and differ; "
+                "expected a name of its own in one of their files"
+            )
