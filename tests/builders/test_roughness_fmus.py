@@ -89,7 +89,7 @@ def test_directional_derivatives_are_the_slopes_of_the_outputs(host: Host, built
 @pytest.mark.parametrize("name", NAMES)
 def test_a_roughness_out_of_range_is_refused(host: Host, built: Path, name: str) -> None:
     instance = host(name, "fmi3", built)
-    assert instance.refused(instance.start, {"h": 0.0}).startswith("h = 0 m is outside (0, 0.001]")
+    assert instance.refused(instance.start, {"h": 0.0}).startswith("h = 0 m is outside (0, 0.1]")
     instance.reset()
     assert instance.refused(instance.start, {"hurst": 1.0}).startswith("hurst = 1 is outside (0, 1)")
 

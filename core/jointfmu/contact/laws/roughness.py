@@ -38,7 +38,7 @@ class RoughSurfaces:
         "m",
         "rms height of both surfaces together, of all waves up to longest_wave",
         gt=0.0,
-        le=10.0 * ROUGHEST,
+        le=1e3 * ROUGHEST,  # the law holds at any scale, a height of a metre is none
     )
     gamma: float = quantity("1", "approach over h by which the pressure grows e-fold", gt=0.0)
     longest_wave: float = quantity("m", "longest wave of the roughness", gt=0.0)
