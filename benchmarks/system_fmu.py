@@ -8,7 +8,6 @@ interval. Then the times of runs: of the archive at its interval, and at the lon
 the outputs are within 0.5 % as well, over those of the FMU. All include loading; the archive's unpacking too.
 """
 
-import platform
 import shutil
 import tempfile
 import time
@@ -66,15 +65,13 @@ def run_archive(path, name, one, step, expected, outputs):
 
 def main() -> None:
     """Print the tables."""
-    machine = "aarch64" if platform.machine() in ("arm64", "aarch64") else "x86_64"
-    here = f"{machine}-{platform.system().lower()}"
     times = []
     print("system           output                1 ms     10 ms   archive at its interval")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         for name, outputs in WATCHED.items():
             one = system(name)
-            file = build_system(assembly(one), out / "whole", ("2",), (here,))[0]
+            file = build_system(assembly(one), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
             ssp.build_systems(out, [one])
             unzipped = fmpy.extract(str(file))
             tolerance, interval = EXCHANGE[name]

@@ -8,7 +8,6 @@ seconds at a communication step of 1 ms, at several tolerances of the host. Rand
 of the torques falls in every step (hysteresis off, whose sliders hold energy too).
 """
 
-import platform
 import shutil
 import tempfile
 from pathlib import Path
@@ -31,14 +30,11 @@ LOSSES = ("d", "friction_coulomb", "friction_stribeck", "friction_viscous", "hys
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8)
 WIND_UP, SWING = 1e-3, 2.0
 DRAWS, STEP, STEPS = 10_000, 1e-2, 3
-PLATFORM = (
-    f"{'aarch64' if platform.machine() in ('arm64', 'aarch64') else 'x86_64'}-{platform.system().lower()}"
-)
 
 
 def built(path: Path, out: Path) -> str:
     """The FMU of a system's file, unpacked."""
-    (file,) = build_system(assembly(read(path)), out, ("2",), (PLATFORM,))
+    (file,) = build_system(assembly(read(path)), out, ("2",), (fmpy.platform_tuple,))
     return fmpy.extract(str(file))
 
 
@@ -91,7 +87,7 @@ def energy(folder: Path) -> None:
 
 def random(folder: Path) -> None:
     """Print the largest rise of energy, and whether all is finite, without and with hysteresis."""
-    (file,) = build_system(assembly(system("robot_joint")), folder, ("2",), (PLATFORM,))
+    (file,) = build_system(assembly(system("robot_joint")), folder, ("2",), (fmpy.platform_tuple,))
     unzipped = fmpy.extract(str(file))
     described = fmpy.read_model_description(unzipped)
     refs = {v.name: v.valueReference for v in described.modelVariables}

@@ -24,6 +24,8 @@ TOLERANCE = 1e-5
 """Of a reference result [1]. An importer that prints six digits rounds by 5e-6; the rest is for what differs
 between the package and a compiled law: measured, 1e-8 at neighbours of refusals and 1e-9 elsewhere, with the
 rounding of the files. Platforms differ by 1e-12; a solver adds 4e-10 where there are states."""
+TEXT = "documentation/fmi-ls-ref.txt"
+"""Where an FMU says what its experiments are."""
 _INTERFACES = {
     manifest.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
     manifest.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
@@ -71,7 +73,7 @@ Requirements
 """
 
 
-class Related(NamedTuple):
+class RelatedFile(NamedTuple):
     """A line of the manifest; `labels` {interface: how it is run in it}, of experiments."""
 
     source: str
@@ -91,17 +93,20 @@ def archive(
 ) -> dict[str, bytes]:
     """{path in the FMU: content}."""
     members: dict[str, bytes] = {}
-    related: list[Related] = []
+    related: list[RelatedFile] = []
+    offered = dict(list(_INTERFACES.items())[: 2 if native else 1])
 
     def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
         members[source] = content
-        labels = _INTERFACES if kind == manifest.EXPERIMENTS else {}
-        related.append(Related(source, kind, role, doc, dict(list(labels.items())[: 2 if native else 1])))
+        labels = offered if kind == manifest.EXPERIMENTS else {}
+        related.append(RelatedFile(source, kind, role, doc, labels))
 
     own, exposed = slug(parameters.name), model.parameter_fields()
     if native:
         address = "../../documentation/index.html"
-        related.append(Related(address, "text/html", "requirement", "what the FMU takes, gives and refuses"))
+        related.append(
+            RelatedFile(address, "text/html", "requirement", "what the FMU takes, gives and refuses")
+        )
     add(
         f"parameters/{own}.toml",
         "application/toml",
@@ -109,10 +114,8 @@ def archive(
         "each parameter with its source",
         dump(parameters).encode(),
     )
-    address = "../../documentation/fmi-ls-ref.txt"
-    related.append(
-        Related(address, "text/plain", "document", "what the experiments are, and their tolerance")
-    )
+    doc = "what the experiments are, and their tolerance"
+    related.append(RelatedFile(f"../../{TEXT}", "text/plain", "document", doc))
     for file, _ in models:
         values = {name: value for name, value in flatten(file.values).items() if name in exposed}
         content = _parameter_set(model, file.name, values)
@@ -133,10 +136,10 @@ def archive(
         members |= series
         for path in series:
             if path.endswith("_ref.csv"):
-                related.append(Related(path, manifest.CSV, "result", "reference result of the package"))
+                related.append(RelatedFile(path, manifest.CSV, "result", "reference result of the package"))
     members["fmi-ls-manifest.xml"] = manifest_xml(related)
     found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
-    return found | {"documentation/fmi-ls-ref.txt": _text(own, experiments, native).encode()}
+    return found | {TEXT: _text(own, experiments, native).encode()}
 
 
 def slug(name: str) -> str:
@@ -175,7 +178,7 @@ def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> byt
     return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
 
 
-def manifest_xml(related: Sequence[Related]) -> bytes:
+def manifest_xml(related: Sequence[RelatedFile]) -> bytes:
     """The manifest of FMI-LS-REF."""
     head = {"name": manifest.NAME, "version": manifest.VERSION, "description": manifest.DESCRIPTION}
     root = Element("fmiReferences", {"xmlns:fmi-ls": manifest.ATTRIBUTES})

@@ -57,8 +57,8 @@ def build_system(
             members["sources/buildDescription.xml"] = build_description(model, units)
         target = out / f"fmi{version}" / f"{model.title}.fmu"
         with workshop(target) as work:
-            pack(members, work / target.name)
-            if found is None:
+            if found is None:  # the first FMU computes what both carry
+                pack(members, work / target.name)
                 found = proof(model, assembly.stop, work / target.name)
             pack(members | found, work / target.name)
         written.append(target)

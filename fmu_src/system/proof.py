@@ -19,7 +19,7 @@ from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.proof.series import TimeSeries, text
 from jointfmu.proof.task import Task
 
-from ..proof.files import Related, manifest_xml
+from ..proof.files import TEXT, RelatedFile, manifest_xml
 from ..xml_parts import serialized
 
 TOLERANCE, SOLVER = 5e-3, 1e-9
@@ -32,7 +32,6 @@ FINE, MOST_STEPS, ROWS = 20_000, 100_000, 200
 """Steps of model exchange at least, after each of which memory is accepted; communication steps at most: a
 longer experiment is proved up to them; about the rows of a file."""
 DIGITS = 7
-_TEXT = "documentation/fmi-ls-ref.txt"
 _PAGE = """\
 The proof inside this FMU
 
@@ -65,7 +64,7 @@ def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
     try:
         found = _exchanged(model, fmu, fine * np.arange(count * parts + 1), parts)
     except Exception as error:  # fmpy raises bare Exception
-        return {_TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
+        return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
     scales = {
         v.name: max(float(np.abs(found.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
     }
@@ -76,10 +75,12 @@ def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
         MODEL_EXCHANGE: [(fine, short)],
     }
     related = [
-        Related("../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"),
-        Related(f"../../{_TEXT}", "text/plain", "document", "experiments and tolerance"),
+        RelatedFile(
+            "../../documentation/index.html", "text/html", "requirement", "what the FMU takes and gives"
+        ),
+        RelatedFile(f"../../{TEXT}", "text/plain", "document", "experiments and tolerance"),
         *(
-            Related(path, manifest.CSV, "result", "by model exchange at a tight tolerance")
+            RelatedFile(path, manifest.CSV, "result", "by model exchange at a tight tolerance")
             for path in members
         ),
     ]
@@ -87,7 +88,7 @@ def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
         path = f"{interface.replace(' ', '-')}.exp"
         members[path] = _experiments(model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
-        related.append(Related(path, manifest.EXPERIMENTS, "experiment/validation", model.doc, labels))
+        related.append(RelatedFile(path, manifest.EXPERIMENTS, "experiment/validation", model.doc, labels))
     members["fmi-ls-manifest.xml"] = manifest_xml(related)
     page = _PAGE.format(
         standard=manifest.NAME,
@@ -101,7 +102,7 @@ def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
         small=SMALL,
     )
     placed = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
-    return placed | {_TEXT: page.encode()}
+    return placed | {TEXT: page.encode()}
 
 
 def _exchanged(model: Model, fmu: Path, times: np.ndarray, every: int) -> TimeSeries:

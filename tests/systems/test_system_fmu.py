@@ -1,6 +1,5 @@
 """One FMU for a whole system: its motion against model exchange, derivatives, states, refusals."""
 
-import platform
 import re
 import zipfile
 from pathlib import Path
@@ -20,15 +19,14 @@ from jointfmu.fmi.host import opened, unpacked
 from jointfmu.proof.manifest import FOLDER, Related
 from jointfmu.proof.run import prove
 
-HERE = {"Windows": "windows", "Darwin": "darwin"}.get(platform.system(), "linux")
-ARCHITECTURE = "aarch64" if platform.machine().lower() in ("arm64", "aarch64") else "x86_64"
-THIS = (f"{ARCHITECTURE}-{HERE}",)
 LAST = {"robot_joint": "link.phi", "bolted_column": "column.s", "six_axis_robot": "hand_drive.phi_rel"}
 DRIVE = ("link.phi", "link.w", "drive.tau", "drive.E_loss")
 
 
 def made(name, out):
-    return dict(zip("23", build_system(assembly(system(name)), out, platforms=THIS), strict=True))
+    return dict(
+        zip("23", build_system(assembly(system(name)), out, platforms=(fmpy.platform_tuple,)), strict=True)
+    )
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from jointfmu_tools.joints.bolted_joint.layout import Layout
+from jointfmu_tools.joints.bolted_joint.layout import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
 from jointfmu_tools.report.course import Course
@@ -74,7 +74,7 @@ def test_the_picture_of_points_without_an_outline() -> None:
     scale = np.ptp(places, axis=0) / np.ptp(moved.position, axis=0)
     np.testing.assert_allclose(scale[0], scale[1], rtol=1e-2)
     assert np.pi * np.sum(radius**2) / scale[0] ** 2 == pytest.approx(joint.A_0, rel=0.05)
-    assert len(Layout.of(joint).bolts) == 0
+    assert len(PlaneLayout.of(joint).bolts) == 0
     figure = pictured(Course(MODELS["BoltedJoint"], replace(file, values=joint)))
     assert "no places of the bolts" in figure.text
     assert len(figure.pictures) == 1

@@ -10,7 +10,7 @@ from jointfmu.mechanics.footprint.shape import MergedShape, PressureShape
 from jointfmu.parameters import ParameterFile
 
 from ...fields.clamped import Array, Clamping
-from .layout import Layout
+from .layout import PlaneLayout
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
@@ -29,4 +29,4 @@ def _whole(file: ParameterFile, assembly: "Assembly", preload: float, attached: 
     return whole_of(file, lambda: assembly, preload, attached).file
 
 
-FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=Layout.of, whole=_whole)
+FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole)

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Layout:
+class PlaneLayout:
     """What lies where in a joint's plane, from the centroid of its contact [m].
 
     bolts   : (b, 2), none where the file does not say
@@ -31,7 +31,7 @@ class Layout:
     head: float
 
     @classmethod
-    def of(cls, joint: Bolted) -> "Layout":
+    def of(cls, joint: Bolted) -> "PlaneLayout":
         """Of a joint's parameters."""
         pattern = joint.pattern
         head = joint.bodies.head_diameter if isinstance(joint.bodies, ElasticBodies) else 0.0

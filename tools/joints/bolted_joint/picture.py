@@ -12,7 +12,7 @@ from jointfmu.joints.bolted_joint.spring import patches
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.shape import NodalField
 
-from .layout import Layout
+from .layout import PlaneLayout
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ INK, SOFT, RED, OPEN = "#1d232b", "#5a6572", "#c1442e", "#e3e6ea"
 
 
 @dataclass
-class Sheet:
+class Svg:
     """SVG elements, in pixels, on white paper."""
 
     width: float
@@ -87,12 +87,12 @@ class Sheet:
 
 def plan(joint: Bolted, preload: float, moment: float) -> str:
     """The tightened interface from side 2: pressure, friction's patches, bolts with numbers, attachments."""
-    shape, layout = pressure_shape(joint.pattern), Layout.of(joint)
+    shape, layout = pressure_shape(joint.pattern), PlaneLayout.of(joint)
     p = np.asarray(pressures(joint, shape, preload, moment))
     low, high = layout.extent
     scale = min(WIDE / (high - low)[0], HIGH / (high - low)[1])
     size = scale * (high - low)
-    sheet = Sheet(max(size[0], 260.0) + 2.0 * EDGE + 90.0, max(size[1], 150.0) + 2.0 * EDGE)
+    sheet = Svg(max(size[0], 260.0) + 2.0 * EDGE + 90.0, max(size[1], 150.0) + 2.0 * EDGE)
 
     def at(place: Array) -> Array:
         return np.array([EDGE, EDGE]) + scale * np.array([place[0] - low[0], high[1] - place[1]])
@@ -152,7 +152,7 @@ def _colour(part: float) -> str:
     return "#" + "".join(f"{round(float(np.interp(part, place, column))):02x}" for column in VIRIDIS.T)
 
 
-def _bar(sheet: Sheet, x: float, y: float, height: float, top: float) -> None:
+def _bar(sheet: Svg, x: float, y: float, height: float, top: float) -> None:
     steps = 40
     for k in range(steps):
         place = y + height * (1.0 - (k + 1) / steps)
@@ -164,7 +164,7 @@ def _bar(sheet: Sheet, x: float, y: float, height: float, top: float) -> None:
     sheet.text(x - 8.0, y - 12.0, "pressure [MPa]", "start")
 
 
-def _bolts(sheet: Sheet, at: Array, layout: Layout, scale: float, held: bool) -> None:
+def _bolts(sheet: Svg, at: Array, layout: PlaneLayout, scale: float, held: bool) -> None:
     """Holes, heads, centre lines and numbers of bolts at (b, 2) [px]."""
     hole, head = 0.5 * scale * layout.hole, 0.5 * scale * layout.head
     for number, (x, y) in enumerate(at, start=1):
@@ -188,7 +188,7 @@ def section(joint: Bolted) -> str:
     """Both sides from the front with their thicknesses, the bolts, and where the load enters."""
     bodies = joint.bodies
     assert isinstance(bodies, ElasticBodies)
-    layout, attached = Layout.of(joint), _attached(joint)
+    layout, attached = PlaneLayout.of(joint), _attached(joint)
     (low, _), (high, _) = layout.extent
     first, second = bodies.thickness
     scale = min(WIDE / (high - low), HIGH / (first + second))
@@ -197,7 +197,7 @@ def section(joint: Bolted) -> str:
     middle = EDGE + head + up * second
     bottom, top = middle + up * first, middle - up * second
     x1, x2 = EDGE, EDGE + scale * (high - low)
-    sheet = Sheet(max(x2 - x1, 300.0) + 2.0 * EDGE + 60.0, bottom + head + EDGE)
+    sheet = Svg(max(x2 - x1, 300.0) + 2.0 * EDGE + 60.0, bottom + head + EDGE)
     for y, height, fill in ((top, up * second, "#dfe6ef"), (middle, up * first, "#eef1f5")):
         sheet.put("rect", x=x1, y=y, width=x2 - x1, height=height, fill=fill, stroke=INK)
     for y, name, thick in (
@@ -233,7 +233,7 @@ def section(joint: Bolted) -> str:
 
 
 def _bolt(
-    sheet: Sheet, x: float, ends: tuple[float, float], half: float, head: float, held: bool, tapped: bool
+    sheet: Svg, x: float, ends: tuple[float, float], half: float, head: float, held: bool, tapped: bool
 ) -> None:
     """One bolt with head and nut, or to the end of its thread; schematic."""
     (top, bottom), shank = ends, 0.6 * half

@@ -19,7 +19,7 @@ from ...report.beside import Beside
 from ...report.course import Course
 from ...report.figure import Figure
 from ...shown import quantity
-from .layout import Layout
+from .layout import PlaneLayout
 from .loss import friction_band
 from .picture import plan, section
 
@@ -36,7 +36,7 @@ def pictured(course: Course) -> Figure:
     """The joint from above, and from the front where the file says how thick its sides are."""
     joint = course.file.values
     preload, moment = _tight(course)
-    bodies, bolts = joint.bodies, Layout.of(joint).bolts
+    bodies, bolts = joint.bodies, PlaneLayout.of(joint).bolts
     pictures = [plan(joint, preload, moment)]
     if joint.elastic and isinstance(bodies, ElasticBodies) and bodies.thickness:
         pictures.append(section(joint))
