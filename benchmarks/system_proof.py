@@ -1,15 +1,18 @@
-"""Does one FMU of a system keep the energy, and does it stay bounded from anywhere?
+"""Does one FMU of a system keep the energy, does it stay bounded from anywhere, does a long one prove itself?
 
     python benchmarks/system_proof.py
 
 Energy: the six drives of an arm, each with its link, motors held and all losses off, swing freely for two
 seconds at a communication step of 1 ms, at several tolerances of the host. Random: the robot joint from
 10 000 random states under random torques, three steps of 10 ms each: all is finite, and energy less the work
-of the torques falls in every step (hysteresis off, whose sliders hold energy too).
+of the torques falls in every step (hysteresis off, whose sliders hold energy too). Long: the bolted
+column over more periods, its build and the proof that it carries.
 """
 
 import shutil
 import tempfile
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import fmpy
@@ -23,6 +26,8 @@ from jointfmu_tools.systems.system import read, system
 from scipy.interpolate import CubicSpline
 
 from jointfmu.parameters import dump
+from jointfmu.proof.manifest import Related
+from jointfmu.proof.run import prove
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")
@@ -30,6 +35,7 @@ LOSSES = ("d", "friction_coulomb", "friction_stribeck", "friction_viscous", "hys
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8)
 WIND_UP, SWING = 1e-3, 2.0
 DRAWS, STEP, STEPS = 10_000, 1e-2, 3
+LONG = (0.03, 1.0, 40.0)
 
 
 def built(path: Path, out: Path) -> str:
@@ -132,9 +138,25 @@ def random(folder: Path) -> None:
     shutil.rmtree(unzipped)
 
 
+def long(folder: Path) -> None:
+    """Print what builds take, up to where they are proved, and the misses."""
+    for stop in LONG:
+        begin = time.perf_counter()
+        column = replace(system("bolted_column"), stop_time=stop)
+        (file,) = build_system(assembly(column), folder, ("2",), (fmpy.platform_tuple,))
+        taken = time.perf_counter() - begin
+        rows = [e.references.time for e in Related(file).experiments() if e.references]
+        found = prove(file)
+        print(
+            f"bolted_column over {stop:g} s: built in {taken:.0f} s, proved up to {rows[0][-1]:g} s, "
+            f"{', '.join(str(row.size) for row in rows)} rows, misses: {found.misses or 'none'}"
+        )
+
+
 def main() -> None:
-    """Print both."""
+    """Print all."""
     with tempfile.TemporaryDirectory() as folder:
+        long(Path(folder))
         energy(Path(folder))
         random(Path(folder))
 

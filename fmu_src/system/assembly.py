@@ -54,6 +54,7 @@ class Assembly:
 
     components : loads, then joints, then bodies: each takes from those before it, and the states of bodies
     stop, interval : of the default experiment [s]
+    own_interval : step [s] that its motion asks of separate FMUs
     """
 
     name: str
@@ -61,6 +62,7 @@ class Assembly:
     components: Sequence[Component]
     stop: float
     interval: float
+    own_interval: float
 
     @property
     def bodies(self) -> list[Component]:

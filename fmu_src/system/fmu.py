@@ -59,7 +59,7 @@ def build_system(
         with workshop(target) as work:
             if found is None:  # the first FMU computes what both carry
                 pack(members, work / target.name)
-                found = proof(model, assembly.stop, work / target.name)
+                found = proof(model, assembly.stop, assembly.own_interval, work / target.name)
             pack(members | found, work / target.name)
         written.append(target)
     return written

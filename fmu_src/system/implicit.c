@@ -20,6 +20,7 @@
 #define MOST_STEPS 100000 /* tried in one communication step */
 #define WORTH 0.3 /* a correction that shrinks by less asks for new tangents */
 #define MOST_GROWTH 4.0
+#define LAST 1e-6 /* of half a step: its last part */
 enum { MOST_ITERATIONS = 12, MIDDLE = 0, END = 1, X = FIRST_OUTPUT, V = X + N_BODIES, A = V + N_BODIES };
 
 /* From accelerations at begin, middle and end of a step of size 1 to the speed, and to the place. */
@@ -252,6 +253,19 @@ static Status refuse(const Instance *m, double time, double size)
     return instance_refuse(m, "the step", text.line);
 }
 
+/* What is remembered just before the end of a way: a motion that has turned on it goes on from there in its own
+ * direction, of which the stiffness at the end is. */
+static void approach(Instance *m, const double *end, const double *memory, double size, double *after)
+{
+    Work *w = &m->joint->work;
+    double *at = w->at[END];
+    memcpy(at + X, end, N_STATES * sizeof *at);
+    for (size_t i = 0; i < N_BODIES; i++)
+        at[X + i] -= LAST * size * at[V + i];
+    if (!joint_evaluate(m->joint, at + FIRST_INPUT, memory, after, at + FIRST_OUTPUT, &w->why))
+        memcpy(after, memory, sizeof w->memory[0]);
+}
+
 Status instance_advance(Instance *m, double size)
 {
     Work *w = &m->joint->work;
@@ -261,7 +275,7 @@ Status instance_advance(Instance *m, double size)
     w->tolerance = now->tolerance > 0.0 ? fmax(fmin(now->tolerance, TOLERANCE), LEAST_TOLERANCE) : TOLERANCE;
     w->tangents_known = false; /* nothing is kept from step to step, so that a restored state goes on alike */
     w->shrinks = 1.0;
-    double done = 0.0, next = now->last_size > 0.0 ? now->last_size : size;
+    double done = 0.0, last_half = 0.0, next = now->last_size > 0.0 ? now->last_size : size;
     memcpy(from, now->values + X, (N_STATES + N_BODIES) * sizeof *from);
     memcpy(memory, now->path.memory[now->path.last], sizeof w->memory[0]);
     memcpy(between, memory, sizeof w->memory[0]);
@@ -306,6 +320,7 @@ Status instance_advance(Instance *m, double size)
             continue;
         }
         done += h;
+        last_half = 0.5 * h;
         memcpy(from, halves, sizeof w->states[0]);
         memcpy(between, after, sizeof w->memory[0]); /* the way to the end is that of the second half */
         memcpy(memory, aside, sizeof w->memory[0]);
@@ -313,7 +328,7 @@ Status instance_advance(Instance *m, double size)
         next = cut ? fmax(next, grown) : grown;
     }
     memcpy(now->values + X, from, N_STATES * sizeof *from);
-    memcpy(now->path.memory[now->path.last], between, sizeof w->memory[0]);
+    approach(m, from, between, last_half, now->path.memory[now->path.last]);
     now->path.accepted = 0;
     now->last_size = next;
     return OK;

@@ -28,9 +28,13 @@ SMALL = 1e-2
 """Part of its nominal value [1] below which an output is judged by that part, not by its largest value."""
 STEP, LONGER = 1e-3, 10
 """Communication step [s], of which an experiment has ten at least, and how many make the longer one."""
-FINE, MOST_STEPS, ROWS = 20_000, 100_000, 200
-"""Steps of model exchange at least, after each of which memory is accepted; communication steps at most: a
-longer experiment is proved up to them; about the rows of a file."""
+FINE, MOST_STEPS, ROWS = 3, 100_000, 200
+"""Steps of model exchange in an interval of the system, after each of which memory is accepted; of them at
+most: a longer experiment is proved up to there; about the rows of a file."""
+JUMP, NEAR = 10.0, 3
+"""An output jumps where it changes by more than TOLERANCE between two fine steps, and by this many times [1]
+what it changes before and after: a stiffness does where motion turns. A step that is right finds the turn a
+little earlier or later, so within so many intervals of a jump nothing is compared."""
 DIGITS = 7
 _PAGE = """\
 The proof inside this FMU
@@ -48,28 +52,30 @@ or by any importer: no value is set, steps are of stepSize.
 Tolerance
   |value - reference| <= {tolerance:g} scale
 The annotation of each experiment states the scale of each output: its largest reference between start and
-end, or {small:g} of its nominal value if that is more.
+end, or {small:g} of its nominal value if that is more. Left out are times within {near:.3g} s of a jump of an
+output: a stiffness jumps where the motion turns and friction sticks again.
 """
 
 
-def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
+def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, bytes]:
     """{path in the FMU: content}; where its experiment cannot be run here a text that says why.
 
-    stop : of the system's experiment [s]
+    stop, interval : of the system's experiment [s]; what separate FMUs need is followed more finely here
     """
     step = min(STEP, stop / LONGER)
-    count = LONGER * min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // LONGER)
-    parts = -(-FINE // count)
+    parts = max(int(np.ceil(FINE * step / interval - 1e-6)), 1)
+    count = LONGER * max(min(int(stop / (LONGER * step) + 1e-6), MOST_STEPS // (LONGER * parts)), 1)
     fine = step / parts
     try:
-        found = _exchanged(model, fmu, fine * np.arange(count * parts + 1), parts)
+        found = _exchanged(model, fmu, fine * np.arange(count * parts + 1))
     except Exception as error:  # fmpy raises bare Exception
         return {TEXT: f"There is no proof inside this FMU: where it was built {error}\n".encode()}
     scales = {
         v.name: max(float(np.abs(found.columns[v.name]).max()), SMALL * v.nominal) for v in model.outputs
     }
+    smooth = _smooth(found, scales)
     short, long = (f"experiments/{model.title}_{n}_ref.csv" for n in (1, LONGER))
-    members = {path: _rows(found, n, count) for path, n in ((short, 1), (long, LONGER))}
+    members = {path: _rows(found, smooth, n * parts) for path, n in ((short, 1), (long, LONGER))}
     runs = {
         CO_SIMULATION: [(step, short), (LONGER * step, long)],
         MODEL_EXCHANGE: [(fine, short)],
@@ -100,13 +106,14 @@ def proof(model: Model, stop: float, fmu: Path) -> dict[str, bytes]:
         fine=fine,
         tolerance=TOLERANCE,
         small=SMALL,
+        near=FINE * NEAR * fine,
     )
     placed = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
     return placed | {TEXT: page.encode()}
 
 
-def _exchanged(model: Model, fmu: Path, times: np.ndarray, every: int) -> TimeSeries:
-    """All outputs at some of the times, by model exchange; raises whatever prevents it."""
+def _exchanged(model: Model, fmu: Path, times: np.ndarray) -> TimeSeries:
+    """All outputs at the times, by model exchange; raises whatever prevents it."""
     names, said = [v.name for v in model.outputs], list[str]()
     if MODEL_EXCHANGE not in interfaces("fmpy"):
         raise RuntimeError("fmpy has no solver for model exchange")
@@ -124,13 +131,26 @@ def _exchanged(model: Model, fmu: Path, times: np.ndarray, every: int) -> TimeSe
             rows = exchange.fmpy(task, said)
         except Exception as error:
             raise RuntimeError(f"its own experiment failed: {said[0] if said else error}") from None
-    table = np.array(rows[::every])
-    return TimeSeries(times[::every], dict(zip(names, table.T, strict=True)))
+    return TimeSeries(times, dict(zip(names, np.array(rows).T, strict=True)))
 
 
-def _rows(found: TimeSeries, step: int, count: int) -> bytes:
-    """A file of the results at some ends of steps, the first and the last among them."""
-    rows = np.append(np.arange(0, count, step * -(-count // (step * ROWS))), count)
+def _smooth(found: TimeSeries, scales: Mapping[str, float]) -> np.ndarray:
+    """Whether no output jumps near a time."""
+    jumps = np.zeros(found.time.size - 1, dtype=bool)
+    for name, column in found.columns.items():
+        change = np.abs(np.diff(column))
+        around = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
+        jumps |= (change > TOLERANCE * scales[name]) & (change > JUMP * around)
+    near = np.convolve(jumps, np.ones(2 * FINE * NEAR, dtype=int))[FINE * NEAR - 1 :]
+    smooth = np.asarray(near[: found.time.size] == 0)
+    smooth[0] = True  # nothing has moved yet
+    return smooth
+
+
+def _rows(found: TimeSeries, smooth: np.ndarray, step: int) -> bytes:
+    """A file of the results at some ends of steps of so many fine ones."""
+    rows = step * np.flatnonzero(smooth[::step])
+    rows = rows[:: -(-rows.size // ROWS)]
     columns = {name: column[rows] for name, column in found.columns.items()}
     times = np.array([float(f"{time:.12g}") for time in found.time[rows]])
     return text(TimeSeries(times, columns), DIGITS).encode()

@@ -36,6 +36,5 @@ def assembly(system: System) -> Assembly:
             f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
         )
     parts.sort(key=lambda part: (part.model.states > 0, not part.model.moves))
-    return Assembly(
-        system.name, system.description, parts, system.stop_time, max(system.interval, LEAST_INTERVAL)
-    )
+    interval = max(system.interval, LEAST_INTERVAL)
+    return Assembly(system.name, system.description, parts, system.stop_time, interval, system.interval)
