@@ -3,7 +3,8 @@
 Three joints of two plates: a flange (outer faces rigid, sheared along x), a lap (ends rigid, sheared along x)
 and a bracket (ends rigid, a force along y off the bolts' line). The finite elements are linear but for the
 contact, and reduce to the compliance of their elements' patches without loss: about 300 to 500, each with the
-law's own p(delta) and 144 sliders beside the joint's 120 points and 22 patches of 38. Quasi-static: up to
+law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code of the package's sliders, beside
+the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
 LEVELS of the motion at which a linear joint would carry all friction, then a whole cycle at CYCLES of it.
 
 Run: python benchmarks/whole_joint_nodes.py [flange lap bracket] [--why]
@@ -16,13 +17,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
+from coulomb_springs import Springs
 from elastic_sides import Joint, along
 from jointfmu_tools.fem import elastic_sides as reduction
 from jointfmu_tools.fem.sparse import Cholesky
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops
-from lap_beam_loops import foundation
 from lap_beam_reduction import AT_ONCE, Reduced, patches
 from numpy.typing import NDArray
 from scipy import sparse as sp
@@ -104,7 +105,7 @@ class Elements:
             np.stack([rows @ (linear.moved @ motion) for rows in apart], axis=1),
             compliance(matrix.tocsr(), apart, whole.held, whole.bodies[0].size),
         )
-        loops = Loops(beam, foundation(spring.curve, ratio, values.mu))
+        loops = Loops(beam, Springs.of(spring.curve, ratio, values.mu))
         return cls(loops, motion, float(motion @ K @ motion))
 
     @classmethod
