@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from coulomb_springs import Springs
-from elastic_sides import Joint, along
+from elastic_sides import Joint, along, on_cells
 from jointfmu_tools.fem import elastic_sides as reduction
 from jointfmu_tools.fem.sparse import Cholesky
 from jointfmu_tools.fem.whole_joint import WholeJoint
@@ -64,6 +64,8 @@ STEPS = 8
 """From one end of a cycle to the other."""
 WHY = {"as it is": (24, 22), "60 modes": (60, 22), "60 patches": (24, 60), "60 modes, 60 patches": (60, 60)}
 """Modes and patches of the reduced joint."""
+CELLS = (120, 300)
+"""Of a joint without modes and patches."""
 
 
 @dataclass(frozen=True)
@@ -203,10 +205,12 @@ def compared(name: str, why: bool) -> None:
     ways = cases()
     full = {key: elements.along(list(loads)) for key, loads in ways.items()}
     slips = np.max(np.abs(full["first"][0])) / elements.stiffness
+    firsts: dict[str, Array] = {}
     for label, (modes, count) in (WHY if why else dict([next(iter(WHY.items()))])).items():
         with finer(modes, count):
-            one = joint.spring
-            if label != "as it is":
+            if label == "as it is":
+                one = joint.spring
+            else:
                 base = BoltedJointSpring.of(joint.rigid.values)
                 made = reduction.elastic_bodies(joint.linear, base, joint.normal, joint.preload)
                 one = BoltedJointSpring.of(with_bodies(joint.rigid, made, attached).values)
@@ -216,6 +220,14 @@ def compared(name: str, why: bool) -> None:
             }
         patches_, row = elements.loops.beam.area.size, misses(full, found)
         print(f"| {name} | {label} | {patches_} | {slips:.2f} | " + " | ".join(row) + " |", flush=True)
+        firsts[label] = found["first"][0]
+    for count in CELLS if why else ():
+        states = on_cells(joint, count)
+        unit = states.rigid @ elements.motion
+        firsts[f"{count} cells"] = np.array([unit @ states.forces(x * elements.motion) for x in LEVELS])
+    for label, force in firsts.items() if why else ():
+        over = ", ".join(f"{x:.3f}" for x in force / full["first"][0])
+        print(f"{name}, {label}: force on the first way over that of the elements {over}", flush=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -224,7 +236,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("joints", nargs="*", choices=[*JOINTS, []], default=list(JOINTS))
-    parser.add_argument("--why", action="store_true", help="more modes, more patches")
+    parser.add_argument("--why", action="store_true", help="more modes, more patches, neither; the first way")
     given = parser.parse_args(arguments)
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
     print("| joint | reduction | patches | most force | first way | " + " | ".join(cells) + " |")
