@@ -38,6 +38,9 @@ Array = NDArray[np.float64]
 
 PLATES: dict[str, object] = {"grip": ["20"], "material": ["steel"], "Ra": ["0.8"], "embedding": "0"}
 PLATES |= {"preload": "15e3"}
+BRACKET = PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]}
+LEVER = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]) / 3.0
+"""Of the bracket: with this lever it slips as a whole at a third of its friction."""
 JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
     "flange": (
         "faces",
@@ -49,11 +52,8 @@ JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
         PLATES | {"plate": "90x40", "bolts": "2xM8", "at": ["40x0"]},
         np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ),
-    "bracket": (
-        "edge",
-        PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]},
-        np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]),
-    ),
+    "bracket": ("edge", BRACKET, LEVER),
+    "bracket-far": ("edge", BRACKET, 3.0 * LEVER),
 }
 """Attachment, drawing and force: along x and y [1], moments about the centre [m]."""
 LEVELS = (0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
