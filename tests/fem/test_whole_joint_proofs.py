@@ -8,9 +8,10 @@ import measured_beam
 import numpy as np
 import pytest
 from coulomb_springs import Springs
+from elastic_sides import Joint
 from lap_beam_reduction import patches
 from whole_joint_forms import PRESS, Lap, by_hand
-from whole_joint_nodes import STEPS, Elements, way
+from whole_joint_nodes import JOINTS, STEPS, Elements, along_motion, way
 
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.sliders import Foundation
@@ -94,3 +95,21 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
     work = 0.5 * np.sum((f[1:] + f[:-1]) * np.diff(x))
     # chords of 8 steps each way lie inside a loop: 1.6 % of its area if it is of parabolas, 3.7 % measured
     assert work < loss[-1] - loss[STEPS - 1] < 1.05 * work
+
+
+@pytest.mark.slow
+def test_a_bracket_slips_under_a_lever_as_its_elements_do():
+    """To its slip, three times as far, and back: 0.5 % and 3 % of the force were measured, 1.3 % of the heat.
+
+    Friction keeps the normal force of the bolts: patches that follow the bent bodies by themselves do not.
+    """
+    attached, drawing, wrench = JOINTS["bracket"]
+    joint = Joint.of(attached, drawing)
+    elements = Elements.clamped(joint, wrench)
+    loads = [0.5, 1.0, 2.0, 3.0, 2.0, 0.0, -2.0, -3.0]
+    force, heat = elements.along(loads)
+    found, lost = along_motion(joint.spring, joint.preload, elements.motion, loads)
+    assert force[1] < 0.7 * elements.stiffness  # it slips
+    np.testing.assert_allclose(found[:2], force[:2], atol=0.01 * force[1])
+    np.testing.assert_allclose(found, force, atol=0.04 * force[3])
+    np.testing.assert_allclose(lost[3:], heat[3:], rtol=0.03)
