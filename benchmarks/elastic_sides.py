@@ -60,13 +60,13 @@ class Joint:
     members: float
 
     @classmethod
-    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE) -> "Joint":
-        """Made as the command makes it."""
+    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE, refinement: float = 1.0) -> "Joint":
+        """Made as the command makes it, beside finite elements of sizes divided by `refinement` [1]."""
         seen: dict[str, object] = {}
         real = whole.whole_joint
 
         def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
-            joint = WholeJoint.of(plates.assembly(file), to)
+            joint = WholeJoint.of(plates.assembly(file), to, refinement)
             springs = computed._springs(file, plates.preload, joint)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2])
             seen["linear"] = joint.linear(springs, file.values.bolt_stiffness)

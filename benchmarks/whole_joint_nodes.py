@@ -1,13 +1,13 @@
 """The whole bolted joint with elastic sides beside finite elements with friction at every element.
 
 Three joints of two plates: a flange (outer faces rigid, sheared along x), a lap (ends rigid, sheared along x)
-and a bracket (ends rigid, a force along y off the bolts' line). The finite elements are linear but for the
-contact, and reduce to the compliance of their elements' patches without loss: about 300 to 500, each with the
-law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code of the package's sliders, beside
-the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
+and a bracket (ends rigid, a force along y off the bolts' line; far: to four times its slip). The finite
+elements are linear but for the contact, and reduce to the compliance of their elements' patches without loss:
+about 300 to 500, each with the law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code
+of the package's sliders, beside the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
 LEVELS of the motion at which a linear joint would carry all friction, then a whole cycle at CYCLES of it.
 
-Run: python benchmarks/whole_joint_nodes.py [flange lap bracket] [--why]
+Run: python benchmarks/whole_joint_nodes.py [flange lap bracket bracket-far] [--why] [--refinement 1.4]
 """
 
 import argparse
@@ -40,7 +40,7 @@ PLATES: dict[str, object] = {"grip": ["20"], "material": ["steel"], "Ra": ["0.8"
 PLATES |= {"preload": "15e3"}
 BRACKET = PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]}
 LEVER = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]) / 3.0
-"""Of the bracket: with this lever it slips as a whole at a third of its friction."""
+"""Of the bracket [1], [m]: with this lever it slips as a whole at about a third of its friction."""
 JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
     "flange": (
         "faces",
@@ -62,7 +62,8 @@ CYCLES = (0.5, 1.0)
 """Those at which a whole cycle is followed [1]."""
 STEPS = 8
 """From one end of a cycle to the other."""
-WHY = {"as it is": (24, 22), "60 modes": (60, 22), "60 patches": (24, 60), "60 modes, 60 patches": (60, 60)}
+WHY = {"as it is": (24, 22), "60 modes": (60, 22), "40 patches": (24, 40), "60 patches": (24, 60)}
+WHY |= {"60 modes, 60 patches": (60, 60)}
 """Modes and patches of the reduced joint."""
 CELLS = (120, 300)
 """Of a joint without modes and patches."""
@@ -197,10 +198,10 @@ def cases() -> dict[str, Array]:
     return {"first": np.array(LEVELS)} | {f"{level:g}": way(level) for level in CYCLES}
 
 
-def compared(name: str, why: bool) -> None:
+def compared(name: str, why: bool, refinement: float) -> None:
     """Print rows of the table."""
     attached, drawing, wrench = JOINTS[name]
-    joint = Joint.of(attached, drawing)
+    joint = Joint.of(attached, drawing, refinement)
     elements = Elements.clamped(joint, wrench)
     ways = cases()
     full = {key: elements.along(list(loads)) for key, loads in ways.items()}
@@ -237,12 +238,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("joints", nargs="*", choices=[*JOINTS, []], default=list(JOINTS))
     parser.add_argument("--why", action="store_true", help="more modes, more patches, neither; the first way")
+    parser.add_argument("--refinement", type=float, default=1.0, help="divides the sizes of the elements")
     given = parser.parse_args(arguments)
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
     print("| joint | reduction | patches | most force | first way | " + " | ".join(cells) + " |")
     print("|---|" + "---|" * (4 + len(cells)))
     for name in given.joints:
-        compared(name, given.why)
+        compared(name, given.why, given.refinement)
     return 0
 
 
