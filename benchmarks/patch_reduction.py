@@ -78,8 +78,9 @@ PLATES = 12
 """Random plates."""
 POLES = 400
 """Turns in gross slip about poles at random nodes of the contact, and beside them."""
-MANY, FITTED = (22, 40, 60, 120), 60
-"""Patches of the last table; most of those that are fitted, more of them are some of the nodes."""
+MANY = {"22 nodes": (22, few_points), "22": (22, friction_patches), "40": (40, friction_patches)}
+MANY |= {"60": (60, friction_patches), "120 nodes": (120, few_points)}
+"""Patches of the last table, fitted or some of the nodes."""
 OWN = 0.8
 """Radius of the torque of a patch over the radius of gyration of its friction [1]: a round patch pulls as it
 should about distant poles with 0.71, about near ones with 1.4; with 0.8 the contacts do best."""
@@ -275,10 +276,10 @@ def print_poles() -> None:
     their own: of 95 %, largest."""
     print("| contact | patches | | with torques of their own |\n|---|---|---|---|")
     for name, shape in contacts():
-        for count in MANY:
-            patches = (friction_patches if count <= FITTED else few_points)(shape, count)
+        for label, (count, reduced) in MANY.items():
+            patches = reduced(shape, count)
             cells = ["{:.1%}, {:.1%}".format(*pole_deviations(shape, patches, own)) for own in (False, True)]
-            print(f"| {name} | {count} | " + " | ".join(cells) + " |", flush=True)
+            print(f"| {name} | {label} | " + " | ".join(cells) + " |", flush=True)
 
 
 def mean_pressure(spring: BoltedJointSpring) -> float:
