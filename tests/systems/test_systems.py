@@ -454,10 +454,14 @@ def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.Captur
 def simulated(
     built: Path, name: str, step: float, stop: float, changes: Mapping[str, float] = MappingProxyType({})
 ) -> Any:
-    path = str(built / "ssp" / f"{name}.ssp")
-    parameters = read_ssv(path, f"parameters/{name}.ssv")
+    return simulated_once(str(built / "ssp" / f"{name}.ssp"), step, stop, tuple(changes.items()))
+
+
+@cache
+def simulated_once(path: str, step: float, stop: float, changes: tuple[tuple[str, float], ...]) -> Any:
+    parameters = read_ssv(path, f"parameters/{Path(path).stem}.ssv")
     for p in parameters.parameters:
-        p.value = changes.get(p.name, p.value)
+        p.value = dict(changes).get(p.name, p.value)
     return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
 
 
@@ -508,7 +512,7 @@ np.save(out, np.array(rows))
         (
             "six_axis_robot",
             1e-4,
-            14_000,
+            4_000,  # the axes are on their way
             [f"{axis}_{part}::phi" for axis in ROBOT_AXES for part in ("link", "motor")],
         ),
     ],
@@ -578,11 +582,22 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 # The robot
 
 
+@cache
+def moved(folder: Path) -> dict[str, Array]:
+    """The robot of six axes through its motion."""
+    return simulate_system(system("six_axis_robot"), folder)
+
+
+def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
+    """The rows of a run up to a time [s]."""
+    count = np.searchsorted(run["time"], stop, "right")
+    return {name: column[:count] for name, column in run.items()}
+
+
 def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
     midline's wind-up within the hysteresis."""
-    found = system("six_axis_robot")
-    run = simulate_system(found, built / "fmi2")
+    found, run = system("six_axis_robot"), moved(built / "fmi2")
     q, speed, acceleration = found.arm.motion(run["time"])
     torque = found.arm.torques(q, speed, acceleration)
     commanded, wound, error = windup(found, run)
@@ -603,7 +618,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
 
 def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Path) -> None:
     found = system("six_axis_robot")
-    run = simulate_system(found, built / "fmi2", stop=0.9)
+    run = until(0.9, moved(built / "fmi2"))
     commanded, wound, error = windup(found, run)
     q, dq = commanded[-1], wound[-1]
     step = 1e-6
@@ -942,7 +957,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
     own = system("six_axis_robot")
-    run = simulate_system(own, built / "fmi2", stop=stop)
+    run = until(stop, moved(built / "fmi2"))
     _, wound, _ = windup(own, run)
     for k, axis in enumerate(ROBOT_AXES):
         expected = np.interp(found.time, run["time"], wound[:, k])
@@ -964,8 +979,13 @@ def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
 
 
+@cache
+def pulled_examples(folder: Path) -> dict[str, list[decays.Decay]]:
+    return decays.examples(folder)
+
+
 def test_decays_follow_the_loops(built: Path) -> None:
-    found = decays.examples(built / "fmi2")
+    found = pulled_examples(built / "fmi2")
     assert [c for c in check_decays(found) if not c.passed] == []
     for (one,) in found.values():
         assert one.amplitude[0] > 10.0 * one.amplitude[-1]
@@ -981,7 +1001,7 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.points(rows["time"][free], rows["column.s"][free])
-    (pulled,) = decays.examples(built / "fmi2")["bolted_column"]
+    (pulled,) = pulled_examples(built / "fmi2")["bolted_column"]
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
     assert np.count_nonzero(seen) >= 3
