@@ -126,8 +126,13 @@ def built(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
-    sorted({line for line in HELPS.values()
-            if line.startswith(NEED) and not any(words.issuperset(shlex.split(line)) for words in ON_PAGES)}),
+    sorted(
+        {
+            line
+            for line in HELPS.values()
+            if line.startswith(NEED) and not any(words.issuperset(shlex.split(line)) for words in ON_PAGES)
+        }
+    ),
     ids=lambda line: line[:24],
 )
 def test_an_example_with_fmus_runs(

@@ -768,9 +768,9 @@ def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
         e = energy(ring(built, period / steps, 1000 * steps, angle, 0.0))
         assert np.max(np.abs(e / e[0] - 1.0)) < band  # within a period; no drift over them:
         assert abs(e[-100 * steps :].mean() / e[: 100 * steps].mean() - 1.0) < 1e-4
-    late = energy(ring(built, period / 300, 300_000, angle, 0.0, True))
+    late = energy(ring(built, period / 300, 60_000, angle, 0.0, True))
     omega = 2.0 * math.pi / 300  # a late force adds energy, as if damping were -omega^3/2
-    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 1000 * 1.5
+    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 200 * 1.5
 
 
 def working_point(torque: float) -> tuple[float, float]:
