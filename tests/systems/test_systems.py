@@ -1194,7 +1194,9 @@ def test_ring_refuses(
 def test_the_examples_of_the_page_run(built: Path, tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "systems.md").read_text(encoding="utf-8")
     (tmp_path / "dist").symlink_to(built)
-    for block in page.split("```python\n")[1:]:
+    blocks = page.split("```python\n")[1:]
+    assert blocks
+    for block in blocks:
         code = block.partition("```")[0]
         if "ecospy" in code:
             pytest.importorskip("ecospy")
