@@ -264,8 +264,8 @@ def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: s
 def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, version: str) -> None:
     model = MODELS["GearContact"]
     inputs, outputs, _ = counts(model)
-    first_parameter = 1 + inputs + outputs
-    told = run("threads", machine, model.name, version, inputs, outputs, first_parameter, points=points(model))
+    numbers = inputs, outputs, 1 + inputs + outputs  # the last: a parameter
+    told = run("threads", machine, model.name, version, *numbers, points=points(model))
     assert told == f"8 threads, {POINTS * outputs} numbers each\n"
 
 
