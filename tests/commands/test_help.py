@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.native.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
@@ -143,7 +144,8 @@ def test_an_example_with_fmus_runs(
         monkeypatch.chdir(built)
         assert cli.main([*computed, "--field", "my_field.csv"]) == 0
     monkeypatch.chdir(built)
-    assert cli.main(shlex.split(line)) == 0
+    with here_alone():
+        assert cli.main(shlex.split(line)) == 0
     assert capsys.readouterr().out
 
 

@@ -872,7 +872,6 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
     """Drive and link as model-exchange FMUs, one system for CVode."""
     stop, angle, count = 0.03, 1.3e-3, 24_000
-    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
     fmus = {
         "drive": make("HarmonicDriveSpring", version, True).start(),
         "link": make("RotationalInertia", version, True).start({"J": LINK, "phi": angle}),
@@ -892,7 +891,6 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
     the order of both solvers."""
     path, stop = str(built / "ssp" / "robot_joint.ssp"), 0.12
     early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
-    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
     parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
     fmus = {}
     for name, part in system("robot_joint").components.items():
