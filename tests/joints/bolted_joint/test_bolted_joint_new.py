@@ -157,7 +157,6 @@ def test_layouts():
     "layouts",
     [
         ["--bolts", "M12"],
-        ["--bolts", "3xM12", "--at", "160x0"],
         ["--bolts", "2xM12", "--at", "-50,-10", "50,10"],
         ["--bolts", "6xM8", "--circle", "60"],
         ["--bolts", "6xM10", "--at", "160x60", "--grid", "3x2"],
