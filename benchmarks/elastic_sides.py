@@ -60,13 +60,13 @@ class Joint:
     members: float
 
     @classmethod
-    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE) -> "Joint":
-        """Made as the command makes it."""
+    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE, refinement: float = 1.0) -> "Joint":
+        """Made as the command makes it, beside finite elements of sizes divided by `refinement` [1]."""
         seen: dict[str, object] = {}
         real = whole.whole_joint
 
         def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
-            joint = WholeJoint.of(plates.assembly(file), to)
+            joint = WholeJoint.of(plates.assembly(file), to, refinement)
             springs = computed._springs(file, plates.preload, joint)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2])
             seen["linear"] = joint.linear(springs, file.values.bolt_stiffness)
@@ -115,16 +115,21 @@ def stiffnesses(joint: Joint) -> tuple[Array, Array]:
     return np.array([float(out[name]) for name in AXES]), np.diag(forces)
 
 
+def on_cells(joint: Joint, count: int) -> States:
+    """The joint with all compliances of some cells, without modes and patches."""
+    fine = few_points(pressure_shape(joint.rigid.values.pattern), count)
+    spring = BoltedJointSpring.of(joint.rigid.values).on(fine)
+    at = joint.linear.joint.interface
+    bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
+    return States.of(Cells.of(joint.linear.joint, spring, joint.normal), bolts, joint.preload)
+
+
 def first_way(joint: Joint, count: int) -> Array:
     """(5, levels) force less that of all compliances of `count` cells, over the load.
 
     Along x, y, z, about y, z.
     """
-    fine = few_points(pressure_shape(joint.rigid.values.pattern), count)
-    spring = BoltedJointSpring.of(joint.rigid.values).on(fine)
-    at = joint.linear.joint.interface
-    bolts = joint.linear.joint.bolts - at.area @ at.position / at.area.sum()
-    states = States.of(Cells.of(joint.linear.joint, spring, joint.normal), bolts, joint.preload)
+    states = on_cells(joint, count)
     unit, rows = joint.load() / stiffnesses(joint)[0], []
     for axis in (0, 1, 2, 4, 5):
         motions = [level * unit * (np.arange(6) == axis) for level in LEVELS]

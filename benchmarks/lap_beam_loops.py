@@ -18,8 +18,8 @@ WORKING, LOWEST, STEP = (5e4, 5e7), 1e-9, 0.2
 """Pressures [Pa] between which the heights of the sliders lie close; lowest level, distance of levels [1]."""
 TOLERANCE = 1e-9
 """Largest residual displacement over the largest one [1] at which an equilibrium counts as found."""
-MOST = 200
-"""Steps of Newton's method at most."""
+MOST, SHORT = 200, 1e-4
+"""Steps of Newton's method at most, and that over the motion [1] which is not halved further."""
 
 
 def foundation(curve, ratio, friction):
@@ -67,16 +67,23 @@ class Joint:
 
         Raises RuntimeError if it does not end.
         """
-        beam, moved = self.beam, state.moved + (load - state.load) * self.beam.shape / self.square
+        beam, given = self.beam, load * self.beam.shape / self.square
+        moved = state.moved + (load - state.load) * beam.shape / self.square
         weighted = beam.compliance * np.repeat(beam.area, 3)
+        base, step, last = moved, 0.0 * moved, np.inf
         for _ in range(MOST):
             sliders, traction, tangent = self._interface(state, moved)
             extra = traction - beam.springs * moved
-            residual = (moved - load * beam.shape / self.square).ravel() + weighted @ extra.ravel()
+            residual = (moved - given).ravel() + weighted @ extra.ravel()
             if np.abs(residual).max() <= TOLERANCE * max(np.abs(moved).max(), 1e-15):
                 q = (load - 2.0 * np.sum(beam.shape * beam.area[:, None] * extra)) / self.square
                 return State(load, float(q), moved, sliders.force, float(2.0 * beam.area @ sliders.loss))
-            moved = moved - self._step(weighted, tangent, residual)
+            size, short = np.linalg.norm(residual), np.abs(step).max() < SHORT * np.abs(moved).max()
+            if size < last or short:
+                base, step, last = moved, -self._step(weighted, tangent, residual), size
+            else:
+                step = 0.5 * step
+            moved = base + step
         raise RuntimeError(f"no equilibrium at a load of {load:g} m kg^0.5/s2 after {MOST} steps")
 
     def _interface(self, state, moved):

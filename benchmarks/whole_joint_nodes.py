@@ -1,12 +1,13 @@
 """The whole bolted joint with elastic sides beside finite elements with friction at every element.
 
 Three joints of two plates: a flange (outer faces rigid, sheared along x), a lap (ends rigid, sheared along x)
-and a bracket (ends rigid, a force along y off the bolts' line). The finite elements are linear but for the
-contact, and reduce to the compliance of their elements' patches without loss: about 300 to 500, each with the
-law's own p(delta) and 144 sliders beside the joint's 120 points and 22 patches of 38. Quasi-static: up to
+and a bracket (ends rigid, a force along y off the bolts' line; far: to four times its slip). The finite
+elements are linear but for the contact, and reduce to the compliance of their elements' patches without loss:
+about 300 to 500, each with the law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code
+of the package's sliders, beside the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
 LEVELS of the motion at which a linear joint would carry all friction, then a whole cycle at CYCLES of it.
 
-Run: python benchmarks/whole_joint_nodes.py [flange lap bracket] [--why]
+Run: python benchmarks/whole_joint_nodes.py [flange lap bracket bracket-far] [--why] [--refinement 1.4]
 """
 
 import argparse
@@ -16,13 +17,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 import numpy as np
-from elastic_sides import Joint, along
+from coulomb_springs import Springs
+from elastic_sides import Joint, along, on_cells
 from jointfmu_tools.fem import elastic_sides as reduction
 from jointfmu_tools.fem.sparse import Cholesky
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops
-from lap_beam_loops import foundation
 from lap_beam_reduction import AT_ONCE, Reduced, patches
 from numpy.typing import NDArray
 from scipy import sparse as sp
@@ -37,6 +38,9 @@ Array = NDArray[np.float64]
 
 PLATES: dict[str, object] = {"grip": ["20"], "material": ["steel"], "Ra": ["0.8"], "embedding": "0"}
 PLATES |= {"preload": "15e3"}
+BRACKET = PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]}
+LEVER = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]) / 3.0
+"""Of the bracket [1], [m]: with this lever it slips as a whole at about a third of its friction."""
 JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
     "flange": (
         "faces",
@@ -48,11 +52,8 @@ JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
         PLATES | {"plate": "90x40", "bolts": "2xM8", "at": ["40x0"]},
         np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ),
-    "bracket": (
-        "edge",
-        PLATES | {"plate": "80x60", "bolts": "2xM8", "at": ["-20,-15", "-20,15"]},
-        np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.06]),
-    ),
+    "bracket": ("edge", BRACKET, LEVER),
+    "bracket-far": ("edge", BRACKET, 3.0 * LEVER),
 }
 """Attachment, drawing and force: along x and y [1], moments about the centre [m]."""
 LEVELS = (0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
@@ -61,8 +62,11 @@ CYCLES = (0.5, 1.0)
 """Those at which a whole cycle is followed [1]."""
 STEPS = 8
 """From one end of a cycle to the other."""
-WHY = {"as it is": (24, 22), "60 modes": (60, 22), "60 patches": (24, 60), "60 modes, 60 patches": (60, 60)}
+WHY = {"as it is": (24, 22), "60 modes": (60, 22), "40 patches": (24, 40), "60 patches": (24, 60)}
+WHY |= {"60 modes, 60 patches": (60, 60)}
 """Modes and patches of the reduced joint."""
+CELLS = (120, 300)
+"""Of a joint without modes and patches."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,7 @@ class Elements:
             np.stack([rows @ (linear.moved @ motion) for rows in apart], axis=1),
             compliance(matrix.tocsr(), apart, whole.held, whole.bodies[0].size),
         )
-        loops = Loops(beam, foundation(spring.curve, ratio, values.mu))
+        loops = Loops(beam, Springs.of(spring.curve, ratio, values.mu))
         return cls(loops, motion, float(motion @ K @ motion))
 
     @classmethod
@@ -194,18 +198,20 @@ def cases() -> dict[str, Array]:
     return {"first": np.array(LEVELS)} | {f"{level:g}": way(level) for level in CYCLES}
 
 
-def compared(name: str, why: bool) -> None:
+def compared(name: str, why: bool, refinement: float) -> None:
     """Print rows of the table."""
     attached, drawing, wrench = JOINTS[name]
-    joint = Joint.of(attached, drawing)
+    joint = Joint.of(attached, drawing, refinement)
     elements = Elements.clamped(joint, wrench)
     ways = cases()
     full = {key: elements.along(list(loads)) for key, loads in ways.items()}
     slips = np.max(np.abs(full["first"][0])) / elements.stiffness
+    firsts: dict[str, Array] = {}
     for label, (modes, count) in (WHY if why else dict([next(iter(WHY.items()))])).items():
         with finer(modes, count):
-            one = joint.spring
-            if label != "as it is":
+            if label == "as it is":
+                one = joint.spring
+            else:
                 base = BoltedJointSpring.of(joint.rigid.values)
                 made = reduction.elastic_bodies(joint.linear, base, joint.normal, joint.preload)
                 one = BoltedJointSpring.of(with_bodies(joint.rigid, made, attached).values)
@@ -215,6 +221,14 @@ def compared(name: str, why: bool) -> None:
             }
         patches_, row = elements.loops.beam.area.size, misses(full, found)
         print(f"| {name} | {label} | {patches_} | {slips:.2f} | " + " | ".join(row) + " |", flush=True)
+        firsts[label] = found["first"][0]
+    for count in CELLS if why else ():
+        states = on_cells(joint, count)
+        unit = states.rigid @ elements.motion
+        firsts[f"{count} cells"] = np.array([unit @ states.forces(x * elements.motion) for x in LEVELS])
+    for label, force in firsts.items() if why else ():
+        over = ", ".join(f"{x:.3f}" for x in force / full["first"][0])
+        print(f"{name}, {label}: force on the first way over that of the elements {over}", flush=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -223,13 +237,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("joints", nargs="*", choices=[*JOINTS, []], default=list(JOINTS))
-    parser.add_argument("--why", action="store_true", help="more modes, more patches")
+    parser.add_argument("--why", action="store_true", help="more modes, more patches, neither; the first way")
+    parser.add_argument("--refinement", type=float, default=1.0, help="divides the sizes of the elements")
     given = parser.parse_args(arguments)
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
     print("| joint | reduction | patches | most force | first way | " + " | ".join(cells) + " |")
     print("|---|" + "---|" * (4 + len(cells)))
     for name in given.joints:
-        compared(name, given.why)
+        compared(name, given.why, given.refinement)
     return 0
 
 

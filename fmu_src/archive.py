@@ -35,4 +35,4 @@ def pack(members: Mapping[str, bytes], file: Path) -> None:
             info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
             info.create_system = 3
             info.external_attr = 0o644 << 16
-            archive.writestr(info, content, zipfile.ZIP_DEFLATED, 6)
+            archive.writestr(info, content, zipfile.ZIP_DEFLATED, 9)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
 from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -152,6 +153,12 @@ def run_host(script: str, *arguments: object) -> subprocess.CompletedProcess[str
         text=True,
         timeout=100,
     )
+
+
+@cache
+def importable(package: str) -> bool:
+    """Whether a package is installed and can be loaded, tried in a process of its own."""
+    return find_spec(package) is not None and run_host(f"import {package}").returncode == 0
 
 
 def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:

@@ -59,12 +59,12 @@ def stated(file: ParameterFile) -> list[Stated]:
     fields: dict[str, Mapping[str, Any]] = {
         name: item.metadata for name, item in flat_fields(type(file.values))
     }
-    fields |= {f"roughness.{name}": item.metadata for name, item in DECLARED.items()}
+    fields |= {file.surfaces + name: item.metadata for name, item in DECLARED.items()}
     inputs = (v for model in KINDS[file.joint].models for v in model.inputs)
     fields |= {f"inputs.{v.name}": {"unit": v.unit, "doc": v.doc} for v in inputs}
     values = dict(file.flat)
     values |= {f"inputs.{name}": value for name, value in file.inputs.items()}
-    values |= {f"roughness.{name}": value for name, value in file.roughness.items()}
+    values |= {file.surfaces + name: value for name, value in file.roughness.items()}
     return [
         Stated(
             name,

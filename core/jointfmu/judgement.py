@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .contact.interface import InterfaceLaw, beyond, stiffness_curve
-from .contact.roughness import GAMMA, height, level
+from .contact.roughness import GAMMA, ROUGHEST, height, level
 from .joints import KINDS
 from .parameters import ParameterFile
 
@@ -79,7 +79,7 @@ class Judgement:
 
 
 def known_height(file: ParameterFile) -> float | None:
-    """Rms height h [m] of both surfaces together: of the section [roughness], else of the law; or None."""
+    """Rms height h [m] of both surfaces together: stated beside the law, else of the law; or None."""
     stated = height(file.roughness)
     return stated if stated is not None else law_height(KINDS[file.joint].law_of(file.values))
 
@@ -108,6 +108,10 @@ def judge(
     greatest = float(np.max(p, initial=peak))
     least = float(np.min(p, initial=greatest))
     warnings = beyond(law, greatest, least) if limits and greatest > 0.0 else []
+    if h is not None and h > 2.0 * ROUGHEST:
+        warnings.insert(
+            0, f"h = {h:.3g} m is no roughness: faces that are joined have up to {ROUGHEST:g} m each"
+        )
     if found is not None and found.doubtful:
         warnings.append(
             f"the law's K is {_span(found.ratio)} times that of the roughness, K/A_0 = p/({GAMMA:g} h) with "

@@ -8,8 +8,8 @@ entry per parameter,
 
 `kind` is one of ORIGINS; the unit must be the SI unit that the code declares, nothing is converted.
 A section `[inputs]` of the same form gives start values of the joint's inputs; others start at their own.
-A section `[roughness]` states what is known of the surfaces, see `roughness`: the law of that name takes its
-h from there, the level of others is judged by it.
+A section `[roughness]` states what is known of the surfaces, see `roughness`: a law with a height takes it
+from there. Another law has none; there `[comparison]` states the same, and the level is judged by it.
 """
 
 import json
@@ -33,8 +33,8 @@ _INPUTS = "inputs."
 """Prefix of the names of start values."""
 SAME_HEIGHT = 0.01
 """How far h of a law may be from what the roughnesses beside it make [1]: they are printed in two digits."""
-_ROUGHNESS = "roughness."
-"""Prefix of the names of roughnesses."""
+_ACTS, _JUDGES = "roughness.", "comparison."
+"""Prefixes of the names of roughnesses: beside a law with a height, and beside another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,8 @@ class ParameterFile:
     joint   : a key of joints.KINDS
     name    : of this parameter set
     values  : the parameter set, an instance of a value of KINDS[joint].laws
-    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME`
+    origins, sources : {structured name: one of ORIGINS, text}, also of `inputs.NAME`, `roughness.NAME` or
+        `comparison.NAME`
     inputs  : {input: start value in its SI unit}, where it is given
     roughness : {name: height [m]} of the surfaces, where it is known: names of `roughness.DECLARED`
     ranges  : {structured name: least and greatest value} of what is known no better, by the same source
@@ -69,6 +70,11 @@ class ParameterFile:
         """Name of its interface law."""
         return KINDS[self.joint].law(self.values)
 
+    @property
+    def surfaces(self) -> str:
+        """Prefix of the names of its roughnesses."""
+        return _prefix(type(self.values))
+
     def start(self, name: str) -> float:
         """Start value of an input, in its SI unit: the joint's own unless it is given."""
         own = KINDS[self.joint].variables.get(name) if self.joint in KINDS else None
@@ -89,10 +95,10 @@ class ParameterFile:
 
         Raises ValueError as `roughness.check`.
         """
-        heights = roughness.check(stated, _ROUGHNESS)
+        heights = roughness.check(stated, self.surfaces)
         gone = {other for name in heights for other in roughness.excluded(name)}
-        texts = {_ROUGHNESS + name for name in gone}
-        names = [_ROUGHNESS + name for name in heights]
+        texts = {self.surfaces + name for name in gone}
+        names = [self.surfaces + name for name in heights]
         origins = {name: kind for name, kind in self.origins.items() if name not in texts}
         sources = {name: text for name, text in self.sources.items() if name not in texts}
         return replace(
@@ -124,12 +130,18 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
         raise ValueError(f"{path}: law = {law!r}, allowed are {', '.join(laws)}")
     body = {k: v for k, v in document.items() if k not in ("schema", "joint", "law", "name")}
     cls = laws[law]
-    declared = dict(flat_fields(cls)) | _input_fields(stated) | _roughness_fields()
+    prefix = _prefix(cls)
+    if prefix == _JUDGES and _ACTS[:-1] in body:
+        raise ValueError(
+            f"{path}: [roughness] does not act on law = {law!r}; allowed are [roughness] beside a law with a "
+            "height, and [comparison] for what the level is judged by"
+        )
+    declared = dict(flat_fields(cls)) | _input_fields(stated) | _roughness_fields(prefix)
     keys = ("value", "unit", "kind", "source", "range")
     values, origins, sources = entries(path, declared, body, keys)
-    given, surfaces = _section(values, _INPUTS), _section(values, _ROUGHNESS)
+    given, surfaces = _section(values, _INPUTS), _section(values, prefix)
     try:
-        inputs, heights = _start_values(stated, given), roughness.check(surfaces, _ROUGHNESS)
+        inputs, heights = _start_values(stated, given), roughness.check(surfaces, prefix)
         of_law = _height_of_law(declared, values, heights)
         parameters = build(cls, values | of_law)
     except ValueError as error:
@@ -137,9 +149,9 @@ def load(path: str | Path, joint: str | None = None) -> ParameterFile:
     for text in KINDS[stated].contradictions(parameters):
         raise ValueError(f"{path}: {text}")
     name = str(document.get("name", path.stem))
-    text = "; ".join(dict.fromkeys(sources[_ROUGHNESS + height] for height in heights))
+    text = "; ".join(dict.fromkeys(sources[prefix + height] for height in heights))
     origins |= dict.fromkeys(of_law, "derived")
-    sources |= dict.fromkeys(of_law, f"from {', '.join(_ROUGHNESS + height for height in heights)}: {text}")
+    sources |= dict.fromkeys(of_law, f"from {', '.join(prefix + height for height in heights)}: {text}")
     return ParameterFile(
         stated, name, parameters, origins, sources, inputs, heights, _ranges(path, declared, body)
     )
@@ -153,14 +165,13 @@ def _height_of_law(
     Raises ValueError if it states another h beside them.
     """
     stated = roughness.height(heights)
-    names = [name for name in declared if name.split(".")[-1] == "h" and not name.startswith(_ROUGHNESS)]
-    if stated is None or not names:
+    name = next((name for name in declared if _is_height(name)), None)
+    if stated is None or name is None:
         return {}
-    (name,) = names
     if name not in values:
         return {name: stated}
     if not abs(values[name] / stated - 1.0) <= SAME_HEIGHT:
-        makers = ", ".join(_ROUGHNESS + height for height in heights)
+        makers = ", ".join(_ACTS + height for height in heights)
         raise ValueError(
             f"{name} = {values[name]:g} m beside {makers}, which make {stated:.4g} m: expected one of them, "
             f"or both within {SAME_HEIGHT:.1%}"
@@ -253,9 +264,19 @@ def _input_fields(joint: str) -> dict[str, Field[Any]]:
     return {_INPUTS + v.name: quantity(v.unit, v.doc, ge=v.low) for v in inputs}
 
 
-def _roughness_fields() -> dict[str, Field[Any]]:
+def _prefix(cls: type) -> str:
+    """Of the names of roughnesses beside a parameter set of a class."""
+    return _ACTS if any(_is_height(name) for name, _ in flat_fields(cls)) else _JUDGES
+
+
+def _is_height(name: str) -> bool:
+    """Whether a parameter is the rms height of both surfaces."""
+    return name.split(".")[-1] == "h" and not name.startswith((_ACTS, _JUDGES))
+
+
+def _roughness_fields(prefix: str) -> dict[str, Field[Any]]:
     """Fields of the roughnesses, named as in a parameter file."""
-    return {_ROUGHNESS + name: item for name, item in roughness.DECLARED.items()}
+    return {prefix + name: item for name, item in roughness.DECLARED.items()}
 
 
 def _section(values: dict[str, Any], prefix: str) -> dict[str, Any]:
@@ -282,9 +303,9 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
 
 def dump(parameters: ParameterFile) -> str:
     """The parameter set, with roughnesses and the start values of inputs, as the text of a parameter file."""
-    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields()
+    declared = dict(flat_fields(type(parameters.values))) | _roughness_fields(parameters.surfaces)
     values = sorted(parameters.flat.items(), key=lambda item: "." in item[0])
-    values += [(_ROUGHNESS + name, value) for name, value in parameters.roughness.items()]
+    values += [(parameters.surfaces + name, value) for name, value in parameters.roughness.items()]
     if parameters.inputs:
         declared |= _input_fields(parameters.joint)
         values += [(_INPUTS + name, value) for name, value in parameters.inputs.items()]

@@ -5,6 +5,7 @@ A joint's folder of `jointfmu_fmu_src.joints` fills in `Parts`; the builders abo
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,6 +39,16 @@ class Parts:
     terminals: Mapping[str, tuple[Terminal, ...]] = field(default_factory=dict)
     panels: Mapping[str, tuple[RampPanel, ...]] = field(default_factory=dict)
     drawings: Mapping[str, Mapping[str, Drawing]] = field(default_factory=dict)
+
+
+def native_of(package: str) -> "Callable[[], NativePart]":
+    """Gives `PART` of the module `native` in a joint's folder."""
+
+    def load() -> "NativePart":
+        part: NativePart = import_module(f"{package}.native").PART
+        return part
+
+    return load
 
 
 def equations() -> "NativePart":

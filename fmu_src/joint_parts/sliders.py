@@ -1,6 +1,6 @@
 """The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
 
-from jointfmu.mechanics.jenkins import direction, reaches, slide, trial
+from jointfmu.mechanics.jenkins import direction, reaches, slide, slide_in_plane, trial
 from jointfmu.quantity import where
 
 from .graph import Graph, symbols
@@ -39,13 +39,16 @@ def _plane(g: Graph) -> None:
     g.add(
         "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
     )
-    unit = symbols("e", 2)
     g.add("direction", "shift -> its direction and size", shift, direction(shift))
-    known, way = [*unit, *symbols("w", 1)], "limits before and after, stiffness, compliance"
+    tried, unit, (carried,) = symbols("t", 2), symbols("e", 2), symbols("w", 1)
+    given = [*force, *tried, *unit, carried, *ends]
+    way = "limits before and after, stiffness, compliance"
+    known = f"force, trial force, direction and size of the shift times gain, {way}"
+    slid = slide_in_plane(force, tried, unit, carried, *ends)
     results = "force, tangent xx, xy, yy, loss, slip"
-    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance, known)
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add("slide_plane", f"{doc}, its direction and size, {way} -> {results}", [*x, *known, *ends], y)
+    g.add("slide_plane", f"{known} -> {results}", given, y)
+    g.add("return_plane", f"{known} -> force", given, slid.force)
     slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
     g.add_seed("slide_plane", f"{doc}, {way}", [*x, *ends], y, fixed=2)

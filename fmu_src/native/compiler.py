@@ -108,10 +108,12 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
     import ziglang
 
     common = ("-target", TARGETS[platform], *_OPTIONS)
+    # The system's libraries alone: zig would compile its own runtime at first, of which nothing is linked.
+    own = ("-nostdlib", "-lc")
     if platform.endswith("-linux"):
-        return (*common, "-Wl,--gc-sections", "-lm")
+        return (*common, *own, "-Wl,--gc-sections", "-lm")
     if platform.endswith("-darwin"):
-        return (*common, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
+        return (*common, *own, f"-Wl,-install_name,@rpath/{file_name(name, platform)}", "-Wl,-dead_strip")
     # Linked with the system's runtime alone: mingw's would take most of a minute to compile at first,
     # and the library needs none of its start-up, nor stack probes, as no function needs a page of stack.
     # Without sin and cos as built-in functions the compiler makes no sincos of both, which only mingw has.

@@ -4,6 +4,7 @@ What the laws take of the elementary functions gives the same bits everywhere, b
 """
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import casadi as ca
@@ -82,7 +83,8 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
 
     Every intermediate value is a constant of its own, in the order of evaluation. In a `derivative`
     nothing that changes makes no change, where the slope is infinite too: 0/0 is 0; and the slope of the
-    smaller or larger of two that are equal is that of the first.
+    smaller or larger of two that are equal is that of the first. Elsewhere divisions by the same number are
+    products with its reciprocal.
     """
     graph = ca.Function("f", [x, c], [ca.vertcat(*(ca.SX(value) for value in y))])
     inputs = "xc"
@@ -112,7 +114,8 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
             made[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
     unused = [name for name in inputs if name not in given] + ([] if y else ["y"])
     body += [f"(void){name};" for name in unused]
-    lines = "\n".join(f"    {line}" for line in _used(body))
+    used = _used(body)
+    lines = "\n".join(f"    {line}" for line in (used if derivative else _shared_divisors(used)))
     return f"/* {doc} */\nvoid {name}(const double *x, const double *c, double *y)\n{{\n{lines}\n}}\n"
 
 
@@ -171,6 +174,25 @@ def _used(body: Sequence[str]) -> list[str]:
         taken.update(re.findall(r"\bt\d+\b", value))
         kept.append(line)
     return kept[::-1]
+
+
+_DIVISION = re.compile(r"const double (t\d+) = (\S+) / (t\d+|x\[\d+\]);")
+
+
+def _shared_divisors(body: Sequence[str]) -> list[str]:
+    """The lines with one division by each number, which several quotients take."""
+    found = [_DIVISION.fullmatch(line) for line in body]
+    count = Counter(match[3] for match in found if match)
+    lines, known = list[str](), dict[str, str]()
+    for line, match in zip(body, found, strict=True):
+        if match and count[match[3]] > 1:
+            name, above, below = match.groups()
+            if below not in known:
+                known[below] = f"per_{name}"
+                lines.append(f"const double per_{name} = 1.0 / {below};")
+            line = f"const double {name} = {above} * {known[below]};"
+        lines.append(line)
+    return lines
 
 
 def _number(value: float) -> str:

@@ -8,7 +8,7 @@ import io
 import lzma
 import tarfile
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from hashlib import sha256
@@ -34,7 +34,7 @@ SHIPPED = Path(__file__).with_name("parts")
 VERSIONS = ("2", "3")
 MOST_KEPT = 200
 """Files that are kept [1]; older ones go."""
-_SUFFIX = ".tar.xz"
+_SUFFIX, _KEPT = ".tar.xz", ".kept.xz"
 _COMPILERS = ("casadi", "ziglang")
 _SOURCES = (".py", ".c", ".h")
 
@@ -63,6 +63,21 @@ def part_of(model: Model, parameters: ParameterFile, given: Split) -> Part:
     made = compiled(model, parameters, given)
     with suppress(OSError):  # nothing is lost but time
         _keep(places[-1], written(made))
+    return made
+
+
+def keeping(what: str, model: Model, make: Callable[[], bytes]) -> bytes:
+    """What is made of a model, from the cache if it was made before of equal sources.
+
+    what : what else it depends on
+    """
+    name = sha256(f"{what} {_sources_of(model)}".encode()).hexdigest()[:32]
+    file = _places(f"{model.name}-{name}{_KEPT}")[-1]
+    with suppress(OSError, lzma.LZMAError):
+        return lzma.decompress(file.read_bytes())
+    made = make()
+    with suppress(OSError):
+        _keep(file, lzma.compress(made))
     return made
 
 

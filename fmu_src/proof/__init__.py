@@ -6,10 +6,10 @@ from functools import lru_cache
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
 
-from .experiments import experiments, models, study
+from .experiments import ReferenceExperiment, experiments, models, study
 from .files import archive
 
-__all__ = ["proof"]
+__all__ = ["computed", "proof"]
 
 
 def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[str, bytes]:
@@ -17,22 +17,25 @@ def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[
 
     native : whether of a native FMU, which has a page and model exchange; else of the python flavour
     """
-    return dict(_proof(_Made(model.name, dump(parameters), native, model, parameters)))
+    given = model, parameters
+    return archive(*given, models(*given), computed(*given), study(*given), native)
+
+
+def computed(model: Model, parameters: ParameterFile) -> tuple[ReferenceExperiment, ...]:
+    """All experiments, computed once for the flavours of an FMU."""
+    return _computed(_Given(model.name, dump(parameters), model, parameters))
 
 
 @dataclass(frozen=True)
-class _Made:
-    """What the files depend on: name, text of the parameter file, kind of FMU; with the objects behind it."""
+class _Given:
+    """What experiments depend on: name and text of the parameter file; with the objects behind it."""
 
     name: str
     text: str
-    native: bool
     model: Model = field(compare=False)
     parameters: ParameterFile = field(compare=False)
 
 
-@lru_cache(maxsize=8)
-def _proof(made: _Made) -> dict[str, bytes]:
-    """The files, once for the flavours of an FMU."""
-    given = made.model, made.parameters
-    return archive(*given, models(*given), experiments(*given), study(*given), made.native)
+@lru_cache(maxsize=16)
+def _computed(given: _Given) -> tuple[ReferenceExperiment, ...]:
+    return tuple(experiments(given.model, given.parameters))

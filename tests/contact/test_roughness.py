@@ -1,4 +1,4 @@
-"""What is known of the surfaces: the section [roughness] of parameter files, and the level it stands for."""
+"""What is known of the surfaces: the sections of parameter files for it, and the level it stands for."""
 
 import math
 import re
@@ -16,7 +16,7 @@ from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.parameters import default, dump, load
 
-SECTION = "\n[roughness]\n"
+SECTION, JUDGING = "\n[roughness]\n", "\n[comparison]\n"
 
 
 def entry(name, value, unit="m"):
@@ -29,7 +29,7 @@ def loaded(tmp_path):
 
     def read(lines):
         path = tmp_path / "joint.toml"
-        path.write_text(dump(default("gear_contact")) + SECTION + lines)
+        path.write_text(dump(default("gear_contact")) + JUDGING + lines)
         return load(path)
 
     return read
@@ -72,13 +72,13 @@ def load_text(text):
 def test_nothing_is_lost(loaded):
     file = loaded(entry("Ra1", 0.8e-6) + entry("Rq2", 1e-6))
     assert file.roughness == {"Ra1": 0.8e-6, "Rq2": 1e-6}
-    assert file.sources["roughness.Ra1"] == "drawing"
+    assert file.sources["comparison.Ra1"] == "drawing"
     again = file.with_values({"lambda": 0.5}, "user", "measured")
     assert again.roughness == file.roughness
     text = dump(again)
-    assert SECTION in text
-    assert "roughness" not in again.flat
-    assert "[roughness]" not in dump(default("gear_contact"))
+    assert JUDGING in text
+    assert "comparison" not in again.flat
+    assert "[comparison]" not in dump(default("gear_contact"))
     assert load_text(text) == again
 
 
@@ -86,20 +86,20 @@ def test_nothing_is_lost(loaded):
 def test_every_joint_may_state_it(joint):
     file = default(joint).with_roughness({"h": 2e-6}, "user", "scan")
     again = load_text(dump(file))
-    assert (again.roughness, again.sources["roughness.h"]) == ({"h": 2e-6}, "scan")
+    assert (again.roughness, again.sources[file.surfaces + "h"]) == ({"h": 2e-6}, "scan")
 
 
 def test_what_is_new_replaces_what_spoke_of_the_same_side():
     file = default("gear_contact").with_roughness({"Ra1": 1e-6, "Ra2": 2e-6}, "user", "drawing")
     one = file.with_roughness({"Rq1": 3e-6}, "derived", "scan")
     assert one.roughness == {"Ra2": 2e-6, "Rq1": 3e-6}
-    assert (one.origins["roughness.Rq1"], one.sources["roughness.Ra2"]) == ("derived", "drawing")
-    assert "roughness.Ra1" not in one.sources
+    assert (one.origins["comparison.Rq1"], one.sources["comparison.Ra2"]) == ("derived", "drawing")
+    assert "comparison.Ra1" not in one.sources
     both = one.with_roughness({"h": 1e-6}, "user", "scan of both")
     assert both.roughness == {"h": 1e-6}
-    assert [name for name in both.origins if name.startswith("roughness.")] == ["roughness.h"]
+    assert [name for name in both.origins if name.startswith("comparison.")] == ["comparison.h"]
     assert both.with_roughness({"Ra2": 1e-6}, "user", "drawing").roughness == {"Ra2": 1e-6}
-    with pytest.raises(ValueError, match=r"roughness\.Ra3"):
+    with pytest.raises(ValueError, match=r"comparison\.Ra3"):
         file.with_roughness({"Ra3": 1e-6}, "user", "wrong")
 
 
@@ -130,6 +130,16 @@ def test_another_height_of_the_law_beside_it_is_refused(joint):
         load_text(dump(file) + SECTION + entry("Ra1", 0.8e-6))
 
 
+def test_a_roughness_acts_or_is_refused(tmp_path):
+    """Beside a law without a height it stands in a section that says what it does."""
+    path = tmp_path / "joint.toml"
+    path.write_text(dump(default("gear_contact")) + SECTION + entry("Ra1", 0.8e-6))
+    with pytest.raises(
+        ValueError, match=r"joint\.toml: \[roughness\] does not act on law = 'yu2022'; .* \[comparison\]"
+    ):
+        load(path)
+
+
 def test_a_field_keeps_it():
     file = default("bolted_joint")
     shape = pressure_shape(file.values.pattern)
@@ -137,22 +147,22 @@ def test_a_field_keeps_it():
     field = ContactField(shape.share * file.values.A_0, shape.position, pressure)
     made, _ = with_field(file, field, 9e3, "test")
     assert made.roughness == file.roughness
-    assert made.sources["roughness.Ra1"] == file.sources["roughness.Ra1"]
+    assert made.sources["comparison.Ra1"] == file.sources["comparison.Ra1"]
 
 
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        (entry("Ra1", 0.0), ["roughness.Ra1 = 0 m", "(0, 0.0001]", "arithmetic mean height of the first"]),
-        (entry("h", -1e-6), ["roughness.h = -1e-06 m", "(0, 0.0001]"]),
-        (entry("h", "nan"), ["roughness.h = nan m", "(0, 0.0001]"]),
-        (entry("h", "true"), ["roughness.h = True", "not a number"]),
-        (entry("h", '"fine"'), ["roughness.h = 'fine'", "not a number"]),
-        (entry("Ra1", 0.8, "um"), ["roughness.Ra1", "unit 'um'", "expected 'm'"]),
-        (entry("Rz1", 1e-6), ["'roughness.Rz1'", "roughness.Ra1, roughness.Ra2, roughness.Rq1"]),
-        (entry("Ra1", 1e-6) + entry("Rq1", 1e-6), ["roughness.Ra1 beside roughness.Rq1", "one height"]),
-        (entry("h", 1e-6) + entry("Ra2", 1e-6), ["roughness.h beside roughness.Ra2", "or h alone"]),
-        ("h = 1e-6\n", ["roughness.h = 1e-06", "{ value, unit, kind, source }"]),
+        (entry("Ra1", 0.0), ["comparison.Ra1 = 0 m", "(0, 0.0001]", "arithmetic mean height of the first"]),
+        (entry("h", -1e-6), ["comparison.h = -1e-06 m", "(0, 0.0001]"]),
+        (entry("h", "nan"), ["comparison.h = nan m", "(0, 0.0001]"]),
+        (entry("h", "true"), ["comparison.h = True", "not a number"]),
+        (entry("h", '"fine"'), ["comparison.h = 'fine'", "not a number"]),
+        (entry("Ra1", 0.8, "um"), ["comparison.Ra1", "unit 'um'", "expected 'm'"]),
+        (entry("Rz1", 1e-6), ["'comparison.Rz1'", "comparison.Ra1, comparison.Ra2, comparison.Rq1"]),
+        (entry("Ra1", 1e-6) + entry("Rq1", 1e-6), ["comparison.Ra1 beside comparison.Rq1", "one height"]),
+        (entry("h", 1e-6) + entry("Ra2", 1e-6), ["comparison.h beside comparison.Ra2", "or h alone"]),
+        ("h = 1e-6\n", ["comparison.h = 1e-06", "{ value, unit, kind, source }"]),
     ],
 )
 def test_a_wrong_entry_is_refused(loaded, lines, words):

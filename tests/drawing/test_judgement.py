@@ -45,6 +45,11 @@ def test_the_law_roughness_is_judged_by_its_own_height():
     assert found.level.ratio == pytest.approx([1.0], abs=0.05)
 
 
+def test_a_height_that_is_no_roughness():
+    file = default("bolted_joint", "roughness").with_values({"h": 8e-3}, "user", "test")
+    assert judge_file(file, [9e3]).warnings[0].startswith("h = 0.008 m is no roughness: ")
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_factor_of_three_either_way(side):
     p = 1e6

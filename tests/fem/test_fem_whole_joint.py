@@ -8,6 +8,8 @@ from jointfmu_tools.fem.bolts import BoltList
 from jointfmu_tools.fem.geometry import Assembly, Plate
 from jointfmu_tools.fem.whole_joint import ATTACHED, WholeJoint
 
+pytestmark = pytest.mark.slow  # solves finite elements
+
 
 def lap(length=0.1, width=0.04, thickness=2e-3, nu=0.0, hole=2e-3):
     plate = Plate(length=length, width=width, thickness=thickness, E=206e9, nu=nu, density=7850.0)

@@ -180,6 +180,7 @@ def test_a_required_name_is_said_by_python():
         jointfmu.bolted_joint()
 
 
+@pytest.mark.slow  # a process of its own
 def test_a_missing_package_is_named_with_what_brings_it(tmp_path, monkeypatch):
     """As in a bare environment: numbers work, what needs more says so in one line."""
     asked = """

@@ -10,6 +10,7 @@ import pytest
 import toy_joint
 import toy_joint.fmu as toy_fmu
 import toy_joint.tools as toy_tools
+from conftest import here_alone
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src import joints as builders
 from jointfmu_fmu_src.building import FLAVOURS, build
@@ -37,7 +38,8 @@ def toy():
 @pytest.fixture(scope="module")
 def built(toy, tmp_path_factory):
     out = tmp_path_factory.mktemp("toy")
-    build(["ToySpring"], list(FLAVOURS), None, out)
+    with here_alone():
+        build(["ToySpring"], list(FLAVOURS), None, out)
     return out
 
 

@@ -91,13 +91,6 @@ def test_few_nodes_stay_as_they_are():
     assert friction_patches(shape, shape.share.size) is shape
 
 
-@pytest.mark.parametrize(("points", "count"), [(few_points, 40), (friction_patches, 22)])
-def test_points_are_the_same_on_every_run(points, count):
-    one, other = (points(contact("plate"), count) for _ in range(2))
-    assert np.array_equal(one.share, other.share)
-    assert np.array_equal(one.position, other.position)
-
-
 def test_equations_are_solved_as_lapack_does():
     """Within eps times the condition, some 1e5."""
     slopes = np.random.default_rng(2).standard_normal((300, 110)) * np.geomspace(0.1, 10.0, 110)

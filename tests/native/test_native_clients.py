@@ -2,13 +2,12 @@
 
 import itertools
 import json
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import Fmu, run_host, unpack
+from conftest import Fmu, importable, run_host, unpack
 from joint_cases import CASES, NAMES, STATE, TUNED, law, parameters, random_inputs
 from natives import VERSIONS, check_slopes, close, jacobian
 
@@ -39,7 +38,7 @@ def libcosimpy() -> None:
 
 def needs(client: str, beside: str = "") -> None:
     """Skip a test if a client is not installed or cannot be loaded."""
-    if find_spec(client) is None or run_host(f"import {client}").returncode:
+    if not importable(client):
         pytest.skip(f"needs {client} (in the extra 'test' on Linux x86_64) {beside}")
 
 

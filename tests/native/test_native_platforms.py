@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from fmpy import read_model_description
 from jointfmu_fmu_src.native.compiler import TARGETS
+from natives import SAID
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
@@ -255,7 +256,7 @@ def test_it_gives_the_numbers_of_linux(run: Run, machine: str, name: str, versio
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 @pytest.mark.parametrize("machine", OTHERS)
 def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: str) -> None:
-    run(program, machine, "GearContact", version, *counts(MODELS["GearContact"]))
+    assert run(program, machine, "GearContact", version, *counts(MODELS["GearContact"])) == SAID[program]
 
 
 @pytest.mark.parametrize("version", VERSIONS)
@@ -263,8 +264,9 @@ def test_it_behaves_as_on_linux(run: Run, machine: str, program: str, version: s
 def test_instances_in_threads_do_not_see_each_other(run: Run, machine: str, version: str) -> None:
     model = MODELS["GearContact"]
     inputs, outputs, _ = counts(model)
-    first_parameter = 1 + inputs + outputs
-    run("threads", machine, model.name, version, inputs, outputs, first_parameter, points=points(model))
+    numbers = inputs, outputs, 1 + inputs + outputs  # the last: a parameter
+    told = run("threads", machine, model.name, version, *numbers, points=points(model))
+    assert told == f"8 threads, {POINTS * outputs} numbers each\n"
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -282,4 +284,5 @@ def test_the_sources_give_the_numbers_of_linux(linked: Run, name: str) -> None:
 @pytest.mark.parametrize("program", ["modes", "refusals"])
 def test_the_sources_behave_as_on_linux(linked: Run, program: str) -> None:
     for version in VERSIONS:
-        linked(program, "aarch64", "GearContact", version, *counts(MODELS["GearContact"]))
+        told = linked(program, "aarch64", "GearContact", version, *counts(MODELS["GearContact"]))
+        assert told == SAID[program]

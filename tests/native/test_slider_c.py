@@ -1,7 +1,7 @@
 """One slider in C against Python: the generated rule and the loops around it, compiled without an FMU."""
 
 from collections.abc import Iterator
-from ctypes import CDLL, POINTER, Structure, byref, c_double, c_int
+from ctypes import CDLL, POINTER, Structure, byref, c_bool, c_double, c_int
 
 import casadi as ca
 import numpy as np
@@ -12,7 +12,7 @@ from jointfmu_fmu_src.native import compiler, elementary
 from jointfmu_fmu_src.native.emit import HELPERS, function
 from jointfmu_fmu_src.native.generate import RUNTIME
 
-from jointfmu.mechanics.jenkins import Sliders, beyond, slide, trial
+from jointfmu.mechanics.jenkins import Sliders, beyond, direction, reaches, slide, trial
 
 pytestmark = pytest.mark.slow
 
@@ -32,6 +32,12 @@ class Sum(Structure):
     """`SliderSum`."""
 
     _fields_ = [("force", c_double * 2), ("tangent", c_double * 3), ("loss", c_double)]
+
+
+class Abreast(Structure):
+    """The same name in sliders.h."""
+
+    _fields_ = [("n", c_int), ("given", c_double * 64 * 11), ("found", c_double * 64 * 7)]
 
 
 @pytest.fixture(scope="module")
@@ -124,23 +130,40 @@ def test_along_one_direction(library: CDLL) -> None:
     assert 0.2 * MOVES < slipped < 0.8 * MOVES
 
 
+def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
+    forces alone are the same, however many sliders stand abreast."""
+    K, per_K, before, after, *force = kept
+    tried, sticks = np.empty((2, SLIDERS)), (c_double * 2)()
+    out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 2)(*shift)
+    first = library.sliders_stick(SLIDERS, byref(s), way, out, sticks)
+    limits = np.append(reaches(list(tried), after) > 0.0, True)
+    assert first == np.argmax(limits) // 2 * 2
+    close(list(sticks), np.sum(tried[:, :first], axis=1), SLIDERS * (1.0 + np.max(np.abs(tried))))
+    e_x, e_y, size = np.array(direction(list(shift)))[:, None] * np.ones(SLIDERS)
+    abreast, alone = Abreast(n=SLIDERS), Abreast(n=SLIDERS - 2)
+    for rows in (abreast, alone):
+        given = np.ctypeslib.as_array(rows.given)
+        given[:, :SLIDERS] = [*force, *tried, e_x, e_y, K * size, before, after, K, per_K]
+        library.sliders_slide(byref(rows), c_bool(rows is alone))
+    found = np.array(abreast.found)[:, :SLIDERS]
+    close(np.array(alone.found)[:2, : alone.n], found[:2, : alone.n], 1.0 + np.max(np.abs(tried)))
+    np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
+    return found
+
+
 def test_in_a_plane(library: CDLL) -> None:
-    """Forces, sums, and what the tangents miss of those that stick."""
-    moved = np.empty((2, SLIDERS))
-    out = (POINTER_TO * 2)(pointer(moved[0]), pointer(moved[1]))
+    """Forces, tangents and heat."""
     slipped = 0
     for K, before, after, force, shift in moves(plane=True):
         s, kept = in_c(K, before, after, force)
-        total, way = Sum(), (c_double * 2)(*shift)
-        library.sliders_plane(SLIDERS, byref(s), way, out, byref(total))
+        moved, tangent, loss = np.split(in_plane(library, s, kept, shift)[:6], [2, 5])
         tried = trial(list(force), 1.0, K, list(shift[:, None]))
         slid = slide(list(force), 1.0, K, list(shift[:, None]), before, after, K, kept[1])
         size = 1.0 + float(np.hypot(*shift) * np.sum(K))
         close(moved, slid.force, size)
-        sums = [np.sum(part) for part in (*slid.force, slid.loss)]
-        close([*total.force, total.loss], sums, SLIDERS * size**2)
-        missing = [slid.tangent[0] - K, slid.tangent[1], slid.tangent[2] - K]
-        close(list(total.tangent), [np.sum(t) for t in missing], SLIDERS)
+        close(loss[0], slid.loss, size**2)
+        close(tangent, slid.tangent, SLIDERS)
         slips = beyond(tried, after) > 0.0
         slipped += int(np.sum(slips))
         assert np.all(np.isfinite(moved)), (K, before, after)
@@ -150,18 +173,13 @@ def test_in_a_plane(library: CDLL) -> None:
 
 def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
     """Sliders that came back to their limit stick: no heat, no other force, for any direction."""
-    moved = np.empty((2, SLIDERS))
-    out = (POINTER_TO * 2)(pointer(moved[0]), pointer(moved[1]))
     for K, limit, _, force, shift in moves(plane=True):
-        total = Sum()
         s, kept = in_c(K, limit, limit, force)
-        library.sliders_plane(SLIDERS, byref(s), (c_double * 2)(*shift), out, byref(total))
-        there = moved.copy()
+        there = in_plane(library, s, kept, shift)[:2]
         s, kept = in_c(K, limit, limit, there)
-        library.sliders_plane(SLIDERS, byref(s), (c_double * 2)(0.0, 0.0), out, byref(total))
-        np.testing.assert_array_equal(moved, there)
-        assert total.loss == 0.0
-        assert kept.size
+        found = in_plane(library, s, kept, np.zeros(2))
+        np.testing.assert_array_equal(found[:2], there)
+        assert np.all(found[5] == 0.0)
 
 
 def test_force_alone(library: CDLL) -> None:

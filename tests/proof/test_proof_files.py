@@ -17,8 +17,8 @@ from joint_cases import NAMES, law, parameters
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from jointfmu_fmu_src.proof import proof
-from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, experiments, models, study
+from jointfmu_fmu_src.proof import computed, proof
+from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, models, study
 from jointfmu_fmu_src.proof.files import TOLERANCE
 from jointfmu_fmu_src.proof.reference import Stimulus, results
 from jointfmu_tools.uncertainty import study as study_files
@@ -43,8 +43,8 @@ def given(name: str) -> tuple[Model, ParameterFile]:
 
 
 @cache
-def made(name: str) -> list[ReferenceExperiment]:
-    return experiments(*given(name))
+def made(name: str) -> tuple[ReferenceExperiment, ...]:
+    return computed(*given(name))
 
 
 @cache

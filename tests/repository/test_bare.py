@@ -12,6 +12,8 @@ from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump
 
+pytestmark = pytest.mark.slow  # each command is a process of its own
+
 EXTRAS = (
     "casadi",
     "distributed",
@@ -38,14 +40,12 @@ def bare(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.slow
 def test_the_modelica_library_needs_no_extra(tmp_path: Path) -> None:
     done = bare(tmp_path, "modelica", "--out", "out")
     assert (done.returncode, done.stderr) == (0, "")
     assert (tmp_path / "out/JointStiffness/package.mo").exists()
 
 
-@pytest.mark.slow
 def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
     fmus = tmp_path / "fmi2"
     native_build("RotationalInertia", partner_parameters("RotationalInertia"), fmus, "2")
@@ -56,14 +56,12 @@ def test_a_system_rings_without_an_extra(tmp_path: Path, native: Path) -> None:
     assert (tmp_path / "ring.csv").exists()
 
 
-@pytest.mark.slow
 def test_an_fmu_proves_itself_without_an_extra(tmp_path: Path, native: Path) -> None:
     done = bare(tmp_path, "prove", str(native / "fmi2" / "GearContact.fmu"))
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.endswith(" passed, 0 missed\n")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_joint_has_its_page_without_an_extra(kind: str, tmp_path: Path) -> None:
     (tmp_path / "joint.toml").write_text(dump(default(kind)))

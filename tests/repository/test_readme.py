@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
@@ -85,7 +86,8 @@ def test_python_blocks_run(folder, monkeypatch):
     names = {}
     for page in (FMUS, PYTHON):
         (block,) = blocks("python", page)
-        exec(compile(block, "docs", "exec"), names)
+        with here_alone():
+            exec(compile(block, "docs", "exec"), names)
     # the ramp of the first block ends at 5 N m, the second evaluates 1000 pressures
     assert names["result"]["K_WTS"][-1] > names["result"]["K_WTS"][0] > 1e3
     assert names["state"]["K_N"].shape == (1000,)
@@ -104,7 +106,8 @@ commands = [
 @pytest.mark.parametrize("line", commands)
 def test_commands_run(line, folder, monkeypatch, capsys):
     monkeypatch.chdir(folder)
-    assert cli.main(shlex.split(line, comments=True)[1:]) == 0
+    with here_alone():
+        assert cli.main(shlex.split(line, comments=True)[1:]) == 0
     assert capsys.readouterr().out
 
 

@@ -18,6 +18,12 @@ SAME = 1e-9
 another order and each its own inversion to round-off. Measured over random parameters: 4e-12 for K_TS and
 K_zz, which cancel most, below 1e-12 for all others."""
 VERSIONS = ("fmi2", "fmi3")
+SAID = {
+    "lifecycle": "all lives are well\n",
+    "modes": "every call is answered in every mode\n",
+    "refusals": "every wrong call is refused with its reason\n",
+}
+"""{program of tests/native: what it prints at its end}; a program that was never run prints nothing."""
 
 
 def close(expected: Any, tolerance: float = SAME) -> Any:

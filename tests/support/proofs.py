@@ -3,12 +3,11 @@
 import json
 import zipfile
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import run_host
+from conftest import importable
 from jointfmu_tools import cli
 
 from jointfmu.proof.manifest import ATTRIBUTES, FOLDER, MANIFEST, NAME
@@ -19,7 +18,7 @@ BOTH = ["co-simulation", "model exchange"]
 
 def needs(importer: str) -> None:
     package = {"ecos": "ecospy", "libcosim": "libcosimpy"}.get(importer, "fmpy")
-    if find_spec(package) is None or run_host(f"import {package}").returncode:
+    if not importable(package):
         pytest.skip(f"needs {package} (in the extra 'test' on Linux x86_64), ecos Debian's libtbb12")
 
 

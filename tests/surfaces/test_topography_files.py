@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -19,7 +20,8 @@ from jointfmu.contact.interface import at_pressure
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
 
-SurfaceTopography = pytest.importorskip("SurfaceTopography")
+if find_spec("SurfaceTopography") is None:  # whose import takes a second
+    pytest.skip("needs SurfaceTopography", allow_module_level=True)
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +75,8 @@ def test_points_with_units_and_gaps(folder, area):
 
 @pytest.mark.parametrize("suffix", ["x3p", "nc", "gwy"])
 def test_instrument_files_keep_axes_and_units(folder, suffix):
+    import SurfaceTopography
+
     z = np.add.outer(np.arange(70.0), 10.0 * np.arange(90.0)) ** 1.1  # (nx, ny), in um
     made = SurfaceTopography.Topography(z, (140.0, 45.0), unit="um")
     {"x3p": made.to_x3p, "nc": made.to_netcdf, "gwy": made.to_gwy}[suffix](str(folder / f"t.{suffix}"))
@@ -502,6 +506,8 @@ def test_columns_whose_units_cannot_be(folder, line, capsys, heads, options, say
 
 def test_units_as_instruments_write_them(folder, monkeypatch):
     """A .sur of UTF-8 is read as Latin-1: µm becomes Âµm."""
+    import SurfaceTopography
+
     z = np.random.default_rng(0).standard_normal((70, 70))
     made = SurfaceTopography.Topography(z, (70.0, 70.0), unit="Âµm")
     monkeypatch.setattr(SurfaceTopography, "read_topography", lambda path: made)

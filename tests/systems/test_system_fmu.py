@@ -20,6 +20,8 @@ from jointfmu.fmi.host import opened, unpacked
 from jointfmu.proof.manifest import FOLDER, Related
 from jointfmu.proof.run import prove
 
+pytestmark = pytest.mark.slow  # builds FMUs
+
 LAST = {"robot_joint": "link.phi", "bolted_column": "column.s", "six_axis_robot": "hand_drive.phi_rel"}
 DRIVE = ("link.phi", "link.w", "drive.tau", "drive.E_loss")
 
@@ -56,7 +58,6 @@ def test_description_is_valid(joint, version):
     assert validate_fmu(str(joint[version])) == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["robot_joint", "bolted_column", "six_axis_robot"])
 def test_any_step_is_as_right_as_model_exchange(tmp_path, name):
     """All outputs at 1 and 10 ms, within the 0.5 % that docs/systems.md promises, in each importer; the

@@ -454,10 +454,14 @@ def test_a_joint_without_system_is_refused(tmp_path: Path, capsys: pytest.Captur
 def simulated(
     built: Path, name: str, step: float, stop: float, changes: Mapping[str, float] = MappingProxyType({})
 ) -> Any:
-    path = str(built / "ssp" / f"{name}.ssp")
-    parameters = read_ssv(path, f"parameters/{name}.ssv")
+    return simulated_once(str(built / "ssp" / f"{name}.ssp"), step, stop, tuple(changes.items()))
+
+
+@cache
+def simulated_once(path: str, step: float, stop: float, changes: tuple[tuple[str, float], ...]) -> Any:
+    parameters = read_ssv(path, f"parameters/{Path(path).stem}.ssv")
     for p in parameters.parameters:
-        p.value = changes.get(p.name, p.value)
+        p.value = dict(changes).get(p.name, p.value)
     return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
 
 
@@ -508,7 +512,7 @@ np.save(out, np.array(rows))
         (
             "six_axis_robot",
             1e-4,
-            14_000,
+            4_000,  # the axes are on their way
             [f"{axis}_{part}::phi" for axis in ROBOT_AXES for part in ("link", "motor")],
         ),
     ],
@@ -578,11 +582,22 @@ def test_a_master_of_the_other_kind_needs_the_other_lag(
 # The robot
 
 
+@cache
+def moved(folder: Path) -> dict[str, Array]:
+    """The robot of six axes through its motion."""
+    return simulate_system(system("six_axis_robot"), folder)
+
+
+def until(stop: float, run: dict[str, Array]) -> dict[str, Array]:
+    """The rows of a run up to a time [s]."""
+    count = np.searchsorted(run["time"], stop, "right")
+    return {name: column[:count] for name, column in run.items()}
+
+
 def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
     """Torques of the rigid arm, and the ringing of six inertias about it; at rest the weight alone, and the
     midline's wind-up within the hysteresis."""
-    found = system("six_axis_robot")
-    run = simulate_system(found, built / "fmi2")
+    found, run = system("six_axis_robot"), moved(built / "fmi2")
     q, speed, acceleration = found.arm.motion(run["time"])
     torque = found.arm.torques(q, speed, acceleration)
     commanded, wound, error = windup(found, run)
@@ -603,7 +618,7 @@ def test_drives_of_the_robot_carry_its_inverse_dynamics(built: Path) -> None:
 
 def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Path) -> None:
     found = system("six_axis_robot")
-    run = simulate_system(found, built / "fmi2", stop=0.9)
+    run = until(0.9, moved(built / "fmi2"))
     commanded, wound, error = windup(found, run)
     q, dq = commanded[-1], wound[-1]
     step = 1e-6
@@ -753,9 +768,9 @@ def test_energy_stays_over_a_thousand_periods(built: Path) -> None:
         e = energy(ring(built, period / steps, 1000 * steps, angle, 0.0))
         assert np.max(np.abs(e / e[0] - 1.0)) < band  # within a period; no drift over them:
         assert abs(e[-100 * steps :].mean() / e[: 100 * steps].mean() - 1.0) < 1e-4
-    late = energy(ring(built, period / 300, 300_000, angle, 0.0, True))
+    late = energy(ring(built, period / 300, 60_000, angle, 0.0, True))
     omega = 2.0 * math.pi / 300  # a late force adds energy, as if damping were -omega^3/2
-    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 1000 * 1.5
+    assert 0.0 < late[-3000:].mean() / late[:3000].mean() - 1.0 < 2.0 * math.pi * omega**3 * 200 * 1.5
 
 
 def working_point(torque: float) -> tuple[float, float]:
@@ -857,7 +872,6 @@ def exchanged(fmus: dict[str, Fmu], wires: list[tuple[str, str, str, str]], stop
 def test_model_exchange_agrees_with_tight_co_simulation(built: Path, make: Make, version: str) -> None:
     """Drive and link as model-exchange FMUs, one system for CVode."""
     stop, angle, count = 0.03, 1.3e-3, 24_000
-    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
     fmus = {
         "drive": make("HarmonicDriveSpring", version, True).start(),
         "link": make("RotationalInertia", version, True).start({"J": LINK, "phi": angle}),
@@ -877,7 +891,6 @@ def test_the_whole_robot_joint_in_model_exchange(built: Path, make: Make, versio
     the order of both solvers."""
     path, stop = str(built / "ssp" / "robot_joint.ssp"), 0.12
     early = {"load.pulse_start": 0.01, "drive.hysteresis_loss": 0.0}
-    build(["HarmonicDriveSpring"], [f"fmi{version}"], None, built)
     parameters = {p.name: p.value for p in read_ssv(path, "parameters/robot_joint.ssv").parameters} | early
     fmus = {}
     for name, part in system("robot_joint").components.items():
@@ -942,7 +955,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
     stop = 0.6
     found = simulate(rumoca, top("extends JointStiffness.Examples.SixAxisRobot;"), stop, 1e-2, rtol=1e-8)
     own = system("six_axis_robot")
-    run = simulate_system(own, built / "fmi2", stop=stop)
+    run = until(stop, moved(built / "fmi2"))
     _, wound, _ = windup(own, run)
     for k, axis in enumerate(ROBOT_AXES):
         expected = np.interp(found.time, run["time"], wound[:, k])
@@ -964,8 +977,13 @@ def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None
         assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
 
 
+@cache
+def pulled_examples(folder: Path) -> dict[str, list[decays.Decay]]:
+    return decays.examples(folder)
+
+
 def test_decays_follow_the_loops(built: Path) -> None:
-    found = decays.examples(built / "fmi2")
+    found = pulled_examples(built / "fmi2")
     assert [c for c in check_decays(found) if not c.passed] == []
     for (one,) in found.values():
         assert one.amplitude[0] > 10.0 * one.amplitude[-1]
@@ -981,7 +999,7 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.points(rows["time"][free], rows["column.s"][free])
-    (pulled,) = decays.examples(built / "fmi2")["bolted_column"]
+    (pulled,) = pulled_examples(built / "fmi2")["bolted_column"]
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
     assert np.count_nonzero(seen) >= 3
@@ -1174,7 +1192,9 @@ def test_ring_refuses(
 def test_the_examples_of_the_page_run(built: Path, tmp_path: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "systems.md").read_text(encoding="utf-8")
     (tmp_path / "dist").symlink_to(built)
-    for block in page.split("```python\n")[1:]:
+    blocks = page.split("```python\n")[1:]
+    assert blocks
+    for block in blocks:
         code = block.partition("```")[0]
         if "ecospy" in code:
             pytest.importorskip("ecospy")

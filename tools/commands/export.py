@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Commands, command, flag, tell, without_package
+from jointfmu.commands.common import Commands, command, flag, joint_name, tell, without_package
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
@@ -45,7 +45,11 @@ def add(commands: Commands) -> None:
     joint = export.add_mutually_exclusive_group()
     joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
     joint.add_argument(
-        "--joint", choices=list(KINDS), default=with_springs[0], help=f"a default joint ({with_springs[0]})"
+        "--joint",
+        type=joint_name,
+        choices=list(KINDS),
+        default=with_springs[0],
+        help=f"a default joint ({with_springs[0]})",
     )
     for name, texts in _working_points().items():
         export.add_argument(flag(name), type=float, metavar="VALUE", help="; ".join(texts))

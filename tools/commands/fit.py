@@ -6,22 +6,20 @@ import sys
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import check_writable
 from jointfmu.joints import KINDS
-from jointfmu.parameters import dump, load
+from jointfmu.parameters import load
 from jointfmu.progress import step
 
 from ..drawing.reading import number
+from ..fitting.outcome import percent
 from ..fitting.procedure import FitOption, Procedure, procedures
+from ..interface.make import Fit
 from ..pressure import judge_file
-
-if TYPE_CHECKING:
-    from ..fitting.outcome import FitResult
 
 
 def add(commands: Commands) -> None:
@@ -75,7 +73,7 @@ def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
     start = load(args.params, joint) if args.params else None
     data = (args.file,) if procedure.file else ()
     step(f"fit of the {KINDS[joint].title}")
-    return _finish(args, procedure.run(*data, start, args.free, **_options(procedure, args)))
+    return _finish(args, Fit(procedure.run(*data, start, args.free, **_options(procedure, args))))
 
 
 def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object]:
@@ -117,17 +115,14 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     return found[0]
 
 
-def _finish(args: argparse.Namespace, outcome: "FitResult") -> int:
+def _finish(args: argparse.Namespace, fit: Fit) -> int:
     """Write and print what was found."""
-    from ..fitting.outcome import percent
-    from ..fitting.picture import draw, size
-
+    outcome = fit.outcome
     if args.plot:
-        with plots.drawing(args.plot, size(outcome)) as figure:
-            draw(figure, outcome)
+        plots.save(fit.plot(), args.plot)
     doubt = None if args.force else outcome.doubt()
     if args.out and not doubt:
-        write_text(args.out, dump(outcome.parameters))
+        fit.joint.save(args.out)
     if args.json:
         found, document = judge_file(outcome.parameters), outcome.document()
         document["warnings"] += found.warnings

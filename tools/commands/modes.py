@@ -10,13 +10,13 @@ from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
+from ..fem import missing
 from ..fields.clamped import clamping
 from .footprint.finite_elements import (
     assembly_arguments,
     joint_file,
     judge_assembly,
     with_assembly,
-    without_fem,
 )
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         from ..fem.assembly import load
         from ..fem.bolted_contact import BoltedContact
     except ImportError as error:
-        raise without_fem(error) from None
+        raise missing("the finite-element analysis", error) from None
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)
@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         modes = assembly_modes.computed(solution, shear, args.count)
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
     except (ImportError, OSError) as error:
-        raise without_fem(error) from None
+        raise missing("the finite-element analysis", error) from None
     if args.vtu:
         write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
     found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)

@@ -3,21 +3,20 @@
 import argparse
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from jointfmu.commands.common import Commands, Parser, command, flag, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import check_writable
 from jointfmu.joints import KINDS
-from jointfmu.parameters import dump
 
 from ..drawing.part import Drawing, Option
+from ..interface.joint import Joint
+from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
-
-if TYPE_CHECKING:
-    from ..drawing.part import NewJoint
 
 
 def add(commands: Commands) -> None:
@@ -58,40 +57,32 @@ def _option(sub: argparse.ArgumentParser, option: Option) -> None:
 
 def _make(drawing: Drawing, args: argparse.Namespace) -> int:
     """Check what is to be written before the work, and make the joint."""
-    from dataclasses import replace
-
     if args.out:
         check_writable(args.out)
-    made = drawing.run({option.name: getattr(args, option.name) for option in drawing.options})
+    joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
     if args.name:
-        made = replace(made, file=replace(made.file, name=args.name))
+        joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
-        write_text(args.out, _comment(made) + dump(made.file))
+        joint.save(args.out)
     if args.json:
-        print(json.dumps(_document(args, made)))
+        print(json.dumps(_document(args, joint)))
         return 0
-    for name, (value, unit, text) in made.facts.items():
+    for name, (value, unit, text) in joint.facts.items():
         print(f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}")
-    tell(judge_file(made.file).with_warnings(made.warnings))
+    tell(judge_file(joint.file).with_warnings(joint.notes))
     print(f"wrote {args.out}" if args.out else "nothing is written: state --out FILE")
     return 0
 
 
-def _comment(made: "NewJoint") -> str:
-    """What was computed beside the parameters, as lines above them."""
-    lines = [f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in made.facts.items()]
-    return "".join(["# Made by jointfmu new. Beside the parameters it computed:\n", *lines])
-
-
-def _document(args: argparse.Namespace, made: "NewJoint") -> dict[str, object]:
+def _document(args: argparse.Namespace, joint: Joint) -> dict[str, object]:
     return {
-        "joint": made.file.joint,
-        "law": made.file.law,
-        "name": made.file.name,
-        "parameters": made.file.flat,
-        "inputs": made.file.inputs,
-        "facts": {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in made.facts.items()},
-        **judge_file(made.file).with_warnings(made.warnings).document(),
+        "joint": joint.file.joint,
+        "law": joint.file.law,
+        "name": joint.file.name,
+        "parameters": joint.file.flat,
+        "inputs": joint.file.inputs,
+        "facts": {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in joint.facts.items()},
+        **judge_file(joint.file).with_warnings(joint.notes).document(),
         "written": [str(args.out)] if args.out else [],
     }
 

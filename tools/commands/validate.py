@@ -7,8 +7,8 @@ from dataclasses import asdict
 from jointfmu.commands.common import Commands, command
 from jointfmu.published import validation
 
+from ..fem import missing
 from ..fem.validation import natural_frequencies
-from .footprint.finite_elements import without_fem
 
 
 def add(commands: Commands) -> None:
@@ -27,7 +27,7 @@ def _validate(args: argparse.Namespace) -> int:
         try:
             rows += natural_frequencies()
         except (ImportError, OSError) as error:
-            raise without_fem(error) from None
+            raise missing("the finite-element analysis", error) from None
     misses = validation.missed(rows)
     if args.json:
         counts = asdict(validation.counts(rows))

@@ -41,6 +41,8 @@ STEPS, CLOSE = 40, 1e-9
 """Of Newton's method [1], and its residual over the largest motion [1]."""
 GAIN = 10.0
 """Most by which what a mode does at the points is changed [1]."""
+SAME = 1e-9
+"""Distances [m] that differ by less are the same: no choice hangs on the last bits."""
 
 
 @dataclass(frozen=True)
@@ -226,7 +228,8 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         np.concatenate(traces[:2]),
         np.tile(ratio * area, 2),
     )
-    moved = {"opening": opening, "patch_z": means @ traces[2], "stretch": stretch}
+    pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
+    moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
     most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
     rounded: dict[str, Any] = {
@@ -235,6 +238,24 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
     rounded |= {name: _listed(each) for name, each in places.items()}
     return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
+
+
+def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
+    """Opening of patches at (m, 2) [m] over that of the points (n, 2) [m] with a stiffness (n): (m, n).
+
+    The plane of the whole contact at the patch, and what points differ from theirs in the mean of those that
+    press it: those to which it is the nearest, or the nearest one, by their stiffness. So friction has no
+    pressure that no point has, however the bodies bend between points and patches.
+    """
+    distance = np.hypot(*(patches[:, None] - points).transpose(2, 0, 1))
+    nearest = distance < distance.min(axis=0) + SAME
+    alone = ~nearest.any(axis=1)
+    nearest[alone] = distance[alone] < distance[alone].min(axis=1, keepdims=True) + SAME
+    mean = nearest * np.maximum(stiffness, 1e-6 * stiffness.max())
+    mean = mean / mean.sum(axis=1, keepdims=True)
+    planes = _planes(points)
+    plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
+    return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
 
 
 def _listed(values: Array) -> tuple[float, ...]:

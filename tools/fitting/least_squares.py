@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -104,6 +103,8 @@ def solve(
     ValueError   : the model refuses the starting values, or there are too few data
     RuntimeError : no solution after `steps` steps
     """
+    from scipy.optimize import least_squares  # slow to import, and commands that fit nothing need this file
+
     model = _Model(tuple(unknowns), residuals)
     place = model.start
     first = residuals(model.named(place))
@@ -116,7 +117,7 @@ def solve(
     rest = first
     for _ in range(2 if noise is None else 1):  # the noise is known after the first
         model.ridge = RIDGE * (_spread(rest) if noise is None else noise)
-        result = scipy.optimize.least_squares(
+        result = least_squares(
             model,
             place,
             jac=model.jacobian,

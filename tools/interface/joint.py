@@ -219,8 +219,12 @@ class Joint:
         return figure
 
     def save(self, path: str | Path) -> Path:
-        """Write the parameter file (TOML). ValueError if it cannot be written."""
-        write_text(Path(path), dump(self.file))
+        """Write the parameter file (TOML), above it its facts. ValueError if it cannot be written."""
+        facts = [
+            f"# {name} = {value:.6g} {unit}: {text}\n" for name, (value, unit, text) in self.facts.items()
+        ]
+        head = "# Computed beside the parameters:\n" if facts else ""
+        write_text(Path(path), head + "".join(facts) + dump(self.file))
         return Path(path)
 
     def build(

@@ -66,7 +66,8 @@ def load(source: str | Path) -> Joint:
     for kind in KINDS.values():
         own = part(kind, "catalogue")
         if own and any(item.name.lower() == name.lower() for item in own.CATALOGUE.items()):
-            return made(part(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
+            with _named_as_in_python():
+                return made(part(kind, "new").NEW, {"catalogue": name})  # type: ignore[union-attr]
     raise ValueError(
         f"{name!r} is no parameter file (.toml) and no known name; allowed are "
         f"{', '.join((*MODELS, *KINDS))} and names of the catalogue (jointfmu catalogue)"
@@ -74,14 +75,14 @@ def load(source: str | Path) -> Joint:
 
 
 def made(drawing: Drawing, stated: Mapping[str, object]) -> Joint:
-    """The joint of a drawing. ValueError for an unknown or missing name, or a value that cannot be."""
+    """The joint of a drawing. ValueError for an unknown or missing name, or a value that cannot be; it names
+    options as on the command line."""
     options = {option.name: option for option in drawing.options}
     if unknown := [name for name in stated if name not in options]:
         raise ValueError(f"unknown name {unknown[0]!r}, allowed are {', '.join(options)}")
     if missing := [o.name for o in drawing.options if o.required and stated.get(o.name) is None]:
         raise ValueError(f"{', '.join(missing)} missing: {options[missing[0]].text}")
-    with _named_as_in_python():
-        new: NewJoint = drawing.run({name: _given(o, stated.get(name)) for name, o in options.items()})
+    new: NewJoint = drawing.run({name: _given(o, stated.get(name)) for name, o in options.items()})
     return joint_of(new.file, new.facts, new.warnings)
 
 
@@ -127,7 +128,8 @@ def maker(name: str, kind: Kind, example: str, first: str | None = None) -> Call
 
     def make(*args: object, **stated: object) -> Joint:
         bound = signature.bind(*args, **stated).arguments
-        return made(drawing, bound)
+        with _named_as_in_python():
+            return made(drawing, bound)
 
     ordered = sorted(drawing.options, key=lambda option: option.name != first)
     parameters = [

@@ -16,7 +16,8 @@ from jointfmu.proof.run import prove
 from jointfmu.published import validation
 
 from ..laboratory.assemble import write_laboratory
-from ..report.page import write_report
+from ..report.figure import Figure
+from ..report.page import drawn, write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
 from ..systems.master import Array
@@ -42,6 +43,7 @@ class JobResult:
     ringing: dict[str, list[Ringing]] = field(default_factory=dict)
     decays: dict[str, list[Decay]] = field(default_factory=dict)
     arms: dict[str, tuple[System, dict[str, Array]]] = field(default_factory=dict)
+    figures: dict[str, list[Figure]] = field(default_factory=dict)
 
     @property
     def misses(self) -> list[str]:
@@ -86,10 +88,11 @@ def run(out: Path) -> JobResult:
         every = [*outcome.built, *components]
         found = pool.map(_examined, every)
         _compare(outcome, out)
+        outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
+        outcome.figures = drawn(outcome)  # while the others prove
         for problems, proof in track(found, "validate and prove", len(every)):
             outcome.problems += problems
             outcome.proofs.append(proof)
-        outcome.arms, outcome.decays, outcome.ringing = arms.result(), ringdowns.result(), ringing.result()
         outcome.checks += [*check_ringing(outcome.ringing), *check_decays(outcome.decays)]
         write_report(out / "report" / "index.html", outcome)
         page.result()

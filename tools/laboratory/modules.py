@@ -1,21 +1,24 @@
 """The WebAssembly modules of the page: one for each model and what is baked into its C."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 
 from jointfmu_fmu_src.native.compiler import webassembly
+from jointfmu_fmu_src.native.kept import keeping
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
-from jointfmu.parameters import ParameterFile, load
+from jointfmu.parameters import ParameterFile, dump, load
 
 from ..joint_parts import part
 
 _OWN = "laboratory.c"
 _MAP = "map.c"
+_GENERATES = Lock()
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +40,23 @@ class Module:
         from jointfmu_fmu_src.native.generate import sources, token
 
         files = sources(self.model.name, self.files[0])
-        added = {_OWN: Path(__file__).with_name(_OWN).read_text(encoding="utf-8")}
-        if self.map and self.map.is_file():
-            added[_MAP] = self.map.read_text(encoding="utf-8")
-        return files | added | {"token.h": f'#define TOKEN "{token(files)}"\n'}
+        return files | self._added() | {"token.h": f'#define TOKEN "{token(files)}"\n'}
 
-    def compiled(self, given: Mapping[str, str] | None = None) -> bytes:
+    def compiled(self) -> bytes:
         """The module, a reactor without imports; its functions are those of laboratory.c.
-
-        given : its sources, where they are known
 
         Raises ImportError if ziglang is missing, RuntimeError with the compiler's first error.
         """
-        files = self.sources() if given is None else given
+        return keeping(f"{dump(self.files[0])} {self._added()}", self.model, self._compiled)
+
+    def _added(self) -> dict[str, str]:
+        """{file name: text} of what the page calls."""
+        own = [Path(__file__).with_name(_OWN), *([self.map] if self.map and self.map.is_file() else [])]
+        return {path.name: path.read_text(encoding="utf-8") for path in own}
+
+    def _compiled(self) -> bytes:
+        with _GENERATES:  # casadi knows no threads
+            files = self.sources()
         units = [name for name in files if name.endswith(".c") and not name.startswith("fmi")]
         return webassembly(self.model.name, files, units)
 
@@ -60,10 +67,9 @@ def modules() -> list[Module]:
 
 
 def compiled(some: Sequence[Module]) -> list[bytes]:
-    """The modules in binary form. Sources are made one after the other: casadi knows no threads."""
-    given = [module.sources() for module in some]
+    """The modules in binary form."""
     with ThreadPoolExecutor() as pool:
-        return list(pool.map(Module.compiled, some, given))
+        return list(pool.map(Module.compiled, some))
 
 
 def _of(kind: Kind, model: Model) -> Iterator[Module]:

@@ -67,8 +67,8 @@ class Course:
         outputs = {v.name: v.unit for v in self.model.outputs}
         output = conjugate(driven, outputs, loop.input, None, self.model.name)
         swing = Swing(about=self.about[loop.input], points=_SWING.points)
-        amplitudes = [part * self._amplitude(output) for part in PARTS]
-        results = [self._driven(loop.input, swing.along(a), driven | outputs) for a in amplitudes]
+        largest = self._amplitude(output)
+        results = [self._driven(loop.input, swing.along(a * largest), driven | outputs) for a in PARTS]
         return of(results, loop.input, output, swing)
 
     def _amplitude(self, output: str) -> float:

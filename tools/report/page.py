@@ -17,13 +17,19 @@ from jointfmu.published.validation import shown_claim, shown_error, shown_tolera
 
 from ..joint_parts import part
 from ..systems.system import systems
+from .figure import Figure
 from .looks import script, style
 from .motion import motions
 from .systems import resonances, ring_downs
 
 
+def drawn(outcome: Any) -> dict[str, list[Figure]]:
+    """{joint: its figures} of an outcome of the main job whose systems have been run."""
+    return {name: _figures(kind, outcome) for name, kind in KINDS.items()}
+
+
 def write_report(path: Path, outcome: Any) -> None:
-    """Write the self-contained page of an outcome of the main job."""
+    """Write the self-contained page of an outcome with its figures."""
     page = template(Path(__file__).with_name("page.html")).render(
         version=__version__,
         python=platform.python_version(),
@@ -44,18 +50,21 @@ def write_report(path: Path, outcome: Any) -> None:
 
 def _tab(kind: Kind, outcome: Any) -> dict[str, Any]:
     """What the page shows of a joint."""
-    module = part(kind, "figures")
-    figures = module.figures(outcome) if module else []
-    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
-    figures += motions(outcome.arms, kind.name)
     names = [model.name for model in kind.models]
     kinds = {name: {j.kind for j in system.joints.values()} for name, system in systems().items()}
     names += [name for name, found in kinds.items() if kind.name in found]
     return {
         "name": kind.name,
         "title": kind.title,
-        "figures": [(figure, as_json(figure.panels)) for figure in figures],
+        "figures": [(figure, as_json(figure.panels)) for figure in outcome.figures[kind.name]],
         "rows": [row for row in outcome.rows if row.point.joint == kind.name],
         "checks": [check for check in outcome.checks if check.fmu in names],
         "proofs": [proof for proof in outcome.proofs if proof.fmu.stem in names],
     }
+
+
+def _figures(kind: Kind, outcome: Any) -> list[Figure]:
+    module = part(kind, "figures")
+    figures: list[Figure] = module.figures(outcome) if module else []
+    figures += [*resonances(outcome.ringing, kind.name, outcome.fmus), *ring_downs(outcome.decays, kind.name)]
+    return figures + motions(outcome.arms, kind.name)

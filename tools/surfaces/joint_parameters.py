@@ -56,7 +56,7 @@ def with_surface(
     """The parameter file with what the surface decides, each with its source.
 
     With the law `roughness`: h, slope, longest wave and, if it is determined, the Hurst exponent. Else D and
-    G, if they are determined, and the heights of the known sides in the section [roughness].
+    G, if they are determined, and the heights of the known sides beside its law.
 
     force : D and G (the Hurst exponent) also if they are not determined; ValueError if one is no number
     """

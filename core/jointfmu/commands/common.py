@@ -84,6 +84,11 @@ def option(args: argparse.Namespace, setting: str) -> str:
     return flag(getattr(args, "options", {}).get(setting, setting))
 
 
+def joint_name(text: str) -> str:
+    """A joint as `new` and as a parameter file name it."""
+    return text.replace("-", "_")
+
+
 def written(sub: argparse.ArgumentParser, text: str = "write the parameter file (TOML)") -> None:
     """Declare `--out FILE`, the parameter file to write, and its second name `--write`."""
     sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)

@@ -1,8 +1,8 @@
 """What a roughness says of a contact: height of both surfaces together, and the level of its stiffness.
 
-Names of what a parameter file may state of the two surfaces, in its section [roughness]: `Ra1`, `Ra2`
-(arithmetic mean height), `Rq1`, `Rq2` (rms height), over the longest wave that machining leaves; or `h`,
-the rms height of both together. A side that is not stated counts as smooth.
+Names of what a parameter file may state of the two surfaces, in its section [roughness] or [comparison]:
+`Ra1`, `Ra2` (arithmetic mean height), `Rq1`, `Rq2` (rms height), over the longest wave that machining
+leaves; or `h`, the rms height of both together. A side that is not stated counts as smooth.
 """
 
 from collections.abc import Mapping

@@ -20,7 +20,8 @@ ROUND_OFF = 1e-14
 AT_LIMIT = 1e-12
 """By which a force may be below its limit and count as at it [1]."""
 NOTHING = 1e-200
-"""What divides in place of 0: square of a force or a shift, or force times force."""
+"""What divides in place of 0: powers of forces, the square of a shift."""
+TWELFTH = 1.0 / 12.0
 LARGEST = 1e30
 """Of 1/limit, where there is hardly any."""
 
@@ -75,24 +76,41 @@ def slide(
     after: Number,
     stiffness: Number,
     compliance: Number,
-    unit: Vector | None = None,
 ) -> Slid:
     """A slider after a straight path, see `trial`; its limit goes from `before` to `after`.
 
     Along one direction the force returns to its limit, and the heat is the mean of the limit while it slips
-    times the slip: exact for a stiffness that stays. In a plane the force turns towards the shift while it
-    slips, tan(angle/2) between both falling as exp(-K way/limit) under constant load (Krieg and Krieg 1977):
-    met to the third order of the way, with its heat, and exactly where nothing turns.
+    times the slip: exact for a stiffness that stays. In a plane see `slide_in_plane`.
 
     compliance : 1/stiffness, 0 without springs
-    unit       : direction and size of a shift in a plane, where they are known
     """
     tried = trial(force, keeps, carries, shift)
-    if len(tried) == 1:
-        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
-    else:
-        way = direction(shift) if unit is None else unit
-        moved, tangent, slip, mean = _in_a_plane(force, tried, carries, way, (before, after), stiffness)
+    if len(tried) > 1:
+        e_x, e_y, way = direction(shift)
+        return slide_in_plane(force, tried, [e_x, e_y], carries * way, before, after, stiffness, compliance)
+    moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
+    return Slid(moved, tangent, mean * (slip * compliance), slip)
+
+
+def slide_in_plane(
+    force: Vector,
+    tried: Vector,
+    unit: Vector,
+    carried: Number,
+    before: Number,
+    after: Number,
+    stiffness: Number,
+    compliance: Number,
+) -> Slid:
+    """A slider after a straight path in a plane, from its force and the trial force.
+
+    The force turns towards the shift while it slips, tan(angle/2) between both falling as exp(-K way/limit)
+    under constant load (Krieg and Krieg 1977): met to the third order of the way, with its heat, and exactly
+    where nothing turns.
+
+    unit, carried : direction of the shift, its size times what it adds
+    """
+    moved, tangent, slip, mean = _in_a_plane(force, tried, unit, carried, (before, after), stiffness)
     return Slid(moved, tangent, mean * (slip * compliance), slip)
 
 
@@ -113,7 +131,7 @@ def direction(shift: Vector) -> Vector:
 
 
 def _in_a_plane(
-    force: Vector, tried: Vector, carries: Number, unit: Vector, limits: Vector, stiffness: Number
+    force: Vector, tried: Vector, unit: Vector, carried: Number, limits: Vector, stiffness: Number
 ) -> _Returned:
     """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
 
@@ -122,7 +140,7 @@ def _in_a_plane(
     not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by
     Hermite's rule, of the angle between force and shift.
     """
-    (before, limit), (e_x, e_y, way) = limits, unit
+    (before, limit), (e_x, e_y) = limits, unit
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
     largest = np.maximum(np.maximum(squared, square), NOTHING)
     size = np.sqrt(largest)
@@ -131,13 +149,11 @@ def _in_a_plane(
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
-    left = share * (carries * way)
-    part = 1.0 / largest  # what follows up to `more` is in parts of the trial
-    ends = squared * part
-    larger = np.minimum(np.maximum(before * before * part, ends), 1.0)
-    lost = larger - ends  # by a limit that shrinks, from where it slips on
-    turns, shrinks = 0.25 * (1.0 - larger) - left * left * (part / 12.0), ends * ends + lost * lost / 16.0
-    more_by = (0.25 * lost * ends * larger + turns * shrinks) / np.maximum(shrinks * larger, NOTHING)
+    left = share * carried
+    held = np.minimum(np.maximum(before * before, squared), largest)
+    lost = held - squared  # by a limit that shrinks, from where it slips on
+    turns, shrinks = 0.25 * (largest - held) - TWELFTH * (left * left), squared * squared + lost * lost / 16.0
+    more_by = (0.25 * lost * squared * held + turns * shrinks) / np.maximum(shrinks * held, NOTHING)
     more = where(slips, left * more_by, 0.0)
     ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
     size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)
@@ -145,7 +161,7 @@ def _in_a_plane(
     n = [per_size * q for q in ahead]
     across = n[0] * e_y - n[1] * e_x
     turned = left * across
-    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * per_limit / 12.0
+    hermite = turned * turned * np.maximum(1.0 - squared * (per_size * per_size), 0.0) * (TWELFTH * per_limit)
     spent = where(reaches(tried, limit) > 0.0, stiffness, 0.0)
     tangent = [stiffness - spent * n[0] * n[0], -spent * n[0] * n[1], stiffness - spent * n[1] * n[1]]
     moved = [where(slips, limit * m, q) for m, q in zip(n, tried, strict=True)]

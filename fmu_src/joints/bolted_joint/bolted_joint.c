@@ -282,7 +282,8 @@ typedef struct {
     double p[BATCH], k[BATCH], works[BATCH][N_LAW_STATE];
 } Batch;
 
-static inline bool look_up(const Joint *joint, const double *inputs, int first, int n, Batch *batch, Text *why)
+static inline bool look_up(const Joint *joint, const double *inputs, int first, int n, bool works, Batch *batch,
+                           Text *why)
 {
     const Curve *curve = &joint->curve;
     const double begin = curve->first.x, end = curve->end.x;
@@ -301,13 +302,28 @@ static inline bool look_up(const Joint *joint, const double *inputs, int first, 
         const double t = at[i], *a = curve->a[k];
         batch->p[i] = curve_value(a, t);
         batch->k[i] = curve_slope(a, t) * curve->per[k];
-        for (int q = 0; q < N_LAW_STATE; q++)
+        for (int q = 0; q < N_LAW_STATE && works; q++)
             batch->works[i][q] = curve_value(joint->kind.approach.state[k][q], t);
     }
     for (int i = 0; i < n; i++)
         if (!(approach[i] >= begin && approach[i] < end) &&
             !node_outside(joint, approach[i], &batch->p[i], &batch->k[i], batch->works[i], why))
             return false;
+    return true;
+}
+
+/* Pressure and stiffness of the nodes; false: one is beyond the law. */
+static bool press_nodes(Joint *joint, const double *inputs, Text *why)
+{
+    Kind *kind = &joint->kind;
+    Batch batch;
+    for (int first = 0; first < n_nodes(); first += BATCH) {
+        const int n = n_nodes() - first < BATCH ? n_nodes() - first : BATCH;
+        if (!look_up(joint, inputs, first, n, false, &batch, why))
+            return false;
+        memcpy(kind->p + first, batch.p, (size_t)n * sizeof *kind->p);
+        memcpy(kind->k + first, batch.k, (size_t)n * sizeof *kind->k);
+    }
     return true;
 }
 
@@ -319,7 +335,7 @@ static bool sum_nodes(Joint *joint, const double *inputs, Text *why)
     Batch batch;
     for (int first = 0; first < n_nodes(); first += BATCH) {
         const int n = n_nodes() - first < BATCH ? n_nodes() - first : BATCH;
-        if (!look_up(joint, inputs, first, n, &batch, why))
+        if (!look_up(joint, inputs, first, n, true, &batch, why))
             return false;
         for (int i = 0; i < n; i++) {
             const double *weight = kind->weight[first + i], p = batch.p[i];
@@ -583,18 +599,16 @@ static void move_all(Joint *joint, const double *inputs, const double *memory, S
     }
 }
 
-/* A patch that is not at rest moves: its sums, and the forces of all its sliders. */
-static Shear slide(Joint *joint, int j, const double *inputs, const double *memory, double *const moved[2])
+/* A patch that is not at rest moves: its sums, and the forces of all its sliders, known after `foundations_end`. */
+static void slide(Joint *joint, int j, const double *inputs, const double *memory, double *const moved[2], Shear *shear)
 {
     Kind *kind = &joint->kind;
     const PatchPath path = path_of(joint, j, inputs, memory);
     const int touched = path.from->touched > path.to->touched ? path.from->touched : path.to->touched;
     const int n = 2 * touched, n_y = kind->moved < FREE ? 0 : n;
-    Shear shear;
-    foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
+    foundation_move(&kind->foundation[j], &path, moved, &kind->work, shear);
     memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *moved[0]);
     memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *moved[1]);
-    return shear;
 }
 
 /* A patch at rest: its force stands in the place of the first slider. */
@@ -621,9 +635,14 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     }
     for (int j = 0; j < n_patches() && kind->memory; j++) {
         double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
-        const Shear shear = kind->moved == RESTING ? shears[j] : slide(joint, j, inputs, memory, moved);
         if (kind->moved == RESTING)
-            keep_at_rest(&shear, moved);
+            keep_at_rest(&shears[j], moved);
+        else
+            slide(joint, j, inputs, memory, moved, &shears[j]);
+    }
+    foundations_end(&kind->work);
+    for (int j = 0; j < n_patches() && kind->memory; j++) {
+        const Shear shear = shears[j];
         add_traction(x, data.patches[j], shear.traction);
         add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
@@ -672,7 +691,28 @@ static bool as_tightened(const Kind *kind, const double *inputs)
 bool joint_press(Joint *joint, const double *inputs, Text *why)
 {
     tighten(joint, inputs);
-    return press(joint, inputs, why);
+    return press_nodes(joint, inputs, why);
+}
+
+bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why)
+{
+    Kind *kind = &joint->kind;
+    double *const moved[2] = {kind->tried[0], kind->tried[1]};
+    Shear shears[MOST_PATCHES];
+    if (!joint_press(joint, inputs, why))
+        return false;
+    move_all(joint, inputs, memory, shears);
+    kind->work.forces = true;
+    for (int j = 0; j < n_patches() && kind->moved != RESTING; j++) {
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
+    }
+    foundations_end(&kind->work);
+    for (int j = 0; j < n_patches(); j++) {
+        memcpy(kind->traction[j], shears[j].traction, sizeof shears[j].traction);
+        memcpy(kind->tangent[j], shears[j].tangent, sizeof shears[j].tangent);
+    }
+    return true;
 }
 
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why)
@@ -811,25 +851,30 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     return shear;
 }
 
-void patch_tangent(Joint *joint, int j, const double *inputs, const double *memory, double step, double *tangent)
+void patch_tangents(Joint *joint, const double *inputs, const double *memory, double step, double (*tangent)[3])
 {
     Kind *kind = &joint->kind;
-    double by[2][2], *const moved[2] = {kind->tried[0], kind->tried[1]};
+    double *const moved[2] = {kind->tried[0], kind->tried[1]};
+    Shear shears[MOST_PATCHES];
     if (kind->moved == RESTING) {
-        memcpy(tangent, kind->tangent[j], 3 * sizeof *tangent);
+        memcpy(tangent, kind->tangent, (size_t)n_patches() * sizeof *tangent);
         return;
     }
     for (int d = 0; d < 2; d++) {
-        PatchPath path = path_of(joint, j, inputs, memory);
-        Shear shear;
-        path.shift[d] += step;
-        foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shear);
-        for (int e = 0; e < 2; e++)
-            by[d][e] = (shear.traction[e] - kind->traction[j][e]) / step;
+        kind->work.forces = true;
+        for (int j = 0; j < n_patches(); j++) {
+            PatchPath path = path_of(joint, j, inputs, memory);
+            path.shift[d] += step;
+            foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
+        }
+        foundations_end(&kind->work);
+        for (int j = 0; j < n_patches(); j++) {
+            const double *now = shears[j].traction, *before = kind->traction[j];
+            tangent[j][2 * d] = (now[d] - before[d]) / step;
+            const double other = 0.5 * (now[1 - d] - before[1 - d]) / step;
+            tangent[j][1] = d == 0 ? other : tangent[j][1] + other;
+        }
     }
-    tangent[0] = by[0][0];
-    tangent[1] = 0.5 * (by[0][1] + by[1][0]);
-    tangent[2] = by[1][1];
 }
 
 static void patch_rates(Joint *joint, const double *inputs, const double *memory, const double *after,

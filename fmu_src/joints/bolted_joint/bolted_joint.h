@@ -15,10 +15,10 @@ enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX =
 /* Preload, moment, shift along the surface, and the end of the memory. */
 enum { FOLLOW_KEY = 5 + 3 + MODES + 3 * MOST_PATCHES };
 
-/* Amplitudes per motion, and what decides them. */
+/* Amplitudes per motion, and what decides them; the stiffness by normal motions. */
 typedef struct {
     bool known;
-    double key[FOLLOW_KEY], follow[6][MODES];
+    double key[FOLLOW_KEY], follow[6][MODES], by_normal[WIDE][WIDE];
 } Followed;
 
 typedef struct {
@@ -42,7 +42,7 @@ typedef struct {
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
     double traction[MOST_PATCHES][2], along[3]; /* of the patches in it, and what `Further` has there */
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
-    Work work; /* of the patch at hand */
+    Work work;
 
     /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y and apart)
      * and bolts. */

@@ -1,26 +1,45 @@
 #include "dense.h"
 
 #include <math.h>
+#include <string.h>
+
+/* From a row on, a multiple of four. */
+static inline void take_fours(double by, const double *restrict column, int first, double *restrict x)
+{
+    for (int r = first; r < MODES; r += LANES_OF_MODES)
+        for (int l = 0; l < LANES_OF_MODES; l++)
+            x[r + l] -= by * column[r + l];
+}
+
+/* Columns are rows of the array, so that what is done to a column goes side by side. */
 
 void dense_factor(double (*a)[MODES], int *pivots)
 {
     for (int c = 0; c < MODES; c++) {
+        double column[MODES];
         int best = c;
         for (int r = c + 1; r < MODES; r++)
-            best = fabs(a[r][c]) > fabs(a[best][c]) ? r : best;
+            best = fabs(a[c][r]) > fabs(a[c][best]) ? r : best;
         pivots[c] = best;
         for (int k = 0; k < MODES && best != c; k++) {
-            const double kept = a[c][k];
-            a[c][k] = a[best][k];
-            a[best][k] = kept;
+            const double kept = a[k][c];
+            a[k][c] = a[k][best];
+            a[k][best] = kept;
         }
-        for (int r = c + 1; r < MODES; r++) {
-            const double by = a[r][c] / a[c][c];
-            a[r][c] = by;
-            for (int k = c + 1; k < MODES; k++)
-                a[r][k] -= by * a[c][k];
-        }
+        a[c][c] = 1.0 / a[c][c];
+        for (int r = c + 1; r < MODES; r++)
+            a[c][r] *= a[c][c];
+        for (int r = 0; r < MODES; r++)
+            column[r] = r > c ? a[c][r] : 0.0;
+        for (int k = c + 1; k < MODES; k++)
+            take_fours(a[k][c], column, (c + 1) / LANES_OF_MODES * LANES_OF_MODES, a[k]);
     }
+}
+
+static inline void take(double by, const double *restrict column, int first, int end, double *restrict x)
+{
+    for (int r = first; r < end; r++)
+        x[r] -= by * column[r];
 }
 
 void dense_solve(const double (*a)[MODES], const int *pivots, double *x)
@@ -30,13 +49,11 @@ void dense_solve(const double (*a)[MODES], const int *pivots, double *x)
         x[pivots[c]] = x[c];
         x[c] = kept;
     }
-    for (int r = 0; r < MODES; r++)
-        for (int k = 0; k < r; k++)
-            x[r] -= a[r][k] * x[k];
-    for (int r = MODES - 1; r >= 0; r--) {
-        for (int k = r + 1; k < MODES; k++)
-            x[r] -= a[r][k] * x[k];
-        x[r] /= a[r][r];
+    for (int c = 0; c < MODES; c++)
+        take(x[c], a[c], c + 1, MODES, x);
+    for (int c = MODES - 1; c >= 0; c--) {
+        x[c] *= a[c][c];
+        take(x[c], a[c], 0, c, x);
     }
 }
 

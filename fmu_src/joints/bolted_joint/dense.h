@@ -8,7 +8,7 @@
 enum { LANES_OF_MODES = 4, WIDE = MODES + LANES_OF_MODES };
 _Static_assert(MODES % LANES_OF_MODES == 0, "rows in fours");
 
-/* Factors in place of a matrix, with partial pivoting. */
+/* Factors in place of a matrix, whose columns are the rows of the array, with partial pivoting. */
 void dense_factor(double (*a)[MODES], int *pivots);
 /* Solve with them, in place of the right side. */
 void dense_solve(const double (*factors)[MODES], const int *pivots, double *x);

@@ -114,8 +114,9 @@ static inline Pair pair_at(const Foundation *f, int i, const Point *p)
     if (p->approach < f->height[i])
         return pair;
     if (i < p->full) {
-        const double *limit = f->limit + 2 * i, grown = 0.5 * f->mu * f->springs[i] * p->approach;
-        return (Pair){.K = f->K[2 * i], .limit = {limit[0] + grown, limit[1] + grown}};
+        const double *limit = f->limit + 2 * i, K = f->K[2 * i];
+        const double grown = K * (f->mu / f->ratio * p->approach); /* rounded as in `move_full`: a limit is one number */
+        return (Pair){.K = K, .limit = {limit[0] + grown, limit[1] + grown}};
     }
     entered(f, i, p, x);
     touching(x, NULL, &pair.K);
@@ -158,20 +159,122 @@ static void add(const SliderSum *sum, Shear *shear)
     shear->loss += sum->loss;
 }
 
+/* Sliders of all patches that may slip */
+
+/* Arguments of `changing_loss`. */
+enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_MIDDLE, N_CHANGING = 12 };
+
+/* Heat of a slider of a range that changes. */
+static inline double changing(const Run *run, int k, const double (*found)[ABREAST])
+{
+    const int at = run->at + k;
+    double x[N_CHANGING] = {run->across}, loss;
+    for (int d = 0; d < 2; d++) {
+        x[C_FORCE + d] = run->force[d][k];
+        x[C_MOVED + d] = found[SLID_FORCE + d][at];
+        x[C_SHIFT + d] = run->shift[d];
+        x[C_MIDDLE + d] = run->across ? found[SLID_FORCE + d][at + 2] : 0.0;
+    }
+    x[C_FIRST] = run->K[0];
+    x[C_LAST] = run->K[1];
+    x[C_SLIP] = found[SLID_SLIP][at];
+    changing_loss(x, NULL, &loss);
+    return loss;
+}
+
+/* Of forces alone. */
+static inline void end_forces(const Run *run, const double (*found)[ABREAST])
+{
+    double x[2] = {0.0}, y[2] = {0.0};
+    for (int k = 0; k < run->n; k += 2)
+        for (int l = 0; l < 2; l++) {
+            x[l] += found[SLID_FORCE][run->at + k + l];
+            y[l] += found[SLID_FORCE + 1][run->at + k + l];
+        }
+    run->shear->traction[0] += x[0] + x[1];
+    run->shear->traction[1] += y[0] + y[1];
+}
+
+static inline void end_run(const Run *run, double (*found)[ABREAST])
+{
+    double sum[N_SLID - 1][2] = {{0.0}};
+    if (run->changes)
+        for (int k = 0; k < 2; k++)
+            found[SLID_LOSS][run->at + k] = changing(run, k, (const double(*)[ABREAST])found);
+    for (int k = 0; k < run->n; k += 2)
+        for (int l = 0; l < 2; l++) {
+            for (int r = 0; r < N_SLID - 1; r++)
+                sum[r][l] += found[r][run->at + k + l];
+            run->moved[0][k + l] = found[SLID_FORCE][run->at + k + l];
+            run->moved[1][k + l] = found[SLID_FORCE + 1][run->at + k + l];
+        }
+    const double *t = sum[SLID_TANGENT];
+    add(&(SliderSum){{sum[0][0] + sum[0][1], sum[1][0] + sum[1][1]},
+                     {t[0] + t[1], t[2] + t[3], t[4] + t[5]},
+                     sum[SLID_LOSS][0] + sum[SLID_LOSS][1]},
+        run->shear);
+}
+
+/* All runs so far. */
+static void end_runs(Work *work)
+{
+    sliders_slide(&work->abreast, work->forces);
+    for (int i = 0; i < work->n && work->forces; i++)
+        end_forces(&work->runs[i], (const double(*)[ABREAST])work->abreast.found);
+    for (int i = 0; i < work->n && !work->forces; i++)
+        end_run(&work->runs[i], work->abreast.found);
+    work->n = work->abreast.n = 0;
+}
+
+void foundations_end(Work *work)
+{
+    end_runs(work);
+    work->forces = false;
+}
+
+/* A run of up to so many sliders. */
+static Run *begin_run(Work *work, int most, int k, double *const moved[2], Shear *shear)
+{
+    if (work->abreast.n + most > ABREAST || work->n == ABREAST / 2)
+        end_runs(work);
+    Run *run = &work->runs[work->n++];
+    *run = (Run){.at = work->abreast.n, .n = most, .moved = {moved[0] + k, moved[1] + k}, .shear = shear};
+    return run;
+}
+
+/* The next pair of sliders of a run. */
+static inline void add_pair(Abreast *abreast, const double *x, const double *y, const double *tried_x,
+                            const double *tried_y, const double unit[2], double carried, const double *before,
+                            const double *after, double K, double per_K)
+{
+    for (int l = 0; l < 2; l++) {
+        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], unit[0], unit[1],
+                                       carried, before[l], after[l],   K,          per_K};
+        for (int r = 0; r < N_SLIDER; r++)
+            abreast->given[r][abreast->n + l] = given[r];
+    }
+    abreast->n += 2;
+}
+
 /* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
 static void move_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
-                        double *const moved[2], Shear *shear)
+                        double *const moved[2], Work *work, Shear *shear)
 {
-    SliderSum sum;
-    int first = n;
-    if (along)
-        first = sliders_sticking(n, s, path->shift[0], moved[0], &sum);
-    else
-        sliders_plane(n, s, path->shift, moved, &sum);
+    SliderSum sum = {.loss = 0.0};
+    const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
+                            : sliders_stick(n, s, path->shift, moved, sum.force);
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
     add(&sum, shear);
+    if (along || first == n)
+        return;
+    double way[3];
+    direction(path->shift, NULL, way);
+    begin_run(work, n - first, first, moved, shear);
+    for (int k = first; k < n; k += 2)
+        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, way, s->K[k] * way[2],
+                 s->before + k, s->after + k, s->K[k], s->per_K[k]);
 }
 
 /* The first `n` sliders, of ranges all in contact. */
@@ -184,18 +287,18 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, bool al
         work->after[k] = f->limit[k] + f->K[k] * to;
     }
     const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
-    move_steady(n, &s, f->stick, path, along, moved, shear);
+    move_steady(n, &s, f->stick, path, along, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
 static void move_resting(const Foundation *f, int i, const PatchPath *path, bool along, double *const moved[2],
-                         Shear *shear)
+                         Work *work, Shear *shear)
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i}};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    move_steady(2, &s, &stick, path, along, to, shear);
+    move_steady(2, &s, &stick, path, along, to, work, shear);
 }
 
 /* Arguments of `carrying`. */
@@ -225,87 +328,37 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
     x[X_SMALL] = small_on(f, i, path->from, at);
 }
 
-/* Results of `slide_plane`. */
-enum { MOVED_FORCE, MOVED_TANGENT = 2, MOVED_LOSS = 5, MOVED_SLIP, N_MOVED };
-
-/* Both sliders of a range side by side, at the end of a way and half way. */
-enum { AT_ONCE = 4 };
-typedef struct {
-    double x[AT_ONCE], y[AT_ONCE], keeps[AT_ONCE], carries[AT_ONCE], part[AT_ONCE], before[AT_ONCE], after[AT_ONCE],
-        K[AT_ONCE], per_K[AT_ONCE];
-} Sliding;
-
-static inline void slider_on(const PatchPath *path, int i, int at, const double gained[2], double part,
-                             const Pair *start, const Pair *end, Sliding *s)
-{
-    const double per_K = end->K > 0.0 ? 1.0 / end->K : 0.0;
-    for (int late = 0; late < 2; late++) {
-        const int k = 2 * at + late;
-        s->x[k] = path->force[0][2 * i + late];
-        s->y[k] = path->force[1][2 * i + late];
-        s->keeps[k] = gained[0];
-        s->carries[k] = gained[1];
-        s->part[k] = part;
-        s->before[k] = start->limit[late];
-        s->after[k] = end->limit[late];
-        s->K[k] = end->K;
-        s->per_K[k] = per_K;
-    }
-}
-
-static inline void slide_all(int n, const double shift[2], const Sliding *restrict s, double (*restrict moved)[AT_ONCE])
-{
-    const double u = shift[0], v = shift[1];
-    double e[3];
-    direction(shift, NULL, e);
-    const double e_x = e[0], e_y = e[1], way = e[2];
-    for (int k = 0; k < n; k++) {
-        const double part = s->part[k];
-        const double x[] = {s->x[k], s->y[k],    s->keeps[k],  s->carries[k], part * u, part * v, e_x, e_y,
-                            part * way, s->before[k], s->after[k], s->K[k],       s->per_K[k]};
-        double y[N_MOVED];
-        slide_plane(x, NULL, y);
-        for (int r = 0; r < N_MOVED; r++)
-            moved[r][k] = y[r];
-    }
-}
-
-/* Arguments of `changing_loss`. */
-enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_MIDDLE, N_CHANGING = 12 };
-
 /* The sliders of a range that changes. */
 static void move_range(const Foundation *f, int i, const PatchPath *path, Middle *middle, double *const moved[2],
-                       Shear *shear)
+                       Work *work, Shear *shear)
 {
-    const bool across = !stays(i, path->from, path->to);
+    const bool across = !work->forces && !stays(i, path->from, path->to);
     const Point *half = across ? middle_of(f, path, middle) : path->to, *points[2] = {path->to, half};
-    const Pair start = pair_at(f, i, path->from), ends[2] = {pair_at(f, i, path->to), pair_at(f, i, half)};
+    const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
+    const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
     const int n = across ? 2 : 1;
-    double x[N_CARRYING], gained[2], y[N_MOVED][AT_ONCE];
-    Sliding s;
+    double x[N_CARRYING], gained[2], way[3];
+    direction(path->shift, NULL, way);
+    Run *run = begin_run(work, 2 * n, 2 * i, moved, shear);
+    run->n = 2;
+    for (int d = 0; d < 2; d++) {
+        run->force[d] = path->force[d] + 2 * i;
+        run->shift[d] = path->shift[d];
+    }
+    run->across = across;
+    run->K[0] = start.K;
+    run->K[1] = ends[0].K;
+    run->changes = start.K != ends[0].K;
     for (int at = 0; at < n; at++) {
+        const double K = ends[at].K, part = at > 0 ? 0.5 : 1.0;
         gain(f, i, path, &start, &ends[at], points[at], x);
         carrying(x, NULL, gained);
-        slider_on(path, i, at, gained, at > 0 ? 0.5 : 1.0, &start, &ends[at], &s);
-    }
-    slide_all(2 * n, path->shift, &s, y);
-    for (int k = 0; k < 2; k++) {
-        double c[N_CHANGING] = {across}, loss;
-        for (int d = 0; d < 2; d++) {
-            c[C_FORCE + d] = path->force[d][2 * i + k];
-            c[C_MOVED + d] = moved[d][2 * i + k] = y[MOVED_FORCE + d][k];
-            c[C_SHIFT + d] = path->shift[d];
-            c[C_MIDDLE + d] = across ? y[MOVED_FORCE + d][2 + k] : 0.0;
-        }
-        c[C_FIRST] = start.K;
-        c[C_LAST] = ends[0].K;
-        c[C_SLIP] = y[MOVED_SLIP][k];
-        changing_loss(c, NULL, &loss);
-        const double *xx = &y[MOVED_TANGENT][k];
-        add(&(SliderSum){{y[0][k], y[1][k]},
-                         {xx[0], xx[AT_ONCE], xx[2 * AT_ONCE]},
-                         start.K == ends[0].K ? y[MOVED_LOSS][k] : loss},
-            shear);
+        double tried[2][2];
+        for (int d = 0; d < 2; d++)
+            for (int l = 0; l < 2; l++)
+                tried[d][l] = gained[0] * run->force[d][l] + gained[1] * (part * path->shift[d]);
+        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], way, gained[1] * (part * way[2]),
+                 start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
     }
 }
 
@@ -323,9 +376,9 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
     move_full(f, 2 * full, path, along, moved, work, shear);
     for (int i = full; i < touched; i++) {
         if (rests)
-            move_resting(f, i, path, along, moved, shear);
+            move_resting(f, i, path, along, moved, work, shear);
         else
-            move_range(f, i, path, &middle, moved, shear);
+            move_range(f, i, path, &middle, moved, work, shear);
     }
 }
 
@@ -445,11 +498,11 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
         const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
                             0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
         const double trial[] = {x[0], x[1], 1.0, K, u[0], u[1], after};
-        double y[3], dy[N_MOVED] = {K * du[0], K * du[1]};
+        double y[3], dy[N_SLID] = {K * du[0], K * du[1]};
         stick_plane(trial, NULL, y);
         if (y[2] > 0.0)
             slide_plane_seed(x, NULL, dy);
-        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[MOVED_LOSS]}, rate);
+        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[SLID_LOSS]}, rate);
     }
 }
 

@@ -45,24 +45,41 @@ typedef struct {
     bool onward;   /* for rates: sliders at their limits slip, as in a further motion */
 } PatchPath;
 
-/* Room for limits of sliders whose stiffness stays. */
-typedef struct {
-    double before[SLIDERS], after[SLIDERS];
-} Work;
-
 /* What the sliders of a patch give together, per area; a rate is its derivative along a seed. */
 typedef struct {
     double traction[2], tangent[3], loss; /* the tangent of a further motion */
 } Shear;
+
+/* Sliders of a patch that stand abreast: from the first at its limit on of ranges in contact, or both of a range; of
+ * one that changes with its stiffness before and after, and beside them the same half way where it is `across`. */
+typedef struct {
+    int at, n;
+    bool changes, across;
+    double K[2], shift[2];
+    const double *force[2];
+    double *moved[2];
+    Shear *shear;
+} Run;
+
+/* Sliders that may slip, of all patches, and the limits of those of a patch. */
+typedef struct {
+    Abreast abreast;
+    bool forces; /* alone, up to the next end */
+    int n;
+    Run runs[ABREAST / 2];
+    double before[SLIDERS], after[SLIDERS];
+} Work;
 
 /* Lay the heights around an approach; curve, energy, mu, ratio and offset are given. */
 void foundation_lay(Foundation *foundation, double reference);
 /* The search begins at a number of ranges that are near to be full. */
 Point foundation_point(const Foundation *foundation, double approach, int near);
 /* Carry the sliders along a path; `moved` are the forces after it, along x and y, of those that
- * touch on it; along y they are left out where the path is straight and the load rests. */
+ * touch on it; along y they are left out where the path is straight and the load rests. What slips is known after
+ * `foundations_end`. */
 void foundation_move(const Foundation *foundation, const PatchPath *path, double *const moved[2], Work *work,
                      Shear *shear);
+void foundations_end(Work *work);
 /* Stiffness of all sliders that touch at a point. */
 double foundation_stick(const Foundation *foundation, const Point *at);
 /* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */

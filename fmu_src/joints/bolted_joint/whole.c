@@ -58,6 +58,23 @@ static inline void add_scaled(double by, const double *restrict row, double *res
         sum[k] += by * row[k];
 }
 
+/* Add four rows with their weights. */
+static inline void add_four(const double *by, const double (*row)[WIDE], double *restrict sum)
+{
+    for (int k = 0; k < MODES; k++)
+        sum[k] += (by[0] * row[0][k] + by[1] * row[1][k]) + (by[2] * row[2][k] + by[3] * row[3][k]);
+}
+
+/* The same with so many. */
+static void add_rows(int n, const double *by, const double (*row)[WIDE], double *sum)
+{
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        add_four(by + i, row + i, sum);
+    for (; i < n; i++)
+        add_scaled(by[i], row[i], sum);
+}
+
 void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2])
 {
     if (!ELASTIC)
@@ -78,18 +95,18 @@ static inline void scale(double by, const double *restrict row, double *restrict
         scaled[k] = by * row[k];
 }
 
-/* The stiffness by normal motions beside the modes in `by_normal`, up to a size, of points and bolts. */
-static void press_all(Kind *kind, int size)
+/* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
+static void press_all(Kind *kind, int size, double (*by_normal)[WIDE])
 {
-    memset(kind->by_normal, 0, sizeof kind->by_normal);
+    memset(by_normal, 0, WIDE * sizeof *by_normal);
     for (int i = 0; i < (int)data.n_nodes; i++)
         scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
     dense_products((int)data.n_nodes, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->opening, size,
-                 kind->by_normal);
+                   by_normal);
     for (int b = 0; b < (int)data.n_bolts; b++)
         scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
     dense_products((int)data.n_bolts, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->stretch, size,
-                 kind->by_normal);
+                   by_normal);
 }
 
 /* The same by shear in `by_shear`, of patches with their tangents. */
@@ -107,13 +124,13 @@ static void shear_all(Kind *kind, int size, const double (*tangent)[3])
     }
 }
 
-/* The derivative by the amplitudes from `by_normal` and, where it is given, `by_shear`. */
-static void by_amplitudes(Kind *kind, const double (*shear)[WIDE])
+/* The derivative by the amplitudes from that by normal motions and, where it is given, by shear. */
+static void by_amplitudes(Kind *kind, const double (*normal)[WIDE], const double (*shear)[WIDE])
 {
     double(*a)[MODES] = kind->factors;
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++)
-            a[k][r] = a[r][k] = kind->by_normal[r][k] + (shear ? shear[r][k] : 0.0);
+            a[k][r] = a[r][k] = normal[r][k] + (shear ? shear[r][k] : 0.0);
         a[r][r] += kind->bodies[r];
     }
 }
@@ -135,13 +152,14 @@ static double residual(const Joint *joint, const double *inputs, const double *a
 {
     const Kind *kind = &joint->kind;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
+    double normal[MOST_OPENING], shear[2][MOST_PATCHES], bolts[MOST_STRETCH];
     for (int k = 0; k < MODES; k++)
         r[k] = kind->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
         const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
         const double moved = fabs(inputs[INPUT_S_REL_X + 2] + inputs[INPUT_THETA_X] * data.nodes[i][PLACE_Y] -
                                   inputs[INPUT_THETA_X + 1] * data.nodes[i][PLACE_X]);
-        add_scaled(-weight * (p - tight), kind->opening[i], r);
+        normal[i] = -weight * (p - tight);
         forces += weight * (p + tight);
         stiffness += weight * kind->k[i];
         apart = moved > apart ? moved : apart;
@@ -149,15 +167,18 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     for (int j = 0; j < (int)data.n_patches; j++) {
         const double weight = kind->area * data.patches[j][SHARE];
         for (int d = 0; d < 2; d++) {
-            add_scaled(weight * kind->traction[j][d], kind->patch[d][j], r);
-            forces += weight * fabs(kind->traction[j][d]);
+            shear[d][j] = weight * kind->traction[j][d];
+            forces += fabs(shear[d][j]);
         }
     }
     for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double force = kind->bolt * stretched(kind, b, inputs, amplitude);
-        add_scaled(force, kind->stretch[b], r);
-        forces += fabs(force);
+        bolts[b] = kind->bolt * stretched(kind, b, inputs, amplitude);
+        forces += fabs(bolts[b]);
     }
+    add_rows((int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
+    for (int d = 0; d < 2; d++)
+        add_rows((int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
+    add_rows((int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
@@ -167,8 +188,8 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
     Kind *kind = &joint->kind;
     double(*a)[MODES] = kind->factors;
     static const double units[3][3] = {{0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}};
-    press_all(kind, MODES);
-    by_amplitudes(kind, NULL);
+    press_all(kind, MODES, kind->by_normal);
+    by_amplitudes(kind, (const double(*)[WIDE])kind->by_normal, NULL);
     for (int j = 0; j < (int)data.n_patches; j++) {
         const double weight = kind->area * data.patches[j][SHARE];
         double rows[2][MODES] = {{0.0}};
@@ -178,38 +199,40 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
                 add_scaled(weight * slope.traction[d], kind->patch[c][j], rows[d]);
         }
         for (int d = 0; d < 2; d++)
-            for (int r = 0; r < MODES; r++)
-                add_scaled(kind->patch[d][j][r], rows[d], a[r]);
+            for (int k = 0; k < MODES; k++)
+                add_scaled(rows[d][k], kind->patch[d][j], a[k]);
     }
     dense_factor(kind->factors, kind->pivots);
 }
 
-/* The same at the last trial less how the normal force acts on friction, by differences. */
-static void jacobian(Joint *joint, const double *inputs, const double *memory)
+/* The same at the last trial less how the normal force acts on friction, by differences; the points are taken as
+ * they were before the way, where a way begins. */
+static void jacobian(Joint *joint, const double *inputs, const double *memory, bool begins)
 {
     Kind *kind = &joint->kind;
     double tangent[MOST_PATCHES][3], deepest = 0.0;
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    for (int j = 0; j < (int)data.n_patches; j++)
-        patch_tangent(joint, j, inputs, memory, WHOLE_DIFFERENCE * deepest, tangent[j]);
-    press_all(kind, MODES);
+    patch_tangents(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, tangent);
+    if (!begins)
+        press_all(kind, MODES, kind->by_normal);
     shear_all(kind, MODES, (const double(*)[3])tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
+    by_amplitudes(kind, (const double(*)[WIDE])(begins ? kind->begin.by_normal : kind->by_normal),
+                  (const double(*)[WIDE])kind->by_shear);
     dense_factor(kind->factors, kind->pivots);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
 static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
 {
-    press_all(kind, WIDE);
+    press_all(kind, WIDE, followed->by_normal);
     shear_all(kind, WIDE, tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
+    by_amplitudes(kind, (const double(*)[WIDE])followed->by_normal, (const double(*)[WIDE])kind->by_shear);
     dense_factor(kind->factors, kind->pivots);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
-        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
+        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : followed->by_normal[at];
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
@@ -276,11 +299,15 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
 typedef struct {
     const double *inputs, *memory;
     double *after, *x;
+    bool whole; /* the last trial gave sums and memory too */
 } Way;
 
-static bool try_at(Joint *joint, const Way *way, const double *at, const double *amplitude, Text *why)
+static bool try_at(Joint *joint, Way *way, const double *at, const double *amplitude, bool whole, Text *why)
 {
     deform(&joint->kind, amplitude);
+    way->whole = whole;
+    if (!whole)
+        return joint_forces(joint, at, way->memory, why);
     memset(way->x, 0, N_SUMS * sizeof *way->x);
     return joint_try(joint, at, way->memory, way->after, way->x, why);
 }
@@ -311,13 +338,13 @@ static void broyden(Kind *kind, int kept)
 }
 
 /* As `Whole._newton` of the package; where nothing is found with the residual that is missed. */
-static Newton newton(Joint *joint, const Way *way, double part, double *amplitude, double *missed, Text *why)
+static Newton newton(Joint *joint, Way *way, double part, double *amplitude, double *missed, Text *why)
 {
     Kind *kind = &joint->kind;
     const double close = part == 1.0 ? 1.0 : WHOLE_ROUGH;
     double at[N_INPUTS], r[MODES], least;
     place(way->inputs, way->memory, part, at);
-    if (!try_at(joint, way, at, amplitude, why))
+    if (!try_at(joint, way, at, amplitude, false, why))
         return REFUSED;
     least = residual(joint, at, amplitude, r);
     double before = 0.0;
@@ -330,9 +357,10 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
             if (far)
                 exact(joint, at, way->memory, NULL);
             else
-                jacobian(joint, at, way->memory);
+                jacobian(joint, at, way->memory, n == 0 && part == 1.0);
             kept = 0;
         }
+        const bool last = part == 1.0 && left < WHOLE_CHORD * before && left * left < before * least;
         before = left;
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
@@ -344,7 +372,7 @@ static Newton newton(Joint *joint, const Way *way, double part, double *amplitud
         for (int p = 0; p < NEWTON_PARTS; p++) {
             for (int k = 0; k < MODES; k++)
                 amplitude[k] = begin[k] + size * step[k];
-            if (!try_at(joint, way, at, amplitude, why))
+            if (!try_at(joint, way, at, amplitude, last, why))
                 return REFUSED;
             least = residual(joint, at, amplitude, r);
             const double rises = dot(r, step);
@@ -383,7 +411,7 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
     if (!ELASTIC)
         return false;
     Kind *kind = &joint->kind;
-    const Way way = {inputs, memory, after, x};
+    Way way = {inputs, memory, after, x, false};
     double done = 0.0, step = 1.0, missed = 0.0, amplitude[MODES], rate[MODES], trial[MODES];
     memcpy(amplitude, memory + AT_AMPLITUDE, sizeof amplitude);
     whole_deform(amplitude, kind, NULL, NULL, kind->bent_before);
@@ -412,6 +440,8 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
         done = part;
         step *= 2.0;
     }
+    if (!way.whole && !try_at(joint, &way, inputs, trial, true, why))
+        return false;
     for (int d = 0; d < 3; d++)
         after[AT_APART + d] = inputs[motion_of(2 + d)];
     memcpy(after + AT_AMPLITUDE, trial, sizeof trial);

@@ -20,12 +20,14 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx);
 void whole_bolt_rates(const Joint *joint, const double *inputs, const double *seed, double *result);
 
-/* In bolted_joint.c: the joint at given amplitudes, and derivatives of a patch's traction. */
+/* In bolted_joint.c: the joint at given amplitudes, its pressures and tractions alone, or pressures, and derivatives
+ * of a patch's traction. */
+bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why);
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
                  double rate, const double shift[2]);
-/* By differences: traction of the last trial over the shift at its end, xx, xy, yy. */
-void patch_tangent(Joint *joint, int j, const double *inputs, const double *memory, double step, double *tangent);
+/* By differences: tractions of the last trial over the shifts at its end, xx, xy, yy. */
+void patch_tangents(Joint *joint, const double *inputs, const double *memory, double step, double (*tangent)[3]);
 
 #endif

@@ -6,7 +6,7 @@
 enum { LANES = 4 };
 
 typedef struct {
-    double x[LANES], y[LANES], xx[LANES], xy[LANES], yy[LANES], loss[LANES];
+    double x[LANES], xx[LANES], yy[LANES], loss[LANES];
 } Lanes;
 
 static inline double sum_of(const double *lane)
@@ -16,9 +16,8 @@ static inline double sum_of(const double *lane)
 
 static inline SliderSum total(const Lanes *s)
 {
-    return (SliderSum){.force = {sum_of(s->x), sum_of(s->y)},
-                       .tangent = {sum_of(s->xx), sum_of(s->xy), sum_of(s->yy)},
-                       .loss = sum_of(s->loss)};
+    return (SliderSum){
+        .force = {sum_of(s->x)}, .tangent = {sum_of(s->xx), 0.0, sum_of(s->yy)}, .loss = sum_of(s->loss)};
 }
 
 /* The first pair of which one is at its limit or beyond. */
@@ -170,8 +169,6 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 /* In a plane */
 
-enum { P_FORCE, P_TANGENT = 2, P_LOSS = 5, N_PLANE = 7 }; /* results of slide_plane */
-
 static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
                                    const double *restrict q_x, const double *restrict q_y, double u, double v,
                                    double *restrict x, double *restrict y, double *restrict reaches)
@@ -186,79 +183,68 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
     }
 }
 
-/* What sliders at their limits give. */
-typedef struct {
-    double x[MOST_SLIDERS], y[MOST_SLIDERS], xx[MOST_SLIDERS], xy[MOST_SLIDERS], yy[MOST_SLIDERS], loss[MOST_SLIDERS];
-} Slipped;
-
-/* Which they are, with another one after the last: a processor takes two at once. */
-static inline int at_limit(int n, const double *reaches, int *at)
+int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2])
 {
-    int i = 0;
-    for (int k = 0; k < n; k++) {
-        at[i] = k;
-        i += reaches[k] > 0.0;
-    }
-    at[i] = n - 1;
-    return i;
-}
-
-static inline void slide_some(int n, const int *restrict at, const double *restrict K, const double *restrict per_K,
-                              const double *restrict before, const double *restrict after, const double *restrict q_x,
-                              const double *restrict q_y, double u, double v, Slipped *restrict to)
-{
-    const double shift[2] = {u, v};
-    double e[3];
-    direction(shift, NULL, e);
-    const double e_x = e[0], e_y = e[1], way = e[2];
-    for (int i = 0; i < n; i++) {
-        const int k = at[i];
-        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, e_x, e_y, way, before[k], after[k], K[k], per_K[k]};
-        double b[N_PLANE];
-        slide_plane(a, NULL, b);
-        to->x[i] = b[P_FORCE];
-        to->y[i] = b[P_FORCE + 1];
-        to->xx[i] = b[P_TANGENT] - K[k];
-        to->xy[i] = b[P_TANGENT + 1];
-        to->yy[i] = b[P_TANGENT + 2] - K[k];
-        to->loss[i] = b[P_LOSS];
-    }
-}
-
-static inline void add_forces(int n, const double *x, const double *y, Lanes *lanes)
-{
-    int i = 0;
-    for (; i + LANES <= n; i += LANES)
-        for (int l = 0; l < LANES; l++) {
-            lanes->x[l] += x[i + l];
-            lanes->y[l] += y[i + l];
-        }
-    for (; i < n; i++) {
-        lanes->x[i % 2] += x[i];
-        lanes->y[i % 2] += y[i];
-    }
-}
-
-void sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum)
-{
-    int at[MOST_SLIDERS + 1];
-    double reaches[MOST_SLIDERS];
-    Slipped to;
-    Lanes lanes = {.x = {0.0}};
+    double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0};
     stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
-    const int slip = n > 0 ? at_limit(n, reaches, at) : 0;
-    slide_some(slip + slip % 2, at, s->K, s->per_K, s->before, s->after, s->force[0], s->force[1], shift[0], shift[1], &to);
-    for (int i = 0; i < slip; i++) {
-        moved[0][at[i]] = to.x[i];
-        moved[1][at[i]] = to.y[i];
+    const int first = first_at_limit(reaches, n);
+    for (int k = 0; k < first; k += 2)
+        for (int l = 0; l < 2; l++) {
+            x[l] += moved[0][k + l];
+            y[l] += moved[1][k + l];
+        }
+    force[0] = x[0] + x[1];
+    force[1] = y[0] + y[1];
+    return first;
+}
+
+/* Four at a time, two pairs, as operations that follow one another take long. */
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers do not let it */
+#define ALL_FOUR _Pragma("clang loop vectorize_width(4)")
+#else
+#define ALL_FOUR
+#endif
+
+static inline void slide_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+{
+    for (int i = 0; i < n; i += LANES) {
+        ALL_FOUR
+        for (int k = i; k < i + LANES; k++) {
+            double x[N_SLIDER], y[N_SLID];
+            for (int r = 0; r < N_SLIDER; r++)
+                x[r] = given[r][k];
+            slide_plane(x, NULL, y);
+            for (int r = 0; r < N_SLID; r++)
+                found[r][k] = y[r];
+        }
     }
-    for (int i = 0; i < slip; i++) {
-        const int l = i % 2;
-        lanes.xx[l] += to.xx[i];
-        lanes.xy[l] += to.xy[i];
-        lanes.yy[l] += to.yy[i];
-        lanes.loss[l] += to.loss[i];
+}
+
+static inline void return_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+{
+    for (int i = 0; i < n; i += LANES) {
+        ALL_FOUR
+        for (int k = i; k < i + LANES; k++) {
+            double x[N_SLIDER], y[2];
+            for (int r = 0; r < N_SLIDER; r++)
+                x[r] = given[r][k];
+            return_plane(x, NULL, y);
+            for (int r = 0; r < 2; r++)
+                found[r][k] = y[r];
+        }
     }
-    add_forces(n, moved[0], moved[1], &lanes);
-    *sum = total(&lanes);
+}
+
+void sliders_slide(Abreast *abreast, bool forces)
+{
+    int n = abreast->n;
+    for (; n % LANES != 0; n++) /* none has hardly any limit */
+        for (int r = 0; r < N_SLIDER; r++)
+            abreast->given[r][n] = 0.0;
+    const double(*given)[ABREAST] = (const double(*)[ABREAST])abreast->given;
+    if (forces)
+        return_each(n, given, abreast->found);
+    else
+        slide_each(n, given, abreast->found);
 }

@@ -33,7 +33,19 @@ double sliders_heat(int n, const Sliders *s, double shift);
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
                        SliderSum *rate);
 
-/* In a plane; the tangents are less those of sliders that stick. */
-void sliders_plane(int n, const Sliders *s, const double shift[2], double *const moved[2], SliderSum *sum);
+/* In a plane the forces of those that stick, up to the first at its limit, which is returned, and their sum; beyond
+ * it those that they would have. */
+int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2]);
+
+/* Sliders that may slip, side by side whosever they are: arguments and results of `slide_plane`. */
+enum { ABREAST = 64, N_SLIDER = 11, SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };
+_Static_assert((int)ABREAST >= (int)MOST_SLIDERS, "those of one call");
+typedef struct {
+    int n;
+    double given[N_SLIDER][ABREAST], found[N_SLID][ABREAST];
+} Abreast;
+
+/* Fills what is found; of forces alone the others stay as they are. */
+void sliders_slide(Abreast *abreast, bool forces);
 
 #endif

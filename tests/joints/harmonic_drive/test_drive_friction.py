@@ -142,37 +142,6 @@ def test_one_share_is_both_unless_another_is_stated():
         assert all(float(found[0][0][name]) == float(found[1][0][name]) for name in found[0][0])
 
 
-@pytest.mark.slow  # many steps
-def test_input_work_is_stored_or_lost():
-    """All mechanisms but the viscous ones, along a smooth path of both flanges; trapezia of both torques."""
-    given = {"load_loss_back": 0.4, "hysteresis_loss": 2e-4, "lost_motion": 1e-4, "error_2": 1e-4}
-    law = spring(**DRY, **given, d=0.0, ratio=-80.0)
-    t = np.linspace(0.0, 6.0, 24001)
-    phi1, w1 = 0.3 * np.sin(3.0 * t), 0.9 * np.cos(3.0 * t)
-    wound = 1.2e-3 * np.sin(7.3 * t)
-    phi2 = phi1 / -80.0 + wound
-    memory, work, before = law.rest(), 0.0, None
-    for k in range(t.size):
-        out, memory = law.driven((phi1[k], w1[k], phi2[k], 0.0), memory)
-        now = np.array([phi1[k], phi2[k]]), np.array([out["tau1"], out["tau2"]], dtype=float)
-        if before is None:
-            begun = stored(law, memory, out)
-        else:
-            work -= float(np.sum(0.5 * (now[1] + before[1]) * (now[0] - before[0])))
-        before = now
-    lost = float(out["E_loss"])
-    assert lost > 0.1
-    assert work == pytest.approx(stored(law, memory, out) - begun + lost, abs=1e-5 * lost)  # steps squared
-
-
-def stored(law, memory, out):
-    """Energy [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
-    n = law.hysteresis.limit.size
-    parts = ((memory[:n], law.hysteresis.stiffness), (memory[n + 2 : -4], law.friction.stiffness))
-    sliders = sum(float(np.sum(force**2 / (2.0 * K))) for force, K in parts)
-    return float(law.curve.energy(abs(float(out["phi_rel"])))) + sliders
-
-
 # Motion
 
 

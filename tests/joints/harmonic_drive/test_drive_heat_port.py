@@ -53,8 +53,8 @@ def test_at_a_temperature_the_component_is_the_package(rumoca):
     expected = np.interp(times, fine, exact)
     # of the solver, and of the package's steps, as without a temperature
     assert np.abs(friction - expected).max() < 1e-5 * np.abs(expected).max()
-    cold = follow(law, lambda t: way(100.0, t), fine)[2]
-    assert np.abs(np.interp(times, fine, cold) - expected).max() > 0.2 * np.abs(expected).max()
+    cold = follow(law, lambda t: way(100.0, t), fine[::10])[2]
+    assert np.abs(np.interp(times, fine[::10], cold) - expected).max() > 0.2 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("ratio", [100.0, -80.0])
@@ -85,7 +85,7 @@ def test_all_losses_go_out_at_the_heat_port(rumoca, ratio):
     assert work == pytest.approx(stored - stored[0] + lost, abs=1e-5 * np.sum(np.abs(np.diff(work))))
     assert CAPACITY * (warmth - REFERENCE) == pytest.approx(lost, abs=1e-6 * lost[-1])
     memory, wet = law.rest(), 0.0
-    fine = np.linspace(0.0, stop, 22001)
+    fine = np.linspace(0.0, stop, 5501)
     for time, kelvin in zip(fine, np.interp(fine, times, warmth), strict=True):
         motion = way(ratio, time)
         out, memory = law.driven(motion, memory, kelvin)

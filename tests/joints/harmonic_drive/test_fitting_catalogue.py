@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, lines
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
@@ -71,7 +71,8 @@ def test_shipped_example_is_this_fit(tmp_path, monkeypatch, capsys):
 def test_fmu_passes_through_the_catalogue(tmp_path):
     from jointfmu_fmu_src.building import build
 
-    build(["HarmonicDriveCompliance"], ["fmi2"], load(SHIPPED), tmp_path)
+    with here_alone():
+        build(["HarmonicDriveCompliance"], ["fmi2"], load(SHIPPED), tmp_path)
     path = tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu"
     columns = ramp.run(path, "tau", 6.9, 0.1, {}).columns
     for T in (2.0, 6.9):

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from conftest import Fmu, made_once, run_host
+from conftest import Fmu, importable, made_once, run_host
 from fmpy import read_model_description
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.validation import validate_fmu
@@ -134,7 +134,7 @@ def test_fmpy_runs_a_system_of_both(arm: Path, expected: dict[str, float]) -> No
 
 
 def test_ecos_runs_a_system_of_both(arm: Path, tmp_path: Path, expected: dict[str, float]) -> None:
-    if run_host("import ecospy").returncode:
+    if not importable("ecospy"):
         pytest.skip("needs ecospy (in the extra 'test' on Linux x86_64) and Debian's libtbb12")
     out = tmp_path / "found.json"
     done = run_host(ECOS, arm, out, *(f"{alias}::phi_rel" for alias in FILES))

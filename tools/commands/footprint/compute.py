@@ -12,8 +12,9 @@ from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
+from ...fem import missing
 from ...fields.clamped import clamping
-from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly, without_fem
+from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
     from ...fem.bolted_contact import JointSolution
@@ -61,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         from ...fem.assembly import load as read
         from ...fem.symmetry import unlike_holes
     except ImportError as error:
-        raise without_fem(error) from None
+        raise missing("the finite-element analysis", error) from None
     assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
@@ -78,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         rows, solution = convergence.study(assembly, _law(file), args.preload, moment, levels)
     except (ImportError, OSError) as error:
-        raise without_fem(error) from None
+        raise missing("the finite-element analysis", error) from None
     written = _write(args, file, solution)
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)

@@ -46,14 +46,6 @@ def judge_assembly(
     return found.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
 
 
-def without_fem(error: Exception) -> ValueError:
-    """The refusal where a package, or a system library of gmsh, is missing."""
-    return ValueError(
-        f"finite elements need what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
-        "and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
-    )
-
-
 def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
     """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`.
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from jointfmu import plots
-from jointfmu.commands.common import IMPLIED, Commands, Parser, command, written
+from jointfmu.commands.common import IMPLIED, Commands, Parser, command, joint_name, written
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
@@ -61,7 +61,9 @@ def add(commands: Commands) -> None:
     find.add_argument(
         "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
     )
-    find.add_argument("--joint", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}")
+    find.add_argument(
+        "--joint", type=joint_name, choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
+    )
     laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
     find.add_argument(
         "--law",

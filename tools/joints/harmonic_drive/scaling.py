@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 Array = NDArray[np.float64]
 
@@ -89,8 +88,12 @@ def _mean(values: Sequence[float | None]) -> Scaled:
 
 def _predicted(design: Array, values: Array, at: Array) -> tuple[float, float]:
     """A linear law (k) through values (n) at a place, and half of the interval of a single value there."""
+    from scipy.special import (
+        stdtrit,  # slow to import, and commands need names of drives without their friction
+    )
+
     law = np.linalg.lstsq(design, values)[0]
     free = values.size - law.size
     rest = values - design @ law
     spread = np.sqrt(rest @ rest / free * (1.0 + at @ np.linalg.inv(design.T @ design) @ at))
-    return float(at @ law), float(stats.t.ppf(0.5 + 0.5 * LEVEL, free) * spread)
+    return float(at @ law), float(stdtrit(free, 0.5 + 0.5 * LEVEL) * spread)

@@ -19,6 +19,7 @@ from jointfmu.progress import step
 from jointfmu.quantity import flatten
 
 from ....drawing.vdi2230 import ClampedPart
+from ....fem import missing
 from . import ATTACHED
 
 if TYPE_CHECKING:
@@ -172,7 +173,4 @@ def _with_packages(what: str, run: Callable[[], T]) -> T:
     try:
         return run()
     except (ImportError, OSError) as error:
-        raise ValueError(
-            f"{what} needs what is missing here ({error}); install it with: "
-            "pip install 'jointfmu[fem]', and on Linux libglu1-mesa libxcursor1 libxft2 libxinerama1"
-        ) from None
+        raise missing(what, error) from None
