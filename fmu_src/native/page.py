@@ -10,6 +10,7 @@ from jinja2 import Template
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model, Spring
+from jointfmu.mechanics.steps import stable_steps
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields, problem
 from jointfmu.quantity.units import UNITS, display_unit
@@ -129,8 +130,8 @@ def _steps(
 ) -> _StableSteps | None:
     """Largest stable steps with a body on the joint, at the end of the ramp; None without motion as input.
 
-    A master that passes on the force before the body steps: 2 sqrt(J/K). One that steps all side by side with
-    `lag_b` = 1: (2 zeta)^(1/3) sqrt(J/K) = (d J)^(1/3)/K^(2/3), K the largest stiffness and d its damping.
+    By `stable_steps` of the largest stiffness and its damping, for a master that passes on the force before
+    the body steps, and for one that steps all side by side with `lag_b` = 1.
     """
     stiffnesses = [v for v in model.outputs if v.unit in _STIFFNESS]
     if not stiffnesses or not any(v.unit in ("rad/s", "m/s") for v in model.inputs):
@@ -142,11 +143,12 @@ def _steps(
     K, name = max((found[name], name) for name in (first, *axes))
     if not K > 0.0:
         return None
-    d = float(parameters.flat.get("d", found.get(name.replace("K", "C", 1), 0.0)))
-    rows = [
-        (J, _short(2.0 * (J / K) ** 0.5), _short((d * J) ** (1.0 / 3.0) / K ** (2.0 / 3.0)))
-        for J in _BODIES[_STIFFNESS[unit]]
-    ]
+    acts = parameters.flat.get("damping", True)
+    d = float(parameters.flat.get("d", found.get(name.replace("K", "C", 1), 0.0))) if acts else 0.0
+    rows = []
+    for J in _BODIES[_STIFFNESS[unit]]:
+        at_once, side_by_side = stable_steps(K, d, 1.0 / J)
+        rows.append((J, _short(float(at_once)), _short(float(side_by_side))))
     return _StableSteps(name, _short(K), unit, _STIFFNESS[unit], rows)
 
 

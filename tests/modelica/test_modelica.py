@@ -596,6 +596,7 @@ equation
   tau1 = tau/data.ratio;
   tau2 = -tau;
   K_WTS = 0; K_TS = 0; K_FTS = 0; K_TS_pair = 0; p_max = 0; E_loss = 0; tau_friction = 0; phi_error = 0;
+  step_at_once = 0; step_side_by_side = 0;
 end StandIn;
 """
 

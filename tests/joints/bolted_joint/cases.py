@@ -37,6 +37,7 @@ BOLTED = Case(
             "C_xx": "N.s/m", "C_yy": "N.s/m", "C_zz": "N.s/m", "eta_t": "1", "eta_n": "1",
             "K_rx": "N.m/rad", "K_ry": "N.m/rad", "K_rz": "N.m/rad", "p_mean": "Pa", "p_max": "Pa",
             "slip": "1", "E_loss": "J", "eta_loop": "1", "C_loop": "N.s/m",
+            "step_at_once": "s", "step_side_by_side": "s",
         },
         parameters={
             "surface.D": "1", "surface.G": "m", "surface.gamma": "1",
@@ -63,7 +64,8 @@ BOLTED = Case(
         good={"preload": 9e3},
         rest={"preload": 1e4},
         jumps=frozenset({"K_zz", "K_rx", "K_ry", "eta_loop", "C_loop"}),
-        kinks=frozenset({"f_x", "f_y", "m_z", "slip", "K_xx", "K_yy", "K_rz", "E_loss"}),  # of single sliders
+        kinks=frozenset({"f_x", "f_y", "m_z", "slip", "K_xx", "K_yy", "K_rz", "E_loss"})  # of single sliders
+        | {"step_at_once", "step_side_by_side"},  # the least of three
     ),
     tuning=Tuning(
         # off, they are zero

@@ -21,7 +21,10 @@ MESH = Case(
     name="GearMesh",
     description=Description(
         inputs={"phi1": "rad", "w1": "rad/s", "phi2": "rad", "w2": "rad/s"},
-        results={"tau1": "N.m", "tau2": "N.m", "s_rel": "m", "f": "N", "K": "N/m"},
+        results={
+            "tau1": "N.m", "tau2": "N.m", "s_rel": "m", "f": "N", "K": "N/m",
+            "step_at_once": "s", "step_side_by_side": "s",
+        },
         parameters={
             "surface1.D": "1", "surface1.G": "m", "surface2.D": "1", "surface2.G": "m",
             "surface.gamma": "1", "e": "1", "lambda": "1",
@@ -44,7 +47,7 @@ MESH = Case(
         rest={"phi1": 2e-3},  # beyond the backlash
     ),
     tuning=Tuning(
-        base={"rigid_flat": False},  # with a rigid flat the second body does not matter
+        base={"rigid_flat": False, "inertia1": 0.1},  # with a rigid flat the second body does not matter
         # the load decides the spots, A_0 where the table ends; the default wheels are spur ones
         moved={"teeth1": 30.0, "A_0": 1e-6, "overlap_ratio": 0.3},
         counted={"teeth1": (25, 33)},

@@ -44,6 +44,7 @@ ERROR = {
     "error_4": 3e-5,
     "error_4_phase": 2.0,
 }
+INERTIA = {"inertia1": 1e-4}
 BASE = {"eccentricity": 1e-5, "hysteresis_loss": 3e-4, "hysteresis_stiffness": 8e3, "lost_motion": 1e-4}
 """With all that is off by default, so that what it costs matters."""
 MOVED = {"load_loss_back": 0.3, "bearing.sigma_y": 0.8 * default("harmonic_drive").values.flexspline.sigma_y}
@@ -64,6 +65,8 @@ SPRING = Case(
             **STIFFNESS,
             "phi_error": "rad",
             "tau_friction": "N.m",
+            "step_at_once": "s",
+            "step_side_by_side": "s",
         },
         parameters=PARAMETERS | dict.fromkeys(ERROR, "rad") | UNITS,
         calibration=CALIBRATED,
@@ -81,7 +84,7 @@ SPRING = Case(
         good={"phi2": 6e-4},
     ),
     tuning=Tuning(
-        base=BASE | ERROR | FRICTION,
+        base=BASE | ERROR | FRICTION | INERTIA,
         moved=MOVED,
         without_effect=ELASTIC,
         tuned={"surface.D": 2.55, "ratio": 80.0, "d": 1.0, "flexspline.E": 1.9e11},

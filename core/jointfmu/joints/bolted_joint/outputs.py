@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...contact.laws import mindlin
+from ...mechanics.steps import STEPS, stable_steps
 from ...quantity import Number, where
 from .law import Bolted, shear_ratio
 
@@ -69,6 +70,12 @@ def outputs(
     pulled = [joint.bolt_stiffness * sums[name] for name in STRETCHES]
     f_x, f_y, m_z = (-area * sums[name] for name in ("traction_x", "traction_y", "torsion"))
     eta_loop = _ratio(sums["loop_work"], 2.0 * np.pi * sums["loop_energy"])
+    K = [area * sums["tangent_x"], area * sums["tangent_y"], area * sums["normal_stiffness"] + bolts]
+    damped = [where(joint.damping, part, 0.0 * part) for part in (C_t, C_t, C_n)]
+    steps = [stable_steps(k, c, 1.0 / joint.mass) for k, c in zip(K, damped, strict=True)]
+    shortest = {
+        name: np.minimum(np.minimum(x, y), z) for (name, _), x, y, z in zip(STEPS, *steps, strict=True)
+    }
     return {
         "f_x": f_x + viscous[0],
         "f_y": f_y + viscous[1],
@@ -76,9 +83,9 @@ def outputs(
         "m_x": area * (sums["normal_y"] - sums["tightened_y"]) + tension[1] + viscous[3] - pulled[2],
         "m_y": -area * (sums["normal_x"] - sums["tightened_x"]) + tension[2] + viscous[4] + pulled[1],
         "m_z": m_z + viscous[5],
-        "K_xx": area * sums["tangent_x"],
-        "K_yy": area * sums["tangent_y"],
-        "K_zz": area * sums["normal_stiffness"] + bolts,
+        "K_xx": K[0],
+        "K_yy": K[1],
+        "K_zz": K[2],
         "C_xx": C_t,
         "C_yy": C_t,
         "C_zz": C_n,
@@ -93,6 +100,7 @@ def outputs(
         "E_loss": area * sums["loss"],
         "eta_loop": eta_loop,
         "C_loop": mindlin.viscous_equivalent(eta_loop, joint.mass, rho * K_n),
+        **shortest,
     }
 
 

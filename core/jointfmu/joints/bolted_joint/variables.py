@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from ...mechanics.steps import STEPS
 from ...quantity import Number, where
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .contact import Place
@@ -106,6 +107,7 @@ MODELS = (
             Variable("E_loss", "J", "work turned into heat by friction since initialization", 1e-3),
             Variable("eta_loop", "1", "loss factor of the loop whose amplitude is the present shift"),
             Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e4),
+            *(Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4) for name, doc in STEPS),
         ),
         evaluate=_evaluate,
         rest=BoltedJointSpring.at_rest,
@@ -131,6 +133,7 @@ MODELS = (
             "m_z": (*_PLACE, "v_rel_x", "v_rel_y", "omega_z"),
             **dict.fromkeys(("f_z", "m_x", "m_y"), (*_PLACE, "v_rel_z", "omega_x", "omega_y")),
             **dict.fromkeys(("K_xx", "K_yy", "K_rz", "slip", "E_loss", "eta_loop", "C_loop"), _PLACE),
+            **{name: _PLACE for name, _ in STEPS},
             **dict.fromkeys(("K_zz", "K_rx", "K_ry"), _PLACE),
             "eta_t": (),
             **dict.fromkeys(("C_xx", "C_yy", "C_zz", "eta_n", "p_mean", "p_max"), _APART),

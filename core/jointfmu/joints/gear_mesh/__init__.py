@@ -1,5 +1,6 @@
 """Gear mesh: tooth pairs with rough flanks (Yu 2022) and bending teeth between two wheels."""
 
+from ...mechanics.steps import STEPS
 from ..kind import Kind, RoughSurface
 from ..model import BEYOND, Model, Outside, Ramp, Variable
 from .spring import GearMesh, GearMeshSpring, RoughGearMesh
@@ -27,11 +28,12 @@ MODELS = (
             Variable("K", "N/m", "stiffness df/ds_rel at the present phase of the mesh cycle", 1e8),
             Variable("pairs", "1", "tooth pairs in contact at the present phase, once flanks touch"),
             Variable("E", "J", "elastic energy of the mesh", 1e-2),
+            *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K, d", 1e-3) for name, doc in STEPS),
         ),
         evaluate=lambda s, v: s.motion(v["phi1"], v["w1"], v["phi2"], v["w2"]),
         outside=(Outside("s_rel", lambda j, end, v: (-end[0], end[0]), BEYOND),),
         ramp=Ramp("phi1", 1.5e-3, 5e-6),
-        dependencies=dict.fromkeys(("s_rel", "K", "pairs", "E"), _ANGLES),
+        dependencies=dict.fromkeys(("s_rel", "K", "pairs", "E", *(name for name, _ in STEPS)), _ANGLES),
         hidden=("mu", "traction_ratio"),
     ),
 )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...contact.laws.roughness import Roughness
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, approach_curve, assemble, refined
+from ...mechanics.steps import mobility, stable_steps
 from ...quantity import Number, quantity, smooth_step, smooth_step_integral, smooth_step_slopes
 
 Array = NDArray[np.float64]
@@ -38,6 +39,12 @@ class Wheels:
     d: float = quantity("N.s/m", "damping along the line of action while the flanks touch", ge=0.0)
     overlap_ratio: float = quantity(
         "1", "face width over the axial pitch of a helical mesh, 0 of a spur one", ge=0.0, default=0.0
+    )
+    inertia1: float = quantity(
+        "kg.m2", "of wheel 1 with all on it, for the stable steps alone; 0: held", ge=0.0, default=0.0
+    )
+    inertia2: float = quantity(
+        "kg.m2", "of wheel 2 with all on it, for the stable steps alone; 0: held", ge=0.0, default=1.0
     )
 
 
@@ -171,6 +178,8 @@ def torques(
     count, slope = pairs(mesh.contact_ratio, mesh.engagement, mesh.overlap_ratio, phase(mesh, motion))
     touching = smooth_step(np.abs(s) / closing)
     force = count * load * np.sign(s) + mesh.d * touching * (mesh.r_b1 * w1 + mesh.r_b2 * w2)
+    w = mobility(mesh.inertia1, mesh.r_b1) + mobility(mesh.inertia2, mesh.r_b2)
+    at_once, side_by_side = stable_steps(count * stiffness, mesh.d * touching, w)
     change = 0.5 * slope * energy / base_pitch(mesh)  # -dU along the rolling, per way of one base circle
     return {
         "tau1": 0.0 - mesh.r_b1 * (force + change),
@@ -180,6 +189,8 @@ def torques(
         "K": count * stiffness,
         "pairs": count,
         "E": count * energy,
+        "step_at_once": at_once,
+        "step_side_by_side": side_by_side,
     }
 
 

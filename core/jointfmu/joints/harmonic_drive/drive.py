@@ -69,6 +69,15 @@ class Drive(ABC):
         le=MOST_COEFFICIENT,
         default=0.0,
     )
+    inertia1: float = quantity(
+        "kg.m2",
+        "of the motor on the wave generator, for the stable steps alone; 0: held",
+        ge=0.0,
+        default=0.0,
+    )
+    inertia2: float = quantity(
+        "kg.m2", "of the body on the output, for the stable steps alone; 0: held", ge=0.0, default=1.0
+    )
     error_1: float = quantity(
         "rad",
         "kinematic error at the output, amplitude, one period per turn of the wave generator",

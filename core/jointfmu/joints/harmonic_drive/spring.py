@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...mechanics.curve import Curve, assemble, refined
+from ...mechanics.steps import mobility, stable_steps
 from ...quantity import Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive
@@ -178,6 +179,8 @@ def exported(
     but for the loss.
     """
     tau, friction = transmitted(drive, motion, state), dry + viscous(drive, motion[1], temperature)
+    w = mobility(drive.inertia1, 1.0 / drive.ratio) + mobility(drive.inertia2)
+    at_once, side_by_side = stable_steps(state.stiffness, drive.d, w)
     return {
         "tau1": tau / drive.ratio + state.slope * tau - friction,
         "tau2": -tau,
@@ -186,6 +189,8 @@ def exported(
         **parts(drive, state.load, state.stiffness),
         "tau_friction": friction,
         "phi_error": state.error,
+        "step_at_once": at_once,
+        "step_side_by_side": side_by_side,
     }
 
 

@@ -1,5 +1,6 @@
 """Inputs and outputs of the harmonic drive's models."""
 
+from ...mechanics.steps import STEPS
 from ...quantity.units import LUBRICANTS
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
 from .friction import REFERENCE
@@ -34,7 +35,7 @@ _FRICTION = (
     "load_loss_back",
 )
 _WARM = ("temperature_factor", "viscous_temperature_coefficient", "dry_temperature_coefficient")
-_SPRING_ONLY = (*_FRICTION, "presliding", *_WARM, *_ERROR)
+_SPRING_ONLY = (*_FRICTION, "presliding", *_WARM, *_ERROR, "inertia1", "inertia2")
 
 
 def _driven(v: Values) -> tuple[float, ...]:
@@ -70,6 +71,7 @@ MODELS = (
                 "tau_friction", "N.m", "friction of the wave generator, positive where it turns so", 0.01
             ),
             Variable("phi_error", "rad", "kinematic error at the output, a function of phi1", 1e-4),
+            *(Variable(name, "s", f"{doc}: with inertia1, inertia2, K_WTS, d", 1e-3) for name, doc in STEPS),
         ),
         evaluate=lambda s, v: s.motion(*_driven(v), v["temperature"]),
         rest=lambda s: s.rest(),
@@ -89,6 +91,7 @@ MODELS = (
             "K_FTS": (),
             "K_TS_pair": _MOTION,
             "p_max": _MOTION,
+            **{name: _MOTION for name, _ in STEPS},
             "phi_error": ("phi1",),
         },
         linear={

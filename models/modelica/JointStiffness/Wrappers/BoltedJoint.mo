@@ -58,7 +58,7 @@ equation
   connect(adaptor_flange_y.pder, fmu.v_rel_y)
     annotation (Line(points={{77,50},{26.5,50},{26.5,1.2},{-24,1.2}}, color={0,0,127}));
   connect(fmu.f_y, reaction_flange_y.u)
-    annotation (Line(points={{22,15.6},{30.5,15.6},{30.5,20},{39,20}}, color={0,0,127}));
+    annotation (Line(points={{22,15.8},{30.5,15.8},{30.5,20},{39,20}}, color={0,0,127}));
   connect(reaction_flange_y.y, adaptor_flange_y.f)
     annotation (Line(points={{50.5,20},{63.75,20},{63.75,37},{77,37}}, color={0,0,127}));
   connect(flange_z, adaptor_flange_z.flange)
@@ -68,7 +68,7 @@ equation
   connect(adaptor_flange_z.pder, fmu.v_rel_z)
     annotation (Line(points={{77,20},{26.5,20},{26.5,-1.2},{-24,-1.2}}, color={0,0,127}));
   connect(fmu.f_z, reaction_flange_z.u)
-    annotation (Line(points={{22,14},{30.5,14},{30.5,-10},{39,-10}}, color={0,0,127}));
+    annotation (Line(points={{22,14.4},{30.5,14.4},{30.5,-10},{39,-10}}, color={0,0,127}));
   connect(reaction_flange_z.y, adaptor_flange_z.f)
     annotation (Line(points={{50.5,-10},{63.75,-10},{63.75,7},{77,7}}, color={0,0,127}));
   connect(flange_turn_x, adaptor_flange_turn_x.flange)
@@ -78,7 +78,7 @@ equation
   connect(adaptor_flange_turn_x.pder, fmu.omega_x)
     annotation (Line(points={{77,-10},{26.5,-10},{26.5,-11.6},{-24,-11.6}}, color={0,0,127}));
   connect(fmu.m_x, reaction_flange_turn_x.u)
-    annotation (Line(points={{22,12.6},{30.5,12.6},{30.5,-40},{39,-40}}, color={0,0,127}));
+    annotation (Line(points={{22,13},{30.5,13},{30.5,-40},{39,-40}}, color={0,0,127}));
   connect(reaction_flange_turn_x.y, adaptor_flange_turn_x.f)
     annotation (Line(points={{50.5,-40},{63.75,-40},{63.75,-23},{77,-23}}, color={0,0,127}));
   connect(flange_turn_y, adaptor_flange_turn_y.flange)
@@ -88,7 +88,7 @@ equation
   connect(adaptor_flange_turn_y.pder, fmu.omega_y)
     annotation (Line(points={{77,-40},{26.5,-40},{26.5,-14.2},{-24,-14.2}}, color={0,0,127}));
   connect(fmu.m_y, reaction_flange_turn_y.u)
-    annotation (Line(points={{22,11},{30.5,11},{30.5,-70},{39,-70}}, color={0,0,127}));
+    annotation (Line(points={{22,11.6},{30.5,11.6},{30.5,-70},{39,-70}}, color={0,0,127}));
   connect(reaction_flange_turn_y.y, adaptor_flange_turn_y.f)
     annotation (Line(points={{50.5,-70},{63.75,-70},{63.75,-53},{77,-53}}, color={0,0,127}));
   connect(flange_turn_z, adaptor_flange_turn_z.flange)
@@ -98,7 +98,7 @@ equation
   connect(adaptor_flange_turn_z.pder, fmu.omega_z)
     annotation (Line(points={{77,-70},{26.5,-70},{26.5,-16.8},{-24,-16.8}}, color={0,0,127}));
   connect(fmu.m_z, reaction_flange_turn_z.u)
-    annotation (Line(points={{22,9.4},{30.5,9.4},{30.5,-100},{39,-100}}, color={0,0,127}));
+    annotation (Line(points={{22,10},{30.5,10},{30.5,-100},{39,-100}}, color={0,0,127}));
   connect(reaction_flange_turn_z.y, adaptor_flange_turn_z.f)
     annotation (Line(points={{50.5,-100},{63.75,-100},{63.75,-83},{77,-83}}, color={0,0,127}));
   fmu.preload = preload;

@@ -16,8 +16,8 @@ from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint
 from ....modelica.tables import thinned
 from ....modelica.text import identifier, matrix, number
 
-_SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion")
-"""Parameters of the drive that are in the record's sliders and table."""
+_SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
+"""Parameters of the drive that are in the record's sliders and table, or of what only the FMU gives."""
 _OWN = tuple(name for name, _ in flat_fields(Drive) if name not in _SPRING)
 """Parameters of the drive that the component has too."""
 
