@@ -206,13 +206,13 @@ def test_the_sources_of_parameters_can_be_built_from(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_it_is_small(name: str) -> None:
-    """Packed it is below 47 kB, a tenth of an FMU; unpacked below 110 kB."""
+    """Packed it is below 50 kB, a tenth of an FMU; unpacked below 120 kB."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for path, content in members(name).items():
             archive.writestr(path, content)
-    assert file.tell() < 47e3
-    assert sum(map(len, members(name).values())) < 110e3
+    assert file.tell() < 50e3
+    assert sum(map(len, members(name).values())) < 120e3
 
 
 @pytest.mark.parametrize("name", EVERY)
