@@ -10,7 +10,7 @@ from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
-from ..fem import missing
+from ..fem import installed
 from ..fields.clamped import clamping
 from .footprint.finite_elements import (
     assembly_arguments,
@@ -45,24 +45,20 @@ def add(commands: Commands) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
-    try:
+    with installed("the finite-element analysis"):
         from ..fem import assembly_modes, shapes
         from ..fem.assembly import load
         from ..fem.bolted_contact import BoltedContact
-    except ImportError as error:
-        raise missing("the finite-element analysis", error) from None
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)
     file = with_assembly(joint_file(args.params), assembly, whole=False)
     law, shear = approach_curve(file.values), float(clamping(file.joint).shear_ratio(file.values))
-    try:
+    with installed("the finite-element analysis"):
         contact = BoltedContact.of(assembly, args.refinement)
         solution = contact.solve(law, args.preload, args.moment)
         modes = assembly_modes.computed(solution, shear, args.count)
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
-    except (ImportError, OSError) as error:
-        raise missing("the finite-element analysis", error) from None
     if args.vtu:
         write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
     found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from jointfmu.commands.common import Commands, command
 from jointfmu.published import validation
 
-from ..fem import missing
+from ..fem import installed
 from ..fem.validation import natural_frequencies
 
 
@@ -24,10 +24,8 @@ def add(commands: Commands) -> None:
 def _validate(args: argparse.Namespace) -> int:
     rows = validation.validate()
     if args.frequencies:
-        try:
+        with installed("the finite-element analysis"):
             rows += natural_frequencies()
-        except (ImportError, OSError) as error:
-            raise missing("the finite-element analysis", error) from None
     misses = validation.missed(rows)
     if args.json:
         counts = asdict(validation.counts(rows))

@@ -1,9 +1,16 @@
 """Finite elements: the contact of two bolted bodies and the modes of the assembly."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 
-def missing(what: str, error: Exception) -> ValueError:
-    """The refusal where a package, or a system library of gmsh, is missing for what they should do."""
-    return ValueError(
-        f"{what} needs what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
-        "and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
-    )
+
+@contextmanager
+def installed(what: str) -> Iterator[None]:
+    """ValueError, one line, where a package, or a system library of gmsh, is missing inside."""
+    try:
+        yield
+    except (ImportError, OSError) as error:
+        raise ValueError(
+            f"{what} needs what is missing here ({error}); install it with: pip install 'jointfmu[fem]', "
+            "and on Linux libglu1-mesa libgl1 libgomp1 libxcursor1 libxft2 libxinerama1"
+        ) from None

@@ -12,7 +12,7 @@ from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
-from ...fem import missing
+from ...fem import installed
 from ...fields.clamped import clamping
 from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
 
@@ -57,12 +57,10 @@ def add(commands: Commands) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
-    try:
+    with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
         from ...fem.symmetry import unlike_holes
-    except ImportError as error:
-        raise missing("the finite-element analysis", error) from None
     assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
@@ -76,10 +74,8 @@ def run(args: argparse.Namespace) -> int:
         results.check(args.field)
     file = with_assembly(file, assembly, whole=args.out is not None)
     levels = convergence.refinements(args.refine, args.refinement)
-    try:
+    with installed("the finite-element analysis"):
         rows, solution = convergence.study(assembly, _law(file), args.preload, moment, levels)
-    except (ImportError, OSError) as error:
-        raise missing("the finite-element analysis", error) from None
     written = _write(args, file, solution)
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from jointfmu.progress import step
 from jointfmu.quantity import flatten
 
 from ....drawing.vdi2230 import ClampedPart
-from ....fem import missing
+from ....fem import installed
 from . import ATTACHED
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from ....fem.whole_joint import WholeJoint
 
 Array = NDArray[np.float64]
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,15 +72,13 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
 
-    def solved() -> ParameterFile:
+    with installed("--field computed"):
         from ....fem.bolted_contact import BoltedContact
         from ....fem.joint_file import with_solution
 
         step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
-        return with_solution(file, solution, plates.tension)
-
-    return _with_packages("--field computed", solved)
+    return with_solution(file, solution, plates.tension)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +102,7 @@ def whole_of(
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
 
-    def solved() -> ComputedJoint:
+    with installed("the whole joint"):
         from ....fem.elastic_sides import elastic_bodies
         from ....fem.whole_joint import WholeJoint
 
@@ -121,9 +118,8 @@ def whole_of(
             head_diameter=clamped.bolts.head_diameter,
             thread_depth=getattr(clamped.side2, "depth", 0.0),
         )
-        return ComputedJoint(linear.compliances(), with_bodies(file, bodies, attached))
-
-    return _with_packages("the whole joint", solved)
+        compliances = linear.compliances()
+    return ComputedJoint(compliances, with_bodies(file, bodies, attached))
 
 
 def _check_thickness(assembly: "Assembly") -> None:
@@ -166,11 +162,3 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
     here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
     ratio = float(shear_ratio(values))
     return np.stack([ratio * here, ratio * here, here], axis=1)
-
-
-def _with_packages(what: str, run: Callable[[], T]) -> T:
-    """Run; ValueError, one line, where a package or library of the finite elements is missing."""
-    try:
-        return run()
-    except (ImportError, OSError) as error:
-        raise missing(what, error) from None
