@@ -31,6 +31,7 @@ TARGETS = {"plain": 1.5, "plain, no friction": 1.5, "plugin": 2.5}
 def models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
     """The arm in all three forms."""
     spec = elastic.read(ROBOT)
+    spec.option.timestep = STEP
     for actuator in [*spec.actuators]:
         spec.delete(actuator)
     stated = {} if hysteresis is None else {"hysteresis": hysteresis}
@@ -41,17 +42,15 @@ def models(folder: Path, hysteresis: float | None) -> dict[str, mujoco.MjModel]:
     rough, smooth = spec.copy(), elastic.with_drives(spec, axes)
     for axis in axes:
         rough.joint(axis.joint).frictionloss = axis.drive.dry * abs(axis.drive.ratio)
-        smooth.joint(axis.joint + elastic.MOTOR).frictionloss = 0.0
-    made = {
+    for actuator in [*smooth.actuators]:
+        smooth.delete(actuator)
+    return {
         "rigid": spec.compile(),
         "rigid, friction": rough.compile(),
         "plain": elastic.with_drives(spec, axes).compile(),
         "plain, no friction": smooth.compile(),
         "plugin": mujoco.MjModel.from_xml_string(plugged.text(spec, axes, files)),
     }
-    for model in made.values():
-        model.opt.timestep = STEP
-    return made
 
 
 def states(model: mujoco.MjModel) -> np.ndarray:

@@ -103,14 +103,33 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     said, model = exported(capsys, "d.toml")
     lacks = " ".join(said["lacks"])
     assert "friction that grows with the load: at rated torque" in lacks
-    assert "presliding" in lacks
     text = (folder / "drive.xml").read_text()
     assert "it cannot carry:" in text
     assert all(line in text for line in said["lacks"])
-    motor = model.joint("motor").dofadr[0]
-    values = jointfmu.load("d.toml").values
-    assert model.dof_frictionloss[motor] == pytest.approx(values["friction_coulomb"], rel=1e-8)
-    assert model.dof_damping[motor] == pytest.approx(values["friction_viscous"], rel=1e-8)
+    assert "the temperature of the lubricant" in lacks
+
+
+@pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])
+def test_friction_of_the_motor_is_the_fmus(speed, since, folder, capsys):
+    """The motor led from rest without load: presliding where it is slow, as the bristles are damped, then
+    Stribeck's fall and viscous friction.
+    """
+    drive = jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75)
+    coulomb = drive.values["friction_coulomb"]
+    drive = drive.with_values(friction_stribeck=0.5 * coulomb)
+    drive.save("d.toml")
+    _, model = exported(capsys, "d.toml")
+    data, motor = mujoco.MjData(model), model.joint("motor").dofadr[0]
+    model.dof_armature[:], model.opt.timestep = 1e12, 1e-5 / speed
+    data.qvel[:] = speed, speed / drive.values["ratio"]
+    spring, (_, memory) = drive.spring, drive.spring.driven((0.0, 0.0, 0.0, 0.0), drive.spring.rest())
+    for step in range(1, 5001):
+        mujoco.mj_step(model, data)
+        x = data.qpos[motor]
+        if step % 50 == 0 and x > since:
+            out, memory = spring.driven((x, speed, x / -100.0, speed / -100.0), memory)
+            found = model.dof_damping[motor] * speed - data.actuator_force[1]
+            assert found == pytest.approx(float(out["tau_friction"]), abs=0.02 * 1.5 * coulomb)
 
 
 def test_urdf_says_what_it_misses_and_mujoco_reads_the_rest(folder, capsys):

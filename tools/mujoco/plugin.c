@@ -2,7 +2,8 @@
  * further inputs stay at their start.
  *
  * Compiled with the C sources of an FMU. Each plugin instance has an instance of the FMU; its path lies in
- * MuJoCo's plugin state (before, after, inputs, accepted), so that mjData can be copied, saved and set. */
+ * MuJoCo's plugin state (before, after, inputs, accepted), so that mjData can be copied, saved and set. Memory
+ * that the parameters leave unused, as that of a hysteresis that is off, has no place there. */
 #include <mujoco/mujoco.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,12 +14,13 @@
 #include "values.h"
 
 enum { PHI1, W1, PHI2, W2 };
-enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_INPUTS + 1 : 0 };
+enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_PATH + 1 : 0 }; /* at most */
 _Static_assert(N_INPUTS > W2 && N_OUTPUTS >= 2 && !MOVES, "a joint between two flanges");
 
 typedef struct {
     Instance *instance;
     int joints[2];
+    int unused; /* of the memory, its first numbers */
     bool known;              /* the instance stands where it was evaluated last, with this path before it: */
     mjtNum state[PATH + 1];  /* one more, for C */
     char why[sizeof((Text *)0)->line]; /* of the last refusal */
@@ -38,11 +40,11 @@ static void deliver(const Reporter *to, const char *name, Status status, const c
 
 /* Configuration: joints for phi1 and phi2, and parameters by name */
 
-static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *key, int *joint)
+static bool find_joint(Coupling *c, const mjModel *m, int instance, const char *key, bool slides, int *joint)
 {
     const char *name = mj_getPluginConfig(m, instance, key);
     *joint = name && *name ? mj_name2id(m, mjOBJ_JOINT, name) : -1;
-    if (*joint >= 0 && m->jnt_type[*joint] == mjJNT_HINGE)
+    if (*joint >= 0 && (m->jnt_type[*joint] == mjJNT_HINGE || (slides && m->jnt_type[*joint] == mjJNT_SLIDE)))
         return true;
     snprintf(c->why, sizeof c->why, "%s = '%.80s' is no hinge joint; expected the name of one", key,
              name ? name : "");
@@ -67,10 +69,8 @@ static bool set_parameter(Coupling *c, const char *text, uint32_t ref)
     return right;
 }
 
-static bool configure(Coupling *c, const mjModel *m, int instance)
+static bool set_parameters(Coupling *c, const mjModel *m, int instance)
 {
-    if (!find_joint(c, m, instance, "phi1", &c->joints[0]) || !find_joint(c, m, instance, "phi2", &c->joints[1]))
-        return false;
     for (uint32_t ref = FIRST_PARAMETER; ref < N_VALUES; ref++) {
         const char *text = mj_getPluginConfig(m, instance, variables[ref].name);
         if (text && *text && !set_parameter(c, text, ref))
@@ -89,22 +89,31 @@ static void free_coupling(Coupling *c)
     free(c);
 }
 
-static int init(const mjModel *m, mjData *d, int instance)
+static Coupling *new_coupling(const char *name)
 {
-    const char *name = mj_id2name(m, mjOBJ_PLUGIN, instance);
     Coupling *c = calloc(1, sizeof *c);
     if (!c)
-        return -1;
+        return NULL;
     const Reporter reporter = {deliver, NULL, c};
-    c->instance =
-        instance_new("init", 3, MODEL_EXCHANGE, name && *name ? name : data.name, data.token, false, reporter);
-    if (!c->instance || !configure(c, m, instance)) {
+    c->instance = instance_new("init", 3, MODEL_EXCHANGE, name, data.token, false, reporter);
+    return c;
+}
+
+static int init(const mjModel *m, mjData *d, int instance)
+{
+    const char *given = mj_id2name(m, mjOBJ_PLUGIN, instance), *name = given && *given ? given : data.name;
+    Coupling *c = new_coupling(name);
+    if (!c)
+        return -1;
+    if (!c->instance || !find_joint(c, m, instance, "phi1", true, &c->joints[0]) ||
+        !find_joint(c, m, instance, "phi2", false, &c->joints[1]) || !set_parameters(c, m, instance)) {
         char why[sizeof c->why];
         memcpy(why, c->why, sizeof why);
         free_coupling(c);
-        mju_error("%s: %s", name && *name ? name : data.name, why);
+        mju_error("%s: %s", name, why);
         return -1;
     }
+    c->unused = (PATH - m->plugin_statenum[instance]) / 2;
     d->plugin_data[instance] = (uintptr_t)c;
     return 0;
 }
@@ -117,37 +126,57 @@ static void destroy(mjData *d, int instance)
 
 /* The path of the inputs */
 
+/* How many numbers at the begin of the memory a first small motion leaves zero: what acts moves from there on. A
+ * parameter that is refused is so again where the data are made. */
+static int unused(Coupling *c, const mjModel *m, int instance)
+{
+    int n = 0;
+    if (!c->instance || !set_parameters(c, m, instance))
+        return 0;
+    c->instance->now.values[FIRST_INPUT + PHI1] = 1e-6;
+    c->instance->dirty = true;
+    if (instance_evaluate(c->instance) != OK)
+        return 0;
+    while (n < N_MEMORY && c->instance->tried[n] == 0.0)
+        n++;
+    return n;
+}
+
 static int nstate(const mjModel *m, int instance)
 {
-    (void)m, (void)instance;
-    return PATH;
+    Coupling *c = PATH ? new_coupling(data.name) : NULL;
+    const int n = c ? PATH - 2 * unused(c, m, instance) : PATH;
+    free_coupling(c);
+    return n;
 }
 
 static void reset(const mjModel *m, mjtNum *state, void *coupling, int instance)
 {
-    (void)m, (void)coupling, (void)instance;
-    for (int i = 0; i < PATH; i++)
+    (void)coupling;
+    for (int i = 0; i < m->plugin_statenum[instance]; i++)
         state[i] = 0.0;
 }
 
 #if N_MEMORY
-static void read_path(Instance *m, const mjtNum *state)
+static void read_path(const Coupling *c, const mjtNum *state)
 {
-    Path *path = &m->now.path;
-    memcpy(path->memory[0], state, N_MEMORY * sizeof *state);
-    memcpy(path->memory[1], state + N_MEMORY, N_MEMORY * sizeof *state);
-    memcpy(path->knowns, state + 2 * N_MEMORY, sizeof path->knowns);
-    path->accepted = state[PATH - 1] != 0.0;
+    Path *path = &c->instance->now.path;
+    const size_t n = N_MEMORY - c->unused;
+    memcpy(path->memory[0] + c->unused, state, n * sizeof *state);
+    memcpy(path->memory[1] + c->unused, state + n, n * sizeof *state);
+    memcpy(path->knowns, state + 2 * n, sizeof path->knowns);
+    path->accepted = state[2 * n + N_PATH] != 0.0;
     path->last = 1;
 }
 
-static void write_path(const Instance *m, mjtNum *state)
+static void write_path(const Coupling *c, mjtNum *state)
 {
-    const Path *path = &m->now.path;
-    memcpy(state, path->memory[1u - path->last], N_MEMORY * sizeof *state);
-    memcpy(state + N_MEMORY, path->memory[path->last], N_MEMORY * sizeof *state);
-    memcpy(state + 2 * N_MEMORY, path->knowns, sizeof path->knowns);
-    state[PATH - 1] = path->accepted;
+    const Path *path = &c->instance->now.path;
+    const size_t n = N_MEMORY - c->unused;
+    memcpy(state, path->memory[1u - path->last] + c->unused, n * sizeof *state);
+    memcpy(state + n, path->memory[path->last] + c->unused, n * sizeof *state);
+    memcpy(state + 2 * n, path->knowns, sizeof path->knowns);
+    state[2 * n + N_PATH] = path->accepted;
 }
 #endif
 
@@ -159,29 +188,30 @@ static const double *evaluate(const mjModel *m, mjData *d, int instance, bool ac
     Coupling *c = (Coupling *)d->plugin_data[instance];
     Instance *fmu = c->instance;
     mjtNum *state = PATH ? d->plugin_state + m->plugin_stateadr[instance] : c->state;
+    const size_t size = m->plugin_statenum[instance] * sizeof *state;
     double inputs[4];
     for (int i = 0; i < 2; i++) {
         inputs[2 * i] = d->qpos[m->jnt_qposadr[c->joints[i]]];
         inputs[2 * i + 1] = d->qvel[m->jnt_dofadr[c->joints[i]]];
     }
     const bool same = c->known && !memcmp(inputs, fmu->now.values + FIRST_INPUT, sizeof inputs) &&
-                      !memcmp(c->state, state, PATH * sizeof *state);
+                      !memcmp(c->state, state, size);
     if (same && !accept)
         return fmu->now.values + FIRST_OUTPUT;
     c->known = false;
     memcpy(fmu->now.values + FIRST_INPUT, inputs, sizeof inputs);
     fmu->dirty = true;
 #if N_MEMORY
-    read_path(fmu, state);
+    read_path(c, state);
     accept |= !fmu->now.path.accepted;
 #endif
     if ((accept ? instance_accept(fmu) : instance_evaluate(fmu)) != OK)
         mju_error("%s: %s", fmu->name, c->why);
 #if N_MEMORY
     if (accept)
-        write_path(fmu, state);
+        write_path(c, state);
 #endif
-    memmove(c->state, state, PATH * sizeof *state);
+    memmove(c->state, state, size);
     c->known = true;
     return fmu->now.values + FIRST_OUTPUT;
 }
@@ -201,10 +231,9 @@ static void compute(const mjModel *m, mjData *d, int instance, int capability)
     if (capability == mjPLUGIN_PASSIVE)
         for (int i = 0; i < 2; i++)
             d->qfrc_passive[m->jnt_dofadr[c->joints[i]]] += outputs[i];
-    else
-        for (int i = 0; i < m->nsensor; i++)
-            if (m->sensor_type[i] == mjSENS_PLUGIN && m->sensor_plugin[i] == instance)
-                memcpy(d->sensordata + m->sensor_adr[i], outputs, N_OUTPUTS * sizeof *outputs);
+    for (int i = 0; i < m->nsensor; i++)
+        if (m->sensor_type[i] == mjSENS_PLUGIN && m->sensor_plugin[i] == instance)
+            memcpy(d->sensordata + m->sensor_adr[i], outputs, N_OUTPUTS * sizeof *outputs);
 }
 
 static void advance(const mjModel *m, mjData *d, int instance)
@@ -227,7 +256,7 @@ __attribute__((constructor)) static void register_plugin(void)
     plugin.nattribute = sizeof attributes / sizeof *attributes;
     plugin.attributes = attributes;
     plugin.capabilityflags = mjPLUGIN_PASSIVE | mjPLUGIN_SENSOR;
-    plugin.needstage = mjSTAGE_VEL;
+    plugin.needstage = mjSTAGE_POS; /* speeds are known too: at mjSTAGE_VEL MuJoCo computes those of all subtrees */
     plugin.nstate = nstate;
     plugin.nsensordata = nsensordata;
     plugin.init = init;

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import bristles
 from .fitted import FittedTendons, fit
 from .mjcf import check_version
 from .transmission import Transmission
@@ -15,9 +16,11 @@ from .transmission import Transmission
 Array = NDArray[np.float64]
 
 MOTOR = "_motor"
-"""What the motor's hinge and body have after the name of the joint."""
-_LIGHT = 1e-9
-"""Mass [kg] and inertia [kg.m2] of the motor's body; its rotor is the hinge's armature."""
+"""What the motor's coordinate has after the name of the joint."""
+MOTORS = "drive_motors"
+"""Name of their body."""
+_LIGHT = 1e-12
+"""Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,16 +113,21 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
 
     springs : False leaves out the drives, and the friction of their motors
     """
+    import mujoco
+
     made = spec.copy()
-    model = spec.compile()
     for key in [*made.keys]:
         made.delete(key)
+    motors = _motors(made)
     for axis in chosen:
-        hinge = _add_motor(made, model, axis)
+        motor = _add_motor(made, motors, axis)
         if not springs:
             continue
-        hinge.frictionloss = axis.drive.dry
-        hinge.damping = [axis.drive.viscous, 0.0, 0.0]
+        motor.damping = [axis.drive.viscous, 0.0, 0.0]
+        if made.option.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+            motor.frictionloss = axis.drive.dry
+        elif axis.drive.static:
+            bristles.add(made, axis.drive, motor.name, motor.armature, made.option.timestep)
         for name, stiffness, damping, limit in _springs(axis):
             tendon = made.add_tendon(name=name, stiffness=stiffness, damping=damping, springlength=[0.0, 0.0])
             tendon.springyield = limit
@@ -137,26 +145,29 @@ def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float],
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
 
 
-def _add_motor(spec: Any, model: Any, axis: ElasticAxis) -> Any:
-    """The rotor's hinge beside the link, about a parallel axis, and the joint's actuators at it."""
+def _motors(spec: Any) -> Any:
+    """A body of the world for the motors: what turns in it moves nothing else, as the rotor of an armature."""
+    body = spec.worldbody.add_body(name=MOTORS)
+    body.mass, body.inertia, body.explicitinertial = _LIGHT, [_LIGHT] * 3, True
+    body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
+    return body
+
+
+def _add_motor(spec: Any, motors: Any, axis: ElasticAxis) -> Any:
+    """The motor's angle [rad], and the joint's actuators at it. It is a slide, which costs MuJoCo no rotation
+    and has a place of its own on the diagonal of the mass matrix.
+    """
     import mujoco
 
     joint, ratio = spec.joint(axis.joint), axis.drive.ratio
-    number = model.joint(axis.joint).id
-    body = model.jnt_bodyid[number]
-    direction = np.zeros(3)
-    mujoco.mju_rotVecQuat(direction, model.jnt_axis[number], model.body_quat[body])
-    motor = joint.parent.parent.add_body(name=axis.joint + MOTOR, pos=model.body_pos[body])
-    motor.mass, motor.inertia, motor.explicitinertial = _LIGHT, [_LIGHT] * 3, True
-    motor.ipos, motor.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
-    hinge = motor.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_HINGE, axis=direction)
-    hinge.armature = axis.rotor / ratio**2
+    motor = motors.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_SLIDE)
+    motor.armature = axis.rotor / ratio**2
     joint.armature = 0.0
     for actuator in spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
             actuator.target = axis.joint + MOTOR
             actuator.gear = np.asarray(actuator.gear) / ratio
-    return hinge
+    return motor
 
 
 def posed(model: Any, angles: Mapping[str, str]) -> Array:

@@ -2,7 +2,7 @@
 
 The length of each tendon is the wind-up, link - motor/ratio. One has the elastic torque, stiffness with a
 linear and a cubic coefficient, and the damping; beside it lie springs that yield, Jenkins elements, for the
-hysteresis. Friction and damping of the motor are its hinge's.
+hysteresis. Dry friction of the motor is that of `bristles`, its damping that of its hinge.
 """
 
 from collections.abc import Iterator
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from jointfmu import __version__
 
+from .bristles import element
 from .fitted import FittedTendons, fit
 from .transmission import RAMP, Transmission, area
 
@@ -23,6 +24,8 @@ LOCKED = 1e12
 """Armature [kg.m2] of hinges that are led: their speed stays whatever the torque."""
 LEAD = 1e4
 """Time [s] of a measured loop: damping adds nothing to it."""
+STEP = 0.002
+"""[s], MuJoCo's own, which the written file keeps."""
 FREQUENCY = 60.0
 """[Hz] of the link on the drive that the written file shows, motor locked."""
 WIND_UP, AREA = 0.03, 0.05
@@ -73,13 +76,13 @@ def tendons(drive: Transmission, fitted: FittedTendons, name: str, motor: str, l
 
 def _model(drive: Transmission, fitted: FittedTendons, motor_inertia: float, link_inertia: float) -> str:
     torque = drive.max_torque / abs(drive.ratio)
+    friction = element(drive, "motor", motor_inertia, STEP) if drive.static else ""
     small = '<inertial pos="0 0 0" mass="0.001" diaginertia="1e-9 1e-9 1e-9"/>'
     return f"""<mujoco model={quoteattr(drive.name)}>
   <worldbody>
     <body name="motor">
       <joint name="motor" type="hinge" axis="0 0 1" armature="{motor_inertia:.9g}" \
-frictionloss="{drive.dry:.9g}" damping="{drive.viscous:.9g}" \
-actuatorfrclimited="true" actuatorfrcrange="{-torque:.9g} {torque:.9g}"/>
+damping="{drive.viscous:.9g}"/>
       {small}
     </body>
     <body name="link">
@@ -91,7 +94,8 @@ actuatorfrclimited="true" actuatorfrcrange="{-torque:.9g} {torque:.9g}"/>
 {tendons(drive, fitted, "drive", "motor", "link")}
   </tendon>
   <actuator>
-    <motor name="motor" joint="motor"/>
+    <motor name="motor" joint="motor" forcerange="{-torque:.9g} {torque:.9g}"/>
+    {friction}
   </actuator>
 </mujoco>
 """

@@ -27,6 +27,9 @@ class Transmission:
     rated_torque  : [N.m] at the output
     max_torque    : [N.m] at the output, to which the law is tabulated
     dry, viscous  : friction of the motor [N.m], [N.m.s/rad]
+    static        : dry friction of the motor at rest [N.m], dry if speed takes nothing away
+    stribeck_speed, presliding : speed [rad/s] that leaves 1/e of what static is above dry, and angle [rad]
+                    of the motor over which dry friction builds up to 1 - 1/e
     wind_up       : torques (n) [N.m] one after the other, from rest -> wind-ups (n) [rad], motor locked
     lacks         : what of it is beyond springs, sliders and friction, in words with numbers
     """
@@ -38,6 +41,9 @@ class Transmission:
     max_torque: float
     dry: float
     viscous: float
+    static: float
+    stribeck_speed: float
+    presliding: float
     wind_up: Callable[[ArrayLike], Array]
     lacks: Sequence[str] = ()
 

@@ -1,5 +1,6 @@
 """A drive as URDF: joint, friction, the motor's mimic pair, and what ros2_control reads of a transmission."""
 
+from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
 
 from jointfmu import __version__
@@ -27,11 +28,20 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
         f"  the wind-up, {x[: len(x) // 2].max():.4g} rad at {torque:g} N.m",
         *([f"  the hysteresis, {abs(area(x, torques)):.4g} J a loop at {torque:g} N.m"] if lossy else []),
         f"  the damping of the wind-up, {drive.damping:.4g} N.m.s/rad",
+        *(f"  {line}" for line in _friction(drive)),
         *(f"  {line}" for line in drive.lacks),
         "limits: largest torque of the drive; speed at 2000 rpm of the motor; inertias stand for yours",
     ]
     comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
     return f'<?xml version="1.0"?>\n<!--\n{comment}\n-->\n{_robot(drive)}', miss
+
+
+def _friction(drive: Transmission) -> Iterator[str]:
+    if drive.static > drive.dry:
+        more, speed = drive.static - drive.dry, drive.stribeck_speed
+        yield f"{more:.4g} N.m more dry friction at the motor below {speed:g} rad/s"
+    if drive.static:
+        yield f"presliding over {drive.presliding:g} rad of the motor"
 
 
 def _robot(drive: Transmission) -> str:

@@ -33,16 +33,16 @@ def TRANSMISSION(name: str, drive: Drive) -> Transmission:
         max_torque=float(spring.curve.end[1]),
         dry=drive.friction_coulomb,
         viscous=drive.friction_viscous,
+        static=drive.friction_coulomb + drive.friction_stribeck,
+        stribeck_speed=drive.stribeck_speed,
+        presliding=drive.presliding,
         wind_up=wind_up,
         lacks=tuple(_lacks(drive)),
     )
 
 
 def _lacks(drive: Drive) -> Iterator[str]:
-    """What is no spring, slider or constant friction."""
-    if drive.friction_stribeck:
-        stribeck, speed = drive.friction_stribeck, drive.stribeck_speed
-        yield f"{stribeck:.4g} N.m more dry friction at the motor below {speed:g} rad/s"
+    """What is no spring, slider or friction of the motor's speed."""
     if drive.load_loss or drive.loss_back:
         loss, back = (
             share * drive.rated_torque / abs(drive.ratio) for share in (drive.load_loss, drive.loss_back)
@@ -51,8 +51,6 @@ def _lacks(drive: Drive) -> Iterator[str]:
             "friction that grows with the load: at rated torque "
             f"{loss:.4g} N.m at the motor where it drives, {back:.4g} N.m where the load does"
         )
-    if drive.friction_coulomb or drive.friction_stribeck or drive.load_loss:
-        yield f"presliding over {drive.presliding:g} rad of the motor"
     if drive.friction_coulomb or drive.friction_viscous:
         yield "the temperature of the lubricant: friction is that at 20 degrees C"
     error = sum(abs(getattr(drive, f"error_{n}")) for n in HARMONICS)
