@@ -139,10 +139,11 @@ def print_swings() -> None:
         exact = share @ whole.backbone(low, shift) / (share @ whole.backbone(start, shift))
         along = np.outer(np.ones(share.size), [shift, 0.0])
         moved = sliders.moved(sliders.at_rest(share.size), start, start, along)
-        first, found = share @ moved.traction[:, 0], []
+        first, found, lowest = share @ moved.traction[:, 0], [], start
         for cycle in range(1, CYCLES[-1] + 1):
             for before, after in ((start, low), (low, start)):
-                moved = sliders.moved(moved.force, before, after, 0.0 * along)
+                lowest = np.minimum(lowest, before)
+                moved = spring.foundation(start, lowest).moved(moved.force, before, after, 0.0 * along)
             if cycle in CYCLES:
                 found.append(share @ moved.traction[:, 0] / first)
         print(f"| {part:g} | {exact:.4f} | " + " | ".join(f"{x:.4f}" for x in found) + " |", flush=True)

@@ -76,6 +76,19 @@ def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
     return np.concatenate([lowest, between, last], axis=-1)
 
 
+def lowered(height: Array, lowest: ArrayLike) -> Array:
+    """Heights (..., n) [m], of which the next one above the lowest approach (...) [m] so far lies at it.
+
+    Springs above it have lifted off meanwhile and have no force, so that the height moves freely; and those
+    that touch and lift again, while the load swings, share no range with springs that stay touched.
+    """
+    given = np.asarray(lowest, dtype=np.float64)[..., None]
+    below = height < given
+    next_above = below[..., :-1] & ~below[..., 1:]
+    next_above[..., -1] = False  # no springs are beyond the last height
+    return np.concatenate([height[..., :1], np.where(next_above, given, height[..., 1:])], axis=-1)
+
+
 HARDLY = 1e-3
 """Shift over that of gross slip [1] below which sliders are at rest: they stick, whatever the heights."""
 

@@ -40,12 +40,17 @@ static bool tabulate(Joint *joint, int steps, Text *why)
     return approach_tabulate(&kind->approach, &joint->curve, &kind->spots, joint->c, steps, why);
 }
 
-/* Lay the heights of a patch; its points are found again. */
-static void lay(Kind *kind, int j, double reference)
+/* Lay the heights of a patch, where they do not stand so; its points are found again. */
+static void lay(Kind *kind, int j, double reference, double lowest)
 {
     Foundation *f = &kind->foundation[j];
-    foundation_lay(f, reference);
-    kind->from[j] = kind->to[j] = foundation_point(f, f->curve->end.x, 0);
+    if (f->reference == reference && f->lowest == lowest)
+        return;
+    if (f->reference != reference)
+        foundation_lay(f, reference);
+    foundation_lower(f, lowest);
+    foundation_find(f, &kind->from[j]);
+    foundation_find(f, &kind->to[j]);
 }
 
 bool kind_tabulate(Joint *joint, Text *why)
@@ -81,7 +86,8 @@ bool kind_tabulate(Joint *joint, Text *why)
         f->mu = kind->mu;
         f->ratio = kind->ratio;
         f->offset = data.offsets[j][0];
-        lay(kind, j, 0.0);
+        foundation_lay(f, 0.0);
+        kind->from[j] = kind->to[j] = foundation_point(f, f->curve->end.x, 0);
     }
     return true;
 }
@@ -402,6 +408,15 @@ static bool press_elastic(Joint *joint, const double *inputs, double *x, Text *w
 
 /* Patches */
 
+/* Heights of the patches for a way from the memory that begins at an approach. */
+static void lay_from(Kind *kind, int j, const double *memory, double start)
+{
+    const bool first = (int)memory[AT_STATE] < ALONG;
+    const double lowest = memory[AT_LOWEST + j];
+    const bool opened = lowest < kind->foundation[j].curve->first.x;
+    lay(kind, j, first ? start : memory[AT_REFERENCE + j], first || opened ? start : fmin(lowest, start));
+}
+
 /* The points of the patches at the ends of their paths from the memory to the inputs; before the memory begins it
  * is the shift alone. The last ones are kept where they are still right. */
 static void find_points(Joint *joint, const double *inputs, const double *memory)
@@ -412,9 +427,8 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
         Point *from = &kind->from[j], *to = &kind->to[j];
         const double end = kind->patch_start[j] - (apart_at(data.patches[j], inputs) + kind->patch_opened[j]);
         const double start = begun ? memory[AT_APPROACH + j] : end;
-        const double reference = (int)memory[AT_STATE] < ALONG ? start : memory[AT_REFERENCE + j];
-        if (kind->moved != RESTING && kind->foundation[j].reference != reference)
-            lay(kind, j, reference);
+        if (kind->moved != RESTING)
+            lay_from(kind, j, memory, start);
         const Foundation *f = &kind->foundation[j];
         if (from->approach != start)
             *from = to->approach == start ? *to : foundation_point(f, start, from->full);
@@ -649,6 +663,7 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         memcpy(kind->tangent[j], shear.tangent, sizeof shear.tangent);
         heat += data.patches[j][SHARE] * shear.loss;
         after[AT_REFERENCE + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].reference;
+        after[AT_LOWEST + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].lowest;
         after[AT_APPROACH + j] = kind->to[j].approach;
     }
     if (kind->memory) {

@@ -37,30 +37,71 @@ static void lay_heights(Foundation *f, double reference)
     *h = f->curve->end.x;
 }
 
-void foundation_lay(Foundation *f, double reference)
+/* The sums over the springs of a range, and its sliders. */
+static void lay_range(Foundation *f, int i)
+{
+    const double width = f->height[i + 1] - f->height[i];
+    f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
+    f->normal[i] = f->load[i + 1] - f->load[i] - f->stiffness[i] * width;
+    f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
+    for (int late = 0; late < 2; late++) {
+        const int k = 2 * i + late;
+        const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
+        f->K[k] = 0.5 * f->ratio * f->springs[i];
+        f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
+        f->limit[k] = 0.5 * f->mu * (first - f->springs[i] * f->height[i + 1]);
+    }
+}
+
+static void sum_sticks(Foundation *f)
+{
+    for (int i = 0; i < HEIGHTS; i++)
+        f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
+}
+
+/* A height stands elsewhere. */
+static void put_height(Foundation *f, int i, double height)
 {
     double y[2];
+    curve_at(f->curve, height, 1, y);
+    f->height[i] = height;
+    f->load[i] = y[0];
+    f->stiffness[i] = y[1];
+}
+
+void foundation_lay(Foundation *f, double reference)
+{
     f->reference = reference;
+    f->lowest = f->curve->end.x;
+    f->lowered = 0;
     lay_heights(f, reference);
-    for (int i = 0; i < N_HEIGHTS; i++) {
-        curve_at(f->curve, f->height[i], 1, y);
-        f->load[i] = y[0];
-        f->stiffness[i] = y[1];
+    for (int i = 0; i < N_HEIGHTS; i++)
+        put_height(f, i, f->height[i]);
+    for (int i = 0; i < HEIGHTS; i++)
+        lay_range(f, i);
+    sum_sticks(f);
+}
+
+/* As `lowered` of the package. */
+void foundation_lower(Foundation *f, double lowest)
+{
+    const int before = f->lowered;
+    int above = 0;
+    if (before > 0)
+        put_height(f, before, f->laid);
+    while (above < HEIGHTS && f->height[above] < lowest)
+        above++;
+    f->lowest = lowest;
+    f->lowered = above < HEIGHTS ? above : 0;
+    if (f->lowered > 0) {
+        f->laid = f->height[above];
+        put_height(f, above, lowest);
     }
-    for (int i = 0; i < HEIGHTS; i++) {
-        const double width = f->height[i + 1] - f->height[i];
-        f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
-        f->normal[i] = f->load[i + 1] - f->load[i] - f->stiffness[i] * width;
-        f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
-        f->stick[i] = f->ratio * f->springs[i] + (i > 0 ? f->stick[i - 1] : 0.0);
-        for (int late = 0; late < 2; late++) {
-            const int k = 2 * i + late;
-            const double first = f->normal[i] + (late ? f->apart[i] : -f->apart[i]);
-            f->K[k] = 0.5 * f->ratio * f->springs[i];
-            f->per_K[k] = f->K[k] > 0.0 ? 1.0 / f->K[k] : 0.0;
-            f->limit[k] = 0.5 * f->mu * (first - f->springs[i] * f->height[i + 1]);
-        }
-    }
+    for (int i = before - 1; i <= before && before > 0; i++)
+        lay_range(f, i);
+    for (int i = f->lowered - 1; i <= f->lowered && f->lowered > 0; i++)
+        lay_range(f, i);
+    sum_sticks(f);
 }
 
 /* Place, load with two derivatives and energy where the curve goes on as its tangent, or before it begins. */
@@ -70,6 +111,15 @@ static void point_beyond(const Curve *curve, const Energy *energy, Point *p)
     const double beyond = p->approach - (after ? curve->end.x : curve->first.x);
     curve_at(curve, p->approach, 2, p->y);
     p->energy = energy->at[after ? curve->n - 1 : 0] + beyond * (p->y[0] - 0.5 * beyond * p->y[1]);
+}
+
+void foundation_find(const Foundation *f, Point *p)
+{
+    while (p->full > 0 && p->approach < f->height[p->full])
+        p->full--;
+    while (p->full < HEIGHTS && p->approach >= f->height[p->full + 1])
+        p->full++;
+    p->touched = p->full + (p->full < HEIGHTS && p->approach > f->height[p->full]);
 }
 
 Point foundation_point(const Foundation *f, double approach, int near)
@@ -85,11 +135,7 @@ Point foundation_point(const Foundation *f, double approach, int near)
     } else {
         point_beyond(curve, energy, &p);
     }
-    while (p.full > 0 && approach < f->height[p.full])
-        p.full--;
-    while (p.full < HEIGHTS && approach >= f->height[p.full + 1])
-        p.full++;
-    p.touched = p.full + (p.full < HEIGHTS && approach > f->height[p.full]);
+    foundation_find(f, &p);
     return p;
 }
 

@@ -20,6 +20,9 @@ typedef struct {
     double mu, ratio;
     double offset;    /* of the heights, see `around` */
     double reference; /* approach around which they lie */
+    double lowest;    /* the least one since then, at which the height `lowered` stands that lay at `laid`; 0: none */
+    double laid;
+    int lowered;
     double height[N_HEIGHTS], load[N_HEIGHTS], stiffness[N_HEIGHTS];
     double springs[HEIGHTS]; /* normal stiffness of all springs of a range */
     double normal[HEIGHTS];  /* their normal force when the last one touches */
@@ -72,6 +75,10 @@ typedef struct {
 
 /* Lay the heights around an approach; curve, energy, mu, ratio and offset are given. */
 void foundation_lay(Foundation *foundation, double reference);
+/* Put the next height above the lowest approach so far there. */
+void foundation_lower(Foundation *foundation, double lowest);
+/* The ranges that a point touches. */
+void foundation_find(const Foundation *foundation, Point *point);
 /* The search begins at a number of ranges that are near to be full. */
 Point foundation_point(const Foundation *foundation, double approach, int near);
 /* Carry the sliders along a path; `moved` are the forces after it, along x and y, of those that

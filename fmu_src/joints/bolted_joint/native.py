@@ -2,7 +2,7 @@
 
 import casadi as ca
 
-from jointfmu.joints.bolted_joint import bodies, contact, law, outputs, spring, trials, whole
+from jointfmu.joints.bolted_joint import bodies, contact, law, memory, outputs, trials, whole
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
@@ -129,7 +129,7 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT
     counts |= {"N_BELOW": sliders.BELOW, "N_ABOVE": sliders.ABOVE}
-    counts |= {name: getattr(spring, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
+    counts |= {name: getattr(memory, name) for name in ("UNKNOWN", "RESTING", "ALONG", "FREE")}
     counts |= {
         "MODES": bodies.MODES,
         "ELASTIC": int(g.joint.elastic),
@@ -145,4 +145,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, spring.memory_of(PATCHES))
+PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, memory.memory_of(PATCHES))

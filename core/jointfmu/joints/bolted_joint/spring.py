@@ -15,7 +15,7 @@ from ...mechanics.footprint.patches import few_points
 from ...mechanics.footprint.shape import PATCHES, NodalField, PressureShape
 from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
-from ...mechanics.sliders import SLIDERS, Foundation, around, offsets
+from ...mechanics.sliders import Foundation, around, lowered, offsets
 from ...quantity import Number
 from .bodies import MODES, Modes, RigidBodies
 from .compliances import Compliances
@@ -29,8 +29,9 @@ from .contact import (
     shear_sums,
 )
 from .law import Bolted, interface_alone, pressures, shear_ratio, working_preload
+from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on
 from .outputs import STRETCHES, bolt_force, outputs
-from .trials import Memory, Trial, Trials, Way, told
+from .trials import Trial, Trials, Way, told
 from .whole import Whole
 
 Array = NDArray[np.float64]
@@ -38,39 +39,6 @@ Array = NDArray[np.float64]
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""
 REST = (0.0, 0.0, 0.0)
-UNKNOWN, RESTING, ALONG, FREE = range(4)
-"""How friction has moved so far, see `memory_of`."""
-
-
-def memory_of(patches: int) -> Layout:
-    """What friction remembers on so many patches.
-
-    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
-                shift; RESTING: it has hardly moved along its surface; ALONG: it has along x alone; FREE:
-                along y or by a turn, too
-    loss      : [J] turned into heat so far
-    rigid     : (3) shift along x and y [m] and turn about the normal [rad]
-    reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
-    approach  : (m) [m] of the patches
-    force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all
-    apart     : (3) shift along z [m] and turns about x and y [rad]; this and the rest of elastic sides
-    amplitude : (MODES) [m] of the modes
-    tangent   : (m, 3) [Pa/m] of the patches, xx, xy, yy
-    """
-    one = (patches,)
-    return Layout(
-        {
-            "state": (),
-            "loss": (),
-            "rigid": (3,),
-            "reference": one,
-            "approach": one,
-            "force": (*one, 2, SLIDERS),
-            "apart": (3,),
-            "amplitude": (MODES,),
-            "tangent": (*one, 3),
-        }
-    )
 
 
 @lru_cache(maxsize=8)
@@ -131,19 +99,24 @@ class BoltedJointSpring:
         return replace(self, joint=interface_alone(self.joint), shape=nodes, patches=nodes, modes=modes)
 
     @cached_property
-    def _foundations(self) -> Callable[[bytes], Foundation]:
-        """The sliders of the patches around approaches, of which the last ones are kept."""
+    def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
+        """The sliders of the patches around approaches and above lowest ones, of which the last are kept."""
         ratio, mu, shifts = float(shear_ratio(self.joint)), self.joint.mu, offsets(self.patches.equal)
 
-        def build(reference: bytes) -> Foundation:
-            return Foundation(self.curve, ratio, mu, around(self.curve, np.frombuffer(reference), shifts))
+        def build(*approaches: bytes) -> Foundation:
+            reference, lowest = (np.frombuffer(each) for each in approaches)
+            return Foundation(self.curve, ratio, mu, lowered(around(self.curve, reference, shifts), lowest))
 
         return lru_cache(maxsize=4)(build)
 
-    def foundation(self, reference: Array | None = None) -> Foundation:
-        """The sliders of patches which first move at approaches (m) [m]; None: not yet known."""
+    def foundation(self, reference: Array | None = None, lowest: Array | None = None) -> Foundation:
+        """The sliders of patches which first move at approaches (m) [m]; None: not yet known.
+
+        lowest : (m) [m] least approach since then; None: the first one
+        """
         first = np.zeros(self.patches.share.size) if reference is None else reference
-        return self._foundations(np.ascontiguousarray(first).tobytes())
+        both = first, first if lowest is None else lowest
+        return self._foundations(*(np.ascontiguousarray(each).tobytes() for each in both))
 
     def tightened(self, preload: float, moment: float) -> Array:
         """Approach (n) [m] of the nodes at tightening."""
@@ -260,13 +233,17 @@ class BoltedJointSpring:
         stick = self.foundation().stick(approach)
         moved = self._at_rest(before, first, approach, shift, stick) if before["state"] < ALONG else None
         if moved is not None:
-            return Way(RESTING, approach, approach, moved, stick)
-        state = FREE if self.joint.elastic else _moved_on(before, rigid)
-        reference = before["reference"] if before["state"] >= ALONG else first
-        foundation, force = self.foundation(reference), before["force"]
+            return Way(RESTING, approach, approach, approach, moved, stick)
+        state = FREE if self.joint.elastic else moved_on(before, rigid)
+        reference = lowest = first
+        if before["state"] >= ALONG:
+            reference = before["reference"]
+            opened = before["lowest"] < self.curve.displacement[0]
+            lowest = np.where(opened, first, np.minimum(before["lowest"], first))
+        foundation, force = self.foundation(reference, lowest), before["force"]
         if before["state"] < ALONG:
             force = foundation.spread(force[..., 0], first)
-        return Way(state, reference, approach, foundation.moved(force, first, approach, shift), stick)
+        return Way(state, reference, lowest, approach, foundation.moved(force, first, approach, shift), stick)
 
     def _friction(
         self, way: "Way", amplitude: Array, place: Place, before: Memory
@@ -281,6 +258,7 @@ class BoltedJointSpring:
                 "loss": loss,
                 "rigid": [*place.shift[:2], place.turn[2]],
                 "reference": way.reference,
+                "lowest": way.lowest,
                 "approach": way.approach,
                 "force": moved.force,
                 "apart": [place.shift[2], *place.turn[:2]] if elastic else 0.0,
@@ -353,9 +331,3 @@ class BoltedJointSpring:
         """
         spots, u = self.joint.spots(), largest_spot(self.joint, np.maximum(p, self.curve.closed))
         return spots.total("plastic_work", u), spots.total("elastic_work", u)
-
-
-def _moved_on(before: Memory, rigid: Array) -> int:
-    """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
-    free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
-    return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG

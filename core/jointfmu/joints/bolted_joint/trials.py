@@ -1,6 +1,5 @@
 """The bolted joint on its way to a place, for amplitudes of the modes of its sides."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...mechanics.jenkins import Moved
 from .contact import Place, along
+from .memory import Memory
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 DIFFERENCE = 1e-7
 """Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
-Memory = Mapping[str, Array]
 
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """How the patches came to where they are: state, reference and approach (m) [m] as in `memory_of`.
+    """How the patches came to where they are: state and (m) [m] reference, lowest, approach of `memory_of`.
 
     stick : (m) [Pa/m] of all sliders
     """
 
     state: int
     reference: Array
+    lowest: Array
     approach: Array
     moved: Moved
     stick: Array

@@ -1,0 +1,55 @@
+"""What a bolted joint remembers of its way."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...mechanics.memory import Layout
+from ...mechanics.sliders import SLIDERS
+from .bodies import MODES
+
+Array = NDArray[np.float64]
+Memory = Mapping[str, Array]
+
+UNKNOWN, RESTING, ALONG, FREE = range(4)
+"""How friction has moved so far, see `memory_of`."""
+
+
+def memory_of(patches: int) -> Layout:
+    """What friction remembers on so many patches.
+
+    state     : UNKNOWN: the path begins at the present approach, which is the reference as well, without a
+                shift; RESTING: it has hardly moved along its surface; ALONG: it has along x alone; FREE:
+                along y or by a turn, too
+    loss      : [J] turned into heat so far
+    rigid     : (3) shift along x and y [m] and turn about the normal [rad]
+    reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
+    lowest    : (m) [m] least approach since then, from where a contact began to open last if it has been open
+    approach  : (m) [m] of the patches
+    force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all
+    apart     : (3) shift along z [m] and turns about x and y [rad]; this and the rest of elastic sides
+    amplitude : (MODES) [m] of the modes
+    tangent   : (m, 3) [Pa/m] of the patches, xx, xy, yy
+    """
+    one = (patches,)
+    return Layout(
+        {
+            "state": (),
+            "loss": (),
+            "rigid": (3,),
+            "reference": one,
+            "lowest": one,
+            "approach": one,
+            "force": (*one, 2, SLIDERS),
+            "apart": (3,),
+            "amplitude": (MODES,),
+            "tangent": (*one, 3),
+        }
+    )
+
+
+def moved_on(before: Memory, rigid: Array) -> int:
+    """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
+    free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
+    return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
