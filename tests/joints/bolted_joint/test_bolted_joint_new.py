@@ -27,7 +27,7 @@ STILL = (0.0, 0.0, 0.0)
 
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
-    """The finite elements of the whole joint take seconds; test_whole_bolted_joint.py looks at them."""
+    """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
     monkeypatch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
 
 
