@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import Fmu, refused_line
+from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
@@ -360,7 +360,8 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, path=path)
     command = ["build", "BoltedJoint", "--params", str(path), "--flavour", "fmi2", "--out", str(tmp_path)]
-    assert cli.main(command) == 0
+    with here_alone():
+        assert cli.main(command) == 0
     instance = Fmu(tmp_path / "fmi2" / "BoltedJoint.fmu")
     spring = BoltedJointSpring.of(load(path).values)
     for preload, moment, s_rel in (
