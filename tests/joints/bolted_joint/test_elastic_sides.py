@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from conftest import Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
+from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint import report
 from jointfmu_tools.joints.bolted_joint.new import computed, whole
 from jointfmu_tools.report.course import Course
@@ -392,10 +394,11 @@ def test_a_whole_joint_without_a_bolt_or_a_file_is_refused(plates, tmp_path, cap
     assert not out.exists()
 
 
-def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys):
+def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monkeypatch):
     """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
-    less than the interface has of the compliance; a field alone leaves no body behind."""
+    less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
+    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
