@@ -15,6 +15,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import patch
 
 import native_fmus
 import numpy as np
@@ -68,9 +69,15 @@ class Joint:
         def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
             joint = WholeJoint.of(plates.assembly(file), to, refinement)
             springs = computed._springs(file, plates.preload, joint)
-            seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2])
-            seen["linear"] = joint.linear(springs, file.values.bolt_stiffness)
-            return real(file, plates, to)
+            linear = joint.linear(springs, file.values.bolt_stiffness)
+            seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)
+            if refinement != 1.0:
+                return real(file, plates, to)
+            with (  # the command's own finite elements are these
+                patch.object(WholeJoint, "of", lambda *_: joint),
+                patch.object(WholeJoint, "linear", lambda *_: linear),
+            ):
+                return real(file, plates, to)
 
         whole.whole_joint = watched
         try:

@@ -15,8 +15,9 @@ from contextlib import redirect_stdout, suppress
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from shutil import copytree, ignore_patterns, rmtree
+from shutil import copytree, ignore_patterns
 from subprocess import PIPE
+from typing import NamedTuple
 
 import pytest
 import pythonfmu
@@ -30,8 +31,10 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools import cli
 from jointfmu_tools.job import checks, pipeline
+from jointfmu_tools.report.page import write_report
 from jointfmu_tools.systems import system as systems
-from proofs import BOTH
+from natives import VERSIONS
+from proofs import BOTH, MEASURED
 from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
 
@@ -370,17 +373,31 @@ class Links(HTMLParser):
         self.loaded += [v or "" for k, v in attrs if k.removeprefix("xlink:") in loading]
 
 
+class Job(NamedTuple):
+    """A main job: its folder, what it printed, what it found."""
+
+    folder: Path
+    said: str
+    outcome: pipeline.JobResult
+
+
 @pytest.fixture(scope="module")
-def job(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """The folder of one main job, and what it printed."""
-    folder = tmp_path_factory.mktemp("job")
-    with redirect_stdout(io.StringIO()) as out:
+def job(tmp_path_factory: pytest.TempPathFactory) -> Job:
+    """The one main job of these tests."""
+    folder, found, run = tmp_path_factory.mktemp("job"), [], pipeline.run
+
+    def watched(out: Path) -> pipeline.JobResult:
+        found.append(run(out))
+        return found[0]
+
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as out:
+        patch.setattr(pipeline, "run", watched)
         assert pipeline.main(folder) == 0, out.getvalue()
-    return folder, out.getvalue()
+    return Job(folder, out.getvalue(), found[0])
 
 
-def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
-    folder, out = job
+def test_the_main_job_builds_checks_and_reports(job: Job) -> None:
+    folder, out, _ = job
     assert f"built: {3 * len(NAMES)} FMUs" in out
     assert "missed: 0" in out
     proved = re.search(r"proved in fmpy: (\d+) FMUs by (\d+) runs", out)
@@ -422,11 +439,11 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
 
 
 @pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
-def test_the_report_can_be_read_on_a_phone(job: tuple[Path, str]) -> None:
+def test_the_report_can_be_read_on_a_phone(job: Job) -> None:
     """A tab per joint: charts with lines, no text below 11 px, nothing wider than the screen, all checks."""
     with browser() as shown:
         shown.shape(390, 800, phone=True)
-        shown.open(job[0] / "report" / "index.html")
+        shown.open(job.folder / "report" / "index.html")
         rows = 0
         for name in KINDS:
             shown.run(f"document.getElementById('tab-{name}').click()")
@@ -444,34 +461,54 @@ def test_the_report_can_be_read_on_a_phone(job: tuple[Path, str]) -> None:
             rows += (
                 shown.run(f"{panel}.querySelectorAll('[aria-label=\"Checks of the ramps\"] tr').length") - 1
             )
-        assert f"; {rows} checks of the ramps" in job[1]
+        assert f"; {rows} checks of the ramps" in job.said
+
+
+def test_the_main_job_proves_every_fmu(job: Job) -> None:
+    """All flavours, partners and drives of systems, with all their experiments, in all interfaces."""
+    proofs = {pipeline.shown(proof.fmu): proof for proof in job.outcome.proofs}
+    flavours = {f"{flavour}/{name}" for flavour in FLAVOURS for name in NAMES}
+    partners = {f"{version}/{name}" for version in VERSIONS for name in PARTNERS}
+    assert flavours | partners < proofs.keys()
+    for name, proof in proofs.items():
+        assert (proof.importer, proof.misses, proof.starts > 0) == ("fmpy", [], True), name
+        assert [*proof.interfaces] == (BOTH[:1] if name.startswith("python/") else BOTH), name
+        runs = [(one.experiment.name, one.interface) for one in proof.outcomes if one.interface]
+        names = dict.fromkeys(one for one, _ in runs)
+        assert runs == [(one, interface) for one in names for interface in proof.interfaces], name
+        assert proof.worst is not None
+        assert proof.worst.share <= MEASURED, name
+        if name in flavours:
+            purposes = {one.experiment.purpose for one in proof.outcomes}
+            assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name
 
 
 def test_the_main_job_fails_when_a_check_or_a_proof_misses(
-    job: tuple[Path, str], tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    job: Job, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With what the other job has built, but for an FMU whose reference is changed: whatever is built, the
-    checks decide, and the report shows what was missed."""
-    copytree(job[0], tmp_path, dirs_exist_ok=True)
-    rmtree(tmp_path / "report")
+    """With what the job has found, but for an FMU whose reference is changed and integrals that no ramp
+    meets: the checks decide, and the report shows what was missed."""
     name = NAMES[0]
     path = tmp_path / "fmi2" / f"{name}.fmu"
+    path.parent.mkdir()
 
     def change(member: str, data: bytes) -> bytes:
         is_meant = member.endswith("load_ramp_ref.csv")
         return re.sub(rb"(?m)^1\.0,[^,]+", b"1.0,1e99", data) if is_meant else data
 
-    changed_copy(job[0] / "fmi2" / f"{name}.fmu", path, change)
-    monkeypatch.setattr(pipeline, "build", lambda *_, **__: [path])
-    monkeypatch.setattr(pipeline, "build_systems", lambda *_, **__: [])
+    changed_copy(job.folder / "fmi2" / f"{name}.fmu", path, change)
+    problems, proof = pipeline._examined(path)
     monkeypatch.setattr(checks, "INTEGRATION_TOLERANCE", -1.0)
+    found = [c for n, r in job.outcome.ramps.items() for c in checks.check(n, job.outcome.fmus, r)]
+    outcome = replace(job.outcome, problems=problems, proofs=[proof], checks=found)
+    monkeypatch.setattr(pipeline, "run", lambda _: outcome)
     assert pipeline.main(tmp_path) == 1
     # both interfaces of the FMU, and an integral of each ramp
     missed = capsys.readouterr().out.partition(f"missed: {2 + len(NAMES)}\n")[2].splitlines()
     assert [line.split(":")[0].strip() for line in missed] == [*2 * [f"fmi2/{name}"], *NAMES]
     assert [interface in line for interface, line in zip(BOTH, missed, strict=False)] == [True, True]
-    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
-    assert '<td class="miss">miss</td>' in page
+    write_report(tmp_path / "index.html", outcome)
+    assert '<td class="miss">miss</td>' in (tmp_path / "index.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups")

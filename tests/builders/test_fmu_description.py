@@ -240,7 +240,7 @@ def test_calibration_parameters_say_so_and_no_other(root: Any, name: str) -> Non
 def test_equal_content_gives_an_equal_guid_and_file(
     fmus: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    names = list(CASES)
+    names = ["GearContact", "BoltedJoint"]  # without and with a memory; all share the builder
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     first = build(names, ["python"], None, tmp_path / "a")
     second = build(names, ["python"], None, tmp_path / "b")

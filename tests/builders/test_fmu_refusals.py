@@ -244,35 +244,26 @@ calls = {
     "state of rubbish": lambda: fmu.setFMUstate(fmu.deSerializeFMUstate(b"rubbish")),
     "state of nothing": lambda: fmu.setFMUstate(fmu.deSerializeFMUstate(b"{}")),
 }
-for _ in range(20):
-    try:
-        calls[sys.argv[2]]()
-    except FMICallException:
-        assert instance.get() == before
-    else:
-        raise SystemExit("was not refused")
+for name, call in calls.items():
+    print(name, flush=True)
+    for _ in range(20):
+        try:
+            call()
+        except FMICallException:
+            assert instance.get() == before
+        else:
+            raise SystemExit("was not refused")
 instance.free()
 print("alive")
 """
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        "getReal of an unknown reference",
-        "setReal of an output",
-        "getBoolean of a Real",
-        "getInteger of a Real",
-        "setInteger of a Real",
-        "getString of a Real",
-        "setString of a Real",
-        "state of rubbish",
-        "state of nothing",
-    ],
-)
-def test_a_wrong_call_repeated_by_the_host_does_not_crash_the_process(fmus: Path, call: str) -> None:
-    host = run_host(WRONG_CALL, fmus, call)
-    assert (host.returncode, host.stdout) == (0, "alive\n"), host.stderr[-300:]
+def test_wrong_calls_repeated_by_the_host_do_not_crash_the_process(fmus: Path) -> None:
+    """The last line tells after which call it went wrong."""
+    host = run_host(WRONG_CALL, fmus)
+    assert host.returncode == 0, (host.stdout, host.stderr[-300:])
+    *called, last = host.stdout.splitlines()
+    assert (len(called), last) == (9, "alive")
 
 
 # Beyond the table: warned once, continued with the last tangent

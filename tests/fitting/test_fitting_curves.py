@@ -61,9 +61,9 @@ def test_a_line_has_its_textbook_covariance():
 @pytest.mark.parametrize("case", trips.CASES)
 def test_round_trip(case, tmp_path):
     """The script's 100 seeds in small: chance puts 1 % of the fits outside three deviations."""
-    found = [trips.errors(trips.CASES[case], seed, tmp_path) for seed in range(4)]
+    found = [trips.errors(trips.CASES[case], seed, tmp_path) for seed in range(3)]
     within = [all(abs(z) <= 3.0 for _, z in one.values()) for one in found]
-    assert sum(within) >= 3
+    assert sum(within) >= 2
     assert all(abs(error) < 0.6 for one in found for error, _ in one.values())
 
 

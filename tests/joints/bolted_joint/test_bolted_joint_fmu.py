@@ -1,23 +1,32 @@
-"""The FMU of the bolted joint: equal to its law, with a potential, and nothing left when pulled apart."""
+"""The bolted joint's FMU: equal to its law, with a potential, its derivatives; laboratory and report."""
 
-from collections.abc import Callable
+import math
+from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from conftest import Fmu
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
+from jointfmu_tools.joints.bolted_joint.layout import PlaneLayout
+from jointfmu_tools.joints.bolted_joint.picture import plan
+from jointfmu_tools.joints.bolted_joint.report import pictured
+from jointfmu_tools.laboratory.modules import modules
+from jointfmu_tools.report.course import Course
 from natives import SAME as SAME_FLAVOURS
-from natives import jacobian, near, package
+from natives import Host, close, jacobian, near, package
 from scipy.integrate import cumulative_simpson
+from webassembly import Instance
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.fmi import ramp
+from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
-from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-
-Host = Callable[..., Fmu]
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
+from jointfmu.mechanics.footprint.shape import NodalField, as_lists
+from jointfmu.parameters import default
 
 
 def test_bolted_joint_at_rest_follows_the_law_without_a_table(fmu: Host) -> None:
@@ -128,3 +137,220 @@ def test_a_joint_that_hardly_moves_is_the_packages(host: Host, version: str) -> 
         instance.at(state)
         instance.step()
         expected = expected.after(state)
+
+
+# Derivatives keep the closed relations of the joint
+
+
+STILL = dict.fromkeys((f"{rate}_{axis}" for rate in ("v_rel", "omega") for axis in "xyz"), 0.0)
+APART = ("preload", "moment", "s_rel_z", "theta_x", "theta_y")
+FORCES = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
+STIFFNESS = ("K_xx", "K_yy", "K_zz", "K_rx", "K_ry", "K_rz")
+
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_derivatives_keep_the_closed_relations_of_the_bolted_joint(
+    host: Host, version: str, memory: bool
+) -> None:
+    instance, joint = host("BoltedJoint", version), parameters("BoltedJoint")
+    given = {"memory": memory, "damping": True, "plastic_damping": True}
+    for state in random_inputs("BoltedJoint", 20, seed=34):
+        instance.reset()  # the stiffness is that of a further motion: begin as far apart as it ends
+        instance.start(given | {name: state[name] for name in APART})
+        values = instance.at(state | STILL)
+        J = jacobian(instance)
+        for f, s, K in zip(FORCES, MOTIONS, STIFFNESS, strict=True):
+            if not memory or f in ("f_z", "m_x", "m_y"):  # else it is that of a further motion
+                assert J[f, s] == close(-values[K], 1e-9)
+        for axis in "xyz":
+            assert J[f"f_{axis}", f"v_rel_{axis}"] == close(-values[f"C_{2 * axis}"], 1e-12)
+        for (f, s), (g, t) in combinations(zip(FORCES, MOTIONS, strict=True), 2):
+            lift = {f, g} & {"f_z", "m_x", "m_y"} and {f, g} & {"f_x", "f_y", "m_z"}
+            scale = math.sqrt(abs(J[f, s] * J[g, t]))
+            if memory and lift:  # shear does not lift, whatever lifting does to the friction
+                assert 0.0 in (J[f, t], J[g, s])
+            else:  # a potential
+                assert abs(J[f, t] - J[g, s]) <= 1e-9 * scale, (f, t)
+    tight = dict.fromkeys(RANGES["BoltedJoint"], 0.0) | {"preload": 9e3}
+    instance.reset()
+    instance.start(tight)
+    assert jacobian(instance)["p_mean", "preload"] == close(joint.n_bolts / joint.A_0, 1e-9)
+    apart = instance.at(tight | {"s_rel_z": 1e-3})
+    J = jacobian(instance)
+    assert apart["p_max"] == 0.0
+    assert J["f_z", "preload"] == close(-joint.n_bolts, 1e-9)  # all of it is lost
+    assert {value for key, value in J.items() if key[1] not in ("preload", "moment")} == {0.0}
+    instance.at(dict.fromkeys(tight, 0.0))  # nor is there anything without preload
+    assert set(jacobian(instance).values()) == {0.0}
+
+
+@pytest.mark.parametrize("memory", [True, False])
+def test_all_36_slopes_are_those_of_the_forces_after_a_path(host: Host, version: str, memory: bool) -> None:
+    """Against central differences of the same instance, which are trials; slips and openings on the way."""
+    states = random_inputs("BoltedJoint", 6, seed=35)
+    instance = host("BoltedJoint", version).start({"memory": memory} | states[0])
+    for state in states[1:]:
+        instance.step()
+        values = instance.at(state)
+        J = jacobian(instance)
+        for s, size in zip(MOTIONS, 3 * [1e-6] + 3 * [1e-5], strict=True):
+            h = 1e-4 * size  # truncation h^2, 1e-8, and round-off 1e-16/1e-4; sliders slip between the ends
+            up, down = (instance.at(state | {s: state[s] + d * h}) for d in (1.0, -1.0))
+            for f in FORCES:
+                slope = (up[f] - down[f]) / (2.0 * h)
+                scale = abs(J[f, s]) + 1e-2 * abs(values[f]) / size
+                assert abs(slope - J[f, s]) <= 1e-3 * scale, (f, s)
+        assert instance.at(state) == values  # trials left no trace
+
+
+def test_slopes_of_accepted_states_are_the_mean_of_both_directions(host: Host, version: str) -> None:
+    """On a way whose load changes: forces at their limit are not beyond it by round-off, as the limit's parts
+    cancel. Against central differences as above."""
+    size = dict(zip(MOTIONS, (3e-7, 2e-7, 1e-7, 3e-6, 3e-6, 6e-6), strict=True))
+    instance, h = host("BoltedJoint", version).start({"preload": 9e3}), 1e-10
+    for n in range(24):
+        state = {s: a * math.sin(0.1 * n * (1.0 + 0.1 * k)) for k, (s, a) in enumerate(size.items())}
+        instance.at(state)
+        instance.step()
+        J = jacobian(instance)
+        up, down = (instance.at(state | {"s_rel_x": state["s_rel_x"] + d * h}) for d in (1.0, -1.0))
+        for f in ("f_x", "f_y"):
+            slope = (up[f] - down[f]) / (2.0 * h)
+            assert abs(slope - J[f, "s_rel_x"]) <= 1e-3 * abs(J["f_x", "s_rel_x"]), (n, f)
+        instance.at(state)
+
+
+def test_an_accepted_state_tells_the_tangent_of_a_further_motion(fmu: Host, host: Host, version: str) -> None:
+    """Whatever the steps that led there: K_yy, K_rz and derivatives against differences of the same instance.
+
+    Along x sliders at their limits slip on or stick: K_xx is the slope of going on, the derivative the mean.
+    """
+    end, found = 0.6e-6, []
+    for steps in (1, 7, 200):
+        instance, python = host("BoltedJoint", version).start({"preload": 9e3}), fmu("BoltedJoint")
+        python.start({"preload": 9e3})
+        for k in range(steps):
+            tried = instance.at({"s_rel_x": end * (k + 1) / steps})
+            instance.step()
+        values, J = instance.get(), jacobian(instance)
+        assert values == tried
+        at = instance.at
+        for s, f, K in (("s_rel_y", "f_y", "K_yy"), ("theta_z", "m_z", "K_rz")):
+            h = 1e-11 if s == "s_rel_y" else 1e-10  # sliders at their limits turn by a ten-thousandth
+            up, down = (at({"s_rel_x": end, s: d * h})[f] for d in (1.0, -1.0))
+            at({s: 0.0})
+            assert values[K] == pytest.approx((down - up) / (2.0 * h), rel=1e-3)
+            assert J[f, s] == close(-values[K], 1e-9 if K == "K_yy" else 1e-3)  # K_rz of one direction
+        on, there = (at({"s_rel_x": end + d})["f_x"] for d in (1e-12, 0.0))
+        assert values["K_xx"] == pytest.approx((there - on) / 1e-12, rel=1e-3)
+        back = at({"s_rel_x": end - 1e-12})["f_x"]
+        assert J["f_x", "s_rel_x"] == pytest.approx((on - back) / 2e-12, rel=1e-3)  # of both directions
+        assert instance.at({"s_rel_x": end}) == values
+        found.append([values[K] for K in ("K_xx", "K_yy", "K_rz")])
+        if steps < 10:
+            for k in range(steps):
+                python.at({"s_rel_x": end * (k + 1) / steps})
+                python.step()
+            assert python.get() == close(values)
+            assert python.at({"s_rel_x": end}) == close(values)
+    assert found[0] == close(found[1], 1e-9)
+    assert found[0] == close(found[2], 1e-9)
+
+
+# The laboratory's pressure map
+
+
+COMPILED = 1e-9
+"""The same table with another mathematical library [1]."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", ["zhao2018", "roughness"])
+def test_the_map_is_the_pressure_at_the_points(law):
+    pytest.importorskip("wasmtime")
+    module = next(m for m in modules() if m.model.name == "BoltedJoint" and m.files[0].law == law)
+    joint = module.files[0].values
+    shape = points(joint.pattern)
+    spring = BoltedJointSpring.of_nodes(joint, shape)
+    instance = Instance(module, module.compiled())
+    for moment, apart, turn in ((0.0, 0.0, 0.0), (1500.0, 2e-7, 1e-6)):
+        given = {"preload": 12e3, "moment": moment, "s_rel_z": apart, "theta_x": turn, "theta_y": -turn}
+        assert instance.start(given)
+        found = instance.map()
+        assert found[:, :2] == pytest.approx(shape.position, rel=1e-12, abs=1e-15)
+        assert found[:, 2] == pytest.approx(shape.share, rel=1e-15)
+        x, y = shape.position.T
+        approach = spring.tightened(12e3, moment) - (apart + turn * y + turn * x)
+        expected = spring.curve.derivatives(approach, 0)[0]
+        assert found[:, 3] == pytest.approx(expected, rel=COMPILED, abs=COMPILED * float(np.max(expected)))
+        assert float(found[:, 3].max()) == instance.get()["p_max"]
+
+
+# The report: its loops and its picture
+
+
+SVG = "{http://www.w3.org/2000/svg}"
+YELLOW = "#fde725"
+"""The end of the colours."""
+
+
+@pytest.mark.parametrize("mu", [0.15, 0.0015])
+def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
+    """The smallest keeps part of its stiffness, the largest stays below the friction and loses."""
+    file = default("bolted_joint").with_values({"mu": mu, "memory": True}, "user", "friction")
+    model = MODELS["BoltedJoint"]
+    course = Course(model, file)
+    small, *_, large = course.loops().rows()
+    point = {**course.about, "s_rel_x": 0.0}
+    stiff = model.evaluate(course.spring, point)["K_xx"]
+    assert small["secant_stiffness"] > 0.25 * stiff
+    assert large["force"] <= mu * course.about["preload"] * file.flat["n_bolts"] * (1.0 + 1e-9)
+    if mu < 0.1:
+        assert large["motion"] < 0.5 * model.loop.amplitude
+        # slides freely over more than a third of the way back
+        assert large["loss_factor"] > 0.7
+
+
+def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
+    """Cells make up the frame, the brightest lies at a bolt, numbers run as the bolts do."""
+    joint = default("bolted_joint").values
+    shape = joint.pattern.shape()
+    drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
+    cells = [rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") not in ("#fff", "none", None)]
+    area = sum(float(rect.get("width")) * float(rect.get("height")) for rect in cells[: len(shape.share)])
+    outer = next(rect for rect in drawn.iter(f"{SVG}rect") if rect.get("fill") == "none")
+    scale = float(outer.get("width")) / (joint.pattern.column_spacing + joint.pattern.flange_width)
+    assert area / (1.02 * scale) ** 2 == pytest.approx(joint.A_0, rel=0.03)  # drawn to tenths of 5 px
+    (x, y), *_ = [
+        np.array([float(rect.get("x")), float(rect.get("y"))]) for rect in cells if rect.get("fill") == YELLOW
+    ]
+    holes = {(float(c.get("cx")), float(c.get("cy"))) for c in drawn.iter(f"{SVG}circle")}
+    assert len(holes) == len(joint.pattern.bolts)
+    assert min(np.hypot(x - a, y - b) for a, b in holes) < scale * joint.pattern.hole_diameter
+    told = [text.text for text in drawn.iter(f"{SVG}text")]
+    assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]
+
+
+def test_the_picture_of_points_without_an_outline() -> None:
+    """One disc a point, of its area; no bolts, and the page says so."""
+    file = default("bolted_joint")
+    shape = file.values.pattern.shape()
+    half = np.flatnonzero(shape.position[:, 1] > 0.0)
+    some = shape.part(half)
+    share = some.share / some.share.sum()
+    moved = replace(some, share=share, position=some.position - share @ some.position)
+    moved = replace(moved, equal=some.equal / (share @ some.equal), tilt=some.tilt - share @ some.tilt)
+    joint = replace(file.values, pattern=NodalField(**as_lists(moved)))
+    drawn = ElementTree.fromstring(plan(joint, 9e3, 0.0))
+    discs = [circle for circle in drawn.iter(f"{SVG}circle") if circle.get("fill-opacity")]
+    assert len(discs) == len(share)
+    radius = np.array([float(disc.get("r")) for disc in discs])
+    places = np.array([[float(disc.get("cx")), -float(disc.get("cy"))] for disc in discs])
+    scale = np.ptp(places, axis=0) / np.ptp(moved.position, axis=0)
+    np.testing.assert_allclose(scale[0], scale[1], rtol=1e-2)
+    assert np.pi * np.sum(radius**2) / scale[0] ** 2 == pytest.approx(joint.A_0, rel=0.05)
+    assert len(PlaneLayout.of(joint).bolts) == 0
+    figure = pictured(Course(MODELS["BoltedJoint"], replace(file, values=joint)))
+    assert "no places of the bolts" in figure.text
+    assert len(figure.pictures) == 1

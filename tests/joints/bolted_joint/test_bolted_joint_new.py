@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from conftest import Fmu, refused_line
+from conftest import Fmu, here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
@@ -27,7 +27,7 @@ STILL = (0.0, 0.0, 0.0)
 
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
-    """The finite elements of the whole joint take seconds; test_whole_bolted_joint.py looks at them."""
+    """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
     monkeypatch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
 
 
@@ -360,7 +360,8 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, path=path)
     command = ["build", "BoltedJoint", "--params", str(path), "--flavour", "fmi2", "--out", str(tmp_path)]
-    assert cli.main(command) == 0
+    with here_alone():
+        assert cli.main(command) == 0
     instance = Fmu(tmp_path / "fmi2" / "BoltedJoint.fmu")
     spring = BoltedJointSpring.of(load(path).values)
     for preload, moment, s_rel in (
@@ -379,9 +380,9 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
-    """By elements of twice the size, whose error is far below what is asked."""
+    """By elements of thrice the size, whose error is far below what is asked."""
     fine = BoltedContact.of
-    monkeypatch.setattr(BoltedContact, "of", lambda assembly: fine(assembly, 0.5))
+    monkeypatch.setattr(BoltedContact, "of", lambda assembly: fine(assembly, 0.35))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"

@@ -1,9 +1,16 @@
-"""Bolts anywhere on a plate: layouts, equilibrium, contradictions, and bolts that carry the open joint."""
+"""Bolts anywhere on a plate: layouts, equilibrium, contradictions; and the whole joint that `new` prints."""
 
+import json
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import refused_line
+from jointfmu_tools import cli
+from jointfmu_tools.commands.footprint.finite_elements import with_assembly
+from jointfmu_tools.fem.bolts import BoltList
+from jointfmu_tools.fem.geometry import Assembly, Plate
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
@@ -270,3 +277,82 @@ def test_each_bolt_pulls_at_its_place(name):
     assert with_["f_z"] - without["f_z"] == pytest.approx(-tension.sum(), rel=1e-3, abs=cut)
     assert with_["m_x"] - without["m_x"] == pytest.approx(-(tension @ y), rel=1e-3, abs=0.1 * cut)
     assert with_["m_y"] - without["m_y"] == pytest.approx(tension @ x, rel=1e-3, abs=0.1 * cut)
+
+
+# Assemblies whose bolts are no two rows
+
+
+PLATE = Plate(length=0.2, width=0.1, thickness=0.02, E=210e9, nu=0.3, density=7850.0)
+
+
+@pytest.mark.parametrize("x", [(0.0,), (-0.05, 0.0, 0.05)])
+def test_the_default_joint_takes_one_row(x):
+    bolts = BoltList(x=x, y=(0.0,) * len(x), hole_diameter=0.0135, head_diameter=0.018)
+    joint = with_assembly(default("bolted_joint"), Assembly("row", PLATE, PLATE, bolts), whole=True).values
+    assert (joint.n_bolts, joint.row_bolts, joint.row_distance) == (len(x), 1.0, 0.018)
+
+
+# The whole joint: interface, members and bolts side by side
+
+
+M16 = ["--plate", "80x80", "--bolts", "M16", "--grip", "40", "--material", "steel", "--Ra", "0.8"]
+LOAD = ["--preload", "60e3", "--embedding", "0"]
+"""These and the four bolts below are plates of test_elastic_sides.py, which are solved once."""
+
+
+def made(capsys, *words):
+    assert cli.main(["new", "bolted-joint", *words, "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    return {name: fact["value"] for name, fact in found["facts"].items()}, found
+
+
+@pytest.mark.slow
+def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys):
+    """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
+    face; its opening load is the preload over 1 - Phi."""
+    facts, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
+    members = facts["whole_K_zz"] - facts["bolt_stiffness"]
+    assert members == pytest.approx(facts["member_stiffness"], rel=0.2)
+    assert facts["whole_load_factor"] == pytest.approx(facts["load_factor"], rel=0.15)
+    assert facts["opening_load"] == pytest.approx(60e3 / (1.0 - facts["whole_load_factor"]))
+    assert facts["interface_share"] < 0.05
+
+
+@pytest.mark.slow
+def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
+    """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
+    heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
+    faces, found = made(capsys, *M16, *LOAD)
+    assert faces["whole_load_factor"] < 0.5 * heads["whole_load_factor"]
+    assert heads["whole_K_zz"] < faces["whole_K_zz"] < faces["K_zz"]
+    assert "between the outer faces; of its energy" in found["facts"]["whole_K_zz"]["text"]
+    assert "the FMU is the whole" in found["facts"]["interface_share"]["text"]
+
+
+@pytest.mark.slow
+def test_four_bolts_share_a_load_evenly(capsys):
+    words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
+    facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
+    assert facts["whole_load_factor"] == pytest.approx(4.0 * facts["whole_bolt_share"], rel=1e-2)
+    assert facts["whole_K_xx"] == pytest.approx(facts["whole_K_yy"], rel=0.02)  # gmsh's mesh is not symmetric
+
+
+def test_without_finite_elements_it_is_said(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "gmsh", None)
+    facts, found = made(capsys, *M16, *LOAD)
+    assert "whole_K_zz" not in facts
+    (line,) = found["warnings"]
+    assert line.startswith("members and bolts are not computed, the FMU is the interface alone: ")
+    assert "pip install 'jointfmu[fem]'" in line
+
+
+def test_heads_that_do_not_fit_are_said(capsys):
+    _, found = made(capsys, *M16, *LOAD, "--bearing", "90")
+    (line,) = found["warnings"]
+    assert "head_diameter = 0.09 m reaches beyond the flange" in line
+
+
+def test_an_unknown_attachment_is_refused(capsys):
+    line = refused_line(capsys, "new", "bolted-joint", *M16, "--attached", "bolts")
+    assert "--attached" in line
+    assert "heads" in line

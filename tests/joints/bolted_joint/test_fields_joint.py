@@ -81,7 +81,7 @@ def test_points_keep_the_sums(reduced):
     assert found.deviation <= TOLERANCE
     rng = np.random.default_rng(11)
     lowest = Sums.of(joint, PRELOAD, pressures).curve.displacement[0]
-    for _ in range(60):
+    for _ in range(15):  # many in benchmarks/field_reduction.py
         load = Load(float(np.exp(rng.uniform(*np.log(PRELOADS)))), found.moment * rng.uniform(-1, 1), 0.0)
         start, _, peak = direct(joint, shape, load)
         apart = rng.choice([0.0, rng.uniform(-PRESSED, 1.0)]) * (start.max() - lowest)
@@ -105,10 +105,10 @@ def test_points_balance(reduced):
 
 
 def test_a_field_that_is_a_bit_off_is_the_same():
-    """Reduced are the same bits: 200 times with every number of the file off by 1e-15 of itself."""
+    """Reduced are the same bits: 40 times with every number of the file off by 1e-15 of itself."""
     rng, shape = np.random.default_rng(8), pressure_shape(JOINT, FIELD, PRELOAD)
     before, numbers = rounded(shape, DIGITS), ("share", "position", "equal", "tilt")
-    for _ in range(200):
+    for _ in range(40):
         area, position, pressure = (
             values * (1.0 + 1e-15 * rng.choice([-1.0, 1.0], values.shape))
             for values in (FIELD.area, FIELD.position, FIELD.pressure)

@@ -1,14 +1,19 @@
-"""The drives whose catalogue ships: their names, their numbers, and the command that lists them."""
+"""Drives of the catalogue: names, numbers, all series, their three lines without corners."""
 
 import csv
 import json
 import math
 from importlib.resources import files
 
+import numpy as np
 import pytest
-from conftest import refused_line
+from conftest import Fmu, here_alone, refused_line
+from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
+
+import jointfmu
+from jointfmu.joints.harmonic_drive.given import CORNER, SHARPEST
 
 REFERENCE = files("jointfmu_models") / "reference"
 
@@ -141,3 +146,143 @@ def test_single_drives_have_what_is_printed_of_them():
 
 def test_an_unknown_word_is_refused(capsys):
     assert "'nope'" in refused_line(capsys, "catalogue", "nope")
+
+
+# Series beside cups and hats: actuators, small sizes, those of no legible source
+
+
+LINES = ("T1", "T2", "K1", "K2", "K3")
+
+
+def lines_of(name):
+    return [catalogue.find(name).numbers[column].value for column in LINES]
+
+
+@pytest.mark.parametrize(
+    ("name", "printed"),
+    [
+        # CHA engineering data 1018854, table of torsional stiffness
+        ("CHA-14A-30", [2.0, 6.9, 1900.0, 2400.0, 3400.0]),
+        ("CHA-32A-50", [29.0, 108.0, 54e3, 78e3, 98e3]),
+        ("CHA-58A-160", [168.0, 598.0, 400e3, 610e3, 710e3]),
+        # CSF/CSG catalogue p. 50, ratio 1/30
+        ("CSF-8-30", [0.29, 0.75, 340.0, 440.0, 540.0]),
+        ("CSF-11-30-1U", [0.8, 2.0, 840.0, 1300.0, 1600.0]),
+    ],
+)
+def test_the_printed_lines(name, printed):
+    assert lines_of(name) == printed
+    assert {catalogue.find(name).numbers[column].kind for column in LINES} == {"catalogue"}
+
+
+@pytest.mark.parametrize(
+    ("name", "like", "K3"),
+    [
+        ("FHA-8C-100", "RSF-8B, size 8, ratio 100", 1200.0),
+        ("FHA-11C-50", "RSF-11B, size 11, ratio 50", 3200.0),
+        ("CSF-8-50", "RSF-8B, size 8, ratio 50", 840.0),
+        ("RSF-14B-100", "size 14, ratio 80+", 7100.0),
+    ],
+)
+def test_a_last_line_that_is_not_legible_is_that_of_the_same_lines_below(name, like, K3):
+    number = catalogue.find(name).numbers["K3"]
+    assert (number.value, number.kind) == (K3, "estimate")
+    assert like in number.source
+
+
+def test_a_last_line_without_such_a_drive_is_the_second():
+    number = catalogue.find("RSF-5B-50").numbers["K3"]
+    assert (number.value, number.kind) == (140.0, "estimate")
+
+
+def test_the_limits_of_an_actuator_are_its_own():
+    """Its torques are those of the motor, and are not taken from a gear."""
+    path = files("jointfmu_models") / "reference" / "harmonic_drive_catalogue_accuracy.csv"
+    for row in csv.DictReader(path.read_text(encoding="utf-8").splitlines()):
+        ratio = row["ratio"].replace("50+", "80")
+        numbers = catalogue.find(f"CHA-{row['size']}A-{ratio}").numbers
+        loss = numbers["hysteresis_loss"]
+        assert loss.value == pytest.approx(float(row["hysteresis_below_arcmin"]) * math.pi / 10800.0)
+        assert (loss.kind, loss.bound) == ("catalogue", True)
+        assert "rated_torque" not in numbers
+    assert catalogue.find("HFUC-14-30").numbers["hysteresis_loss"].kind == "estimate"
+    assert jointfmu.drive("CHA-14A-30").values["hysteresis_loss"] == 0.0  # a limit is no value
+
+
+def test_the_wind_up_that_the_maker_computes():
+    """CHA engineering data p. 68: T = 60 N.m at T1 = 29, K1 = 6.7e4, K2 = 1.1e5 gives 7.15e-4 rad."""
+    sharp = jointfmu.drive("CHA-32A-100", corner=0)
+    assert sharp.wind_up(60.0) == pytest.approx(7.15e-4, abs=0.005e-4)
+
+
+@pytest.mark.parametrize(
+    "name", ["CSD-20-100", "SHD-20-100", "SHF-20-100", "CPL-20-100", "FHA-25C-100", "RV-40E-121", "CSF-8-100"]
+)
+def test_what_no_legible_source_has_is_unknown(name, capsys):
+    said = refused_line(capsys, "new", "harmonic-drive", "--catalogue", name)
+    assert f"catalogue '{name}' is unknown" in said
+
+
+# Lines without smooth corners, which are said to have kinks, and the ratio
+
+
+DRIVE = "CSG-25-100"
+
+
+def angle(row, T):
+    """Of the catalogue's three lines."""
+    first = row["T1"] / row["K1"]
+    second = first + (row["T2"] - row["T1"]) / row["K2"]
+    return np.interp(
+        T, [0.0, row["T1"], row["T2"], 2.0 * row["T2"]], [0.0, first, second, second + row["T2"] / row["K3"]]
+    )
+
+
+def test_without_corners_the_printed_angles_are_met():
+    smooth, sharp = jointfmu.drive(DRIVE), jointfmu.drive(DRIVE, corner=0)
+    row, T = sharp.values, np.array([14.0, 48.0, 87.0])
+    # at a corner a smooth step of half-width c leaves 3/32 c of the jump in compliance: 1e-7 of the angle
+    np.testing.assert_allclose(sharp.wind_up(T), angle(row, T), rtol=0.1 * SHARPEST)
+    assert abs(smooth.wind_up(14.0) / angle(row, 14.0) - 1.0) > 0.01 * CORNER
+    every = np.linspace(-90.0, 90.0, 1001)
+    np.testing.assert_allclose(sharp.torque(sharp.wind_up(every)), every, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(sharp.stiffness([1.0, 13.99, 14.01, 47.9, 48.1]), [31e3, 31e3, 5e4, 5e4, 57e3])
+
+
+def test_the_kinks_are_said_and_kept_in_the_file(tmp_path, capsys):
+    out = tmp_path / "drive.toml"
+    assert cli.main(["new", "harmonic-drive", "--catalogue", DRIVE, "--corner", "0", "--out", str(out)]) == 0
+    assert "kinks at T1 and T2" in capsys.readouterr().err
+    assert jointfmu.load(out).values["corner"] == 0.0
+
+
+@pytest.mark.slow
+def test_all_flavours_have_the_kinks(tmp_path):
+    file = jointfmu.drive(DRIVE, corner=0).file
+    T = np.linspace(0.0, 90.0, 181)
+    found = []
+    with here_alone():
+        paths = build(["HarmonicDriveCompliance"], ["fmi2", "fmi3", "python"], file, tmp_path)
+    for path in paths:
+        found.append(jointfmu.run(path, {"tau": T})["phi_rel"])
+        np.testing.assert_allclose(found[-1], angle(file.flat, T), rtol=0.1 * SHARPEST, atol=1e-15)
+        np.testing.assert_allclose(found[-1], found[0], rtol=1e-12)
+    one = Fmu(tmp_path / "fmi2" / "HarmonicDriveCompliance.fmu").start({"corner": CORNER, "tau": 14.0})
+    assert one.get("phi_rel")["phi_rel"] == pytest.approx(jointfmu.drive(DRIVE).wind_up(14.0), rel=1e-9)
+    one.free()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [(["--corner", "-0.1"], "corner"), (["--corner", "0.04", "--law", "hu2023"], "has no corners")],
+)
+def test_what_is_no_corner(options, said, capsys):
+    assert said in refused_line(capsys, "new", "harmonic-drive", "--catalogue", DRIVE, *options)
+
+
+def test_a_ratio_of_zero_is_refused_and_a_negative_one_taken(capsys):
+    asked = ("new", "harmonic-drive", "--catalogue", DRIVE, "--ratio")
+    assert "--ratio = 0 is outside (-inf, 0) and (0, inf)" in refused_line(capsys, *asked, "0")
+    assert jointfmu.drive(DRIVE, ratio=-100).values["ratio"] == -100.0
+    with pytest.raises(ValueError, match=r"ratio = 0 is outside .* allowed are \(-inf, 0\) and \(0, inf\)"):
+        jointfmu.drive(DRIVE).with_values(ratio=0.0)

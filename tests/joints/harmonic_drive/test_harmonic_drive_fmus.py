@@ -1,19 +1,26 @@
-"""The FMUs of the harmonic drive: equal to its law, inverse to each other, and as the contract says."""
+"""FMUs of the harmonic drive: equal to its law, inverse to each other, and with friction at work."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Fmu
+from browser import PROGRAM, Browser, browser
+from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
+from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
+from jointfmu_tools.joints.harmonic_drive.laboratory import LABORATORY
+from jointfmu_tools.laboratory.assemble import write_laboratory
+from jointfmu_tools.systems.master import Slave
+from natives import Host, close, jacobian
 from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu.fmi import ramp
+from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
-
-Host = Callable[..., Fmu]
+from jointfmu.parameters import default
 
 
 def test_parameters_count_until_initialization_ends(fmu: Host) -> None:
@@ -88,3 +95,179 @@ def test_the_torque_ramp_agrees_with_scipy(fmus: Path) -> None:
     assert np.max(np.abs(c["phi_rel"] - phi)) < 1e-6 * np.max(np.abs(phi))
     assert c["phi_rel"][0] == 0.0
     assert np.all(np.diff(c["K_WTS"]) > 0.0)  # the drive stiffens
+
+
+def test_derivatives_keep_the_closed_relations_of_the_drive(host: Host, version: str) -> None:
+    ratio, d = 80.0, 0.7
+    spring = host("HarmonicDriveSpring", version).start({"ratio": ratio, "d": d})
+    compliance = host("HarmonicDriveCompliance", version).start()
+    beyond = {"phi1": 0.0, "w1": 0.0, "phi2": 0.05, "w2": 1.0}
+    for state in (*random_inputs("HarmonicDriveSpring", 20, seed=33), beyond):
+        values, J = spring.at(state), jacobian(spring)
+        K = values["K_WTS"]
+        assert J["tau", "phi2"] == close(K, 1e-12)
+        assert J["tau", "phi1"] == close(-K / ratio, 1e-12)
+        assert (J["tau", "w2"], J["tau", "w1"]) == close((d, -d / ratio), 1e-12)
+        for moved in state:
+            assert J["tau1", moved] == close(J["tau", moved] / ratio, 1e-12)
+            assert J["tau2", moved] == -J["tau", moved]
+            series = J["K_TS", moved] / values["K_TS"] ** 2 - J["K_WTS", moved] / K**2
+            assert abs(series) <= 1e-12 * abs(J["K_WTS", moved]) / K**2
+        assert (J["phi_rel", "phi1"], J["phi_rel", "phi2"]) == close((-1.0 / ratio, 1.0), 1e-12)
+    assert J["K_WTS", "phi2"] == 0.0  # beyond the table: a straight line
+    for tau in (*np.linspace(-29.0, 29.0, 15), 100.0):
+        wound, J = compliance.at({"tau": float(tau)}), jacobian(compliance)
+        assert J["phi_rel", "tau"] == close(1.0 / wound["K_WTS"], 1e-12)
+    assert J["K_WTS", "tau"] == 0.0
+
+
+# At work: what stands holds, what swings stops, what errs ripples
+
+
+DRY = {"friction_coulomb": 0.03, "friction_stribeck": 0.02, "stribeck_speed": 5.0}
+MOTION, MOTOR = ("phi1", "w1", "phi2", "w2"), 3e-5
+"""Inputs, and inertia of the motor [kg m2]."""
+
+
+@pytest.fixture
+def path(native: Path) -> Path:
+    return native / "fmi2" / "HarmonicDriveSpring.fmu"
+
+
+def wound_up(path: Path, torque: float) -> float:
+    """Wind-up [rad] under a torque [N.m]."""
+    with Slave(path.with_name("HarmonicDriveCompliance.fmu"), {"tau": torque}, (), ("phi_rel",)) as drive:
+        return drive.get()[0]
+
+
+@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.2, 353.15)])
+def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
+    path: Path, dither: float, kelvin: float
+) -> None:
+    """0.7 of the limit hangs on a motor without current, which is shaken or not, cold or warm: 1e5 steps."""
+    warmer = kelvin - 293.15
+    most, step, steps, period = 0.05 * np.exp(-0.01 * warmer), 1e-4, 100_000, 500
+    wound, phi, w = wound_up(path, 0.7 * 100.0 * most), 0.0, 0.0
+    places = np.empty(steps)
+    wet = 1e-3 * np.exp(0.023 * warmer)
+    start = DRY | {"friction_viscous": wet, "temperature": kelvin, "phi2": wound}
+    with Slave(path, start, MOTION, ("tau1",)) as drive:
+        for k in range(steps):
+            (torque,) = drive.get()
+            w += step / MOTOR * (torque + dither * most * np.sin(2.0 * np.pi * k / period))
+            phi += step * w
+            drive.set(phi, w, wound + phi / 100.0, w / 100.0)
+            drive.step(k * step, step)
+            places[k] = phi
+    assert 0.002 < places[-1] < 0.1  # it has given way to where its friction bears the load
+    late = places[steps // 2 :]
+    # the oscillation dies out like exp(-friction_viscous t/(2 J)), exp(-83) after half of the steps
+    assert np.max(np.abs(late[period:] - late[:-period])) < 1e-12
+
+
+def swing(path: Path, given: dict[str, float], step: float = 1e-4, steps: int = 40_000) -> np.ndarray:
+    """Angle and speed (steps, 2) of a link in gravity on the drive of a motor without current."""
+    link, weight = 0.05, 8.0
+    x = np.array([0.0, 0.0, 0.0, 0.0])
+    x[0], x[2] = 60.0, 0.6
+    found = np.empty((steps, 2))
+    start = dict(zip(MOTION, x, strict=True))
+    with Slave(path, given | start, MOTION, ("tau1", "tau2")) as drive:
+        for k in range(steps):
+            tau1, tau2 = drive.get()
+            x[1] += step * tau1 / MOTOR
+            x[3] += step * (tau2 - weight * np.sin(x[2])) / link
+            x[0], x[2] = x[0] + step * x[1], x[2] + step * x[3]
+            drive.set(*x)
+            drive.step(k * step, step)
+            found[k] = x[2:]
+    return found
+
+
+def test_a_swinging_link_stops_where_friction_holds_it(path: Path) -> None:
+    """Not at the bottom: where its weight is less than the friction at the motor times the ratio."""
+    free, braked = swing(path, {}), swing(path, DRY | {"friction_viscous": 1e-3})
+    assert np.ptp(free[-10_000:, 0]) > 1.0
+    late = braked[-5_000:]
+    assert np.max(np.abs(late[:, 1])) < 1e-6
+    assert np.ptp(late[:, 0]) < 1e-7
+    assert 0.05 < 8.0 * abs(np.sin(late[-1, 0])) < 100.0 * 0.05
+
+
+def test_the_output_ripples_most_at_half_its_natural_frequency(path: Path) -> None:
+    inertia, step = 0.05, 2e-4
+    with Slave(path, {}, (), ("K_WTS",)) as drive:
+        natural = np.sqrt(drive.get()[0] / inertia)
+    ripple = []
+    for part in (0.35, 0.5, 0.65):
+        speed = part * natural
+        phi2, w2, speeds = 0.0, speed / 100.0, np.empty(20_000)
+        with Slave(path, {"error_2": 2e-5, "d": 1.0, "w1": speed, "w2": w2}, MOTION, ("tau2",)) as drive:
+            for k in range(speeds.size):
+                w2 += step * drive.get()[0] / inertia
+                phi2 += step * w2
+                drive.set(speed * step * (k + 1), speed, phi2, w2)
+                drive.step(k * step, step)
+                speeds[k] = w2
+        ripple.append(np.ptp(speeds[-5_000:]))
+    assert ripple[1] > 3.0 * max(ripple[0], ripple[2])
+
+
+# The laboratory turns the drive under load as the bench of the report does
+
+
+NAME = "HarmonicDriveSpring"
+SPEED = 150.0
+"""Of the wave generator [rad/s]."""
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    folder = made_once(tmp_path_factory, "page", lambda out: write_laboratory(out / "laboratory.html"))
+    with browser() as one:
+        one.open(folder / "laboratory.html")
+        yield one
+
+
+SCRIPT = """(async () => {
+  const lab = await laboratory;
+  await lab.choose("HarmonicDriveSpring", 0);
+  for (const [name, value] of Object.entries(lab.about.example.values)) lab.values.set(name, value);
+  for (const [name, value] of Object.entries(GIVEN)) lab.values.set(name, value);
+  lab.turn.speed_now = SPEED;
+  lab.draw();
+  const [gain] = lab.turn.gain.series, [torque] = lab.turn.over.series, [error] = lab.turn.wave.series;
+  return { loads: gain.x, efficiency: gain.y, torque: torque.y, error: error.y };
+})()"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+@pytest.mark.parametrize("ratio", [100.0, -80.0])
+def test_efficiency_is_that_of_the_bench(shown: Browser, ratio: float) -> None:
+    given = {"ratio": ratio, "hysteresis_loss": 0.0, "error_2": 0.0, "temperature_factor": 1.3}
+    found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
+    example = LABORATORY[NAME].example
+    assert example
+    file = default("harmonic_drive").with_values({**example.values, **given}, "user", "a test")
+    bench = spring_bench(MODELS[NAME], file)
+    assert len(found["loads"]) > 10
+    for load, value in zip(found["loads"], found["efficiency"], strict=True):
+        # friction has built up to 1 - exp(-50) in the page, to 1 - exp(-20) on the bench
+        assert value == pytest.approx(100.0 * bench.efficiency(SPEED, load), rel=1e-6), load
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="no Chromium is installed")
+def test_the_error_comes_twice_a_turn_and_takes_no_work(shown: Browser) -> None:
+    amplitude = 1.5e-4
+    losses = ("friction_coulomb", "friction_viscous", "load_loss", "load_loss_back", "hysteresis_loss")
+    without = dict.fromkeys(losses, 0.0)
+    given = without | {"error_2": amplitude}
+    found = shown.run(SCRIPT.replace("GIVEN", str(given)).replace("SPEED", str(SPEED)))
+    arcmin = math.degrees(1.0) * 60.0
+    assert max(found["error"]) == pytest.approx(amplitude * arcmin, rel=2e-3)  # the nearest of 2 deg
+    signs = [a * b < 0.0 for a, b in zip(found["error"], found["error"][1:], strict=False)]
+    assert sum(signs) == 4
+    assert found["efficiency"] == pytest.approx([100.0] * len(found["efficiency"]), rel=1e-6)
+    assert max(found["torque"]) - min(found["torque"]) > 0.0
