@@ -81,6 +81,10 @@ class Solution:
         return np.asarray(self.covariance / np.outer(root, root))
 
 
+NOTHING = Solution((), {}, np.zeros(0), 1.0, np.zeros((0, 0)), np.zeros((0, 0)), (), None)
+"""No unknowns."""
+
+
 def solve(
     unknowns: Sequence[Unknown],
     residuals: Residuals,

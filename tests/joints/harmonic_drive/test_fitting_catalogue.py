@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.joints.harmonic_drive.fit import catalogue, lines
+from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
 from jointfmu.fmi import ramp
@@ -48,7 +48,7 @@ def test_angle_of_the_polygon():
     ids=str,
 )
 def test_angles_are_kept(one):
-    found = catalogue.fit(one)
+    found = catalogue.fit_pair(one)
     kept = np.array([one.T1, one.T2, one.rated])
     np.testing.assert_allclose(windup(found.parameters.values, kept), one.angle(kept), rtol=0.01)
     assert found.parameters.values.max_torque == catalogue.MAX_OVER_RATED * one.rated
@@ -93,7 +93,7 @@ def test_a_row_beyond_the_law_is_said(capsys):
 
 def test_the_lines_stay_where_no_smooth_law_keeps_them():
     one = row(24000, 30000, 49000, 29, 108, rated=151.2)
-    found = lines.fit(one)
+    found = catalogue.fit_lines(one)
     assert "keeps the angle of K1 = 24000" in found.notes[0]
     assert "pair_angle_error" not in found.facts
     assert windup(found.parameters.values, np.array(151.2)) == pytest.approx(one.angle(151.2), rel=1e-12)
@@ -114,7 +114,7 @@ def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_p
     assert document["unknowns"] == []
     facts = {name: fact["value"] for name, fact in document["facts"].items()}
     assert all(abs(facts[f"angle_error_{name}"]) < 0.005 for name in ("T1", "T2", "rated", "max"))
-    pair = catalogue.fit(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
+    pair = catalogue.fit_pair(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
     K = torque_curve(pair).stiffness[0]
     assert facts["pair_stiffness_zero"] == pytest.approx(K / 1e4 - 1.0, rel=1e-9)
     assert facts["pair_stiffness_zero"] < -0.1

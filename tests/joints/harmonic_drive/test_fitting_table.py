@@ -9,7 +9,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting.loop import Backbone
-from jointfmu_tools.joints.harmonic_drive.fit import table, torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
 from jointfmu.joints.harmonic_drive.spring import torque_curve
@@ -49,11 +49,11 @@ def test_a_table_is_the_mid_line(loops, tmp_path):
 def test_points_fold_both_directions_and_take_the_offset_off():
     T = np.linspace(-10.0, 10.0, 201)
     line = Backbone(T, T / 5e3 + np.sign(T) * 1e-5 * T**2 + 0.3, np.ones(T.size), 2, None, None, None)
-    torque, angle, shift = table.points(line)
+    torque, angle, shift = torque_angle.points(line)
     assert shift == pytest.approx(0.3, abs=1e-12)
     np.testing.assert_allclose(angle, torque / 5e3 + 1e-5 * torque**2, rtol=0.02)  # means over bins
     with pytest.raises(ValueError, match="needs it to pass zero"):
-        table.points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
+        torque_angle.points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
 
 
 def test_the_stiffnesses_of_lines_are_found(tmp_path):

@@ -10,7 +10,7 @@ from ...catalogue import Item, Printed
 from ...report.beside import OWN, PREDICTED, SET, Beside
 from .catalogue import find
 from .efficiency import Bench, spring_bench
-from .fit.row import Row
+from .fit.drive import Row
 from .quoted import hysteresis_loss, lost_motion
 from .quoted_friction import SET_BY, SPEED
 

@@ -13,7 +13,7 @@ from ...drawing.reading import flag, number, temperature
 from .quoted_friction import QUOTED, SPEED, efficiency, friction, interval_text
 
 if TYPE_CHECKING:
-    from .fit.row import Row
+    from .fit.drive import Row
 
 _ROW: Mapping[str, str] = {"K1": "N.m/rad", "K2": "N.m/rad", "K3": "N.m/rad", "T1": "N.m", "T2": "N.m"}
 _FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]: "1"}
@@ -158,7 +158,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     """The drive with the stiffness of the row itself."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .fit import lines
+    from .fit import catalogue
     from .quoted import LOST_MOTION, lost_motion
 
     _row(printed)  # refuses what cannot be
@@ -176,7 +176,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
     printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
     printed |= brakes
-    file = lines.made(name, printed)
+    file = catalogue.made(name, printed)
     spring = HarmonicDriveSpring.of(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
@@ -200,7 +200,7 @@ def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
-    found = catalogue.fit(_row(printed), None, None, kind, ratio, name)
+    found = catalogue.fit_pair(_row(printed), None, None, kind, ratio, name)
     file = replace(found.parameters, name=name)
     loss = printed.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
@@ -217,7 +217,7 @@ def _short(number: Printed) -> str:
 
 def _row(printed: Mapping[str, Printed]) -> "Row":
     """The row, checked."""
-    from .fit.row import Row
+    from .fit.drive import Row
 
     return Row(**{name: printed[name].value for name in _ROW}, rated=printed["rated_torque"].value)
 

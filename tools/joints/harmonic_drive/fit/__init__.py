@@ -17,13 +17,13 @@ Names = Sequence[str] | None
 def _torque_angle(
     path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
 ) -> "FitResult":
-    from . import table, torque_angle
+    from . import torque_angle
 
     if law is None:
         return torque_angle.fit(path, start, free, rated_torque)
     if free:
         raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
-    return table.fit(path, start, rated_torque)
+    return torque_angle.fit_table(path, start, rated_torque)
 
 
 def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "FitResult":
@@ -55,11 +55,11 @@ def _catalogue(
     law: str,
     **row: float,
 ) -> "FitResult":
-    from . import catalogue, lines
-    from .row import Row
+    from . import catalogue
+    from .drive import Row
 
     rated, origin = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    fit = lines.fit if law == "catalogue" else catalogue.fit
+    fit = catalogue.fit_lines if law == "catalogue" else catalogue.fit_pair
     return fit(Row(**row, rated=rated), start, free, origin, ratio, source)
 
 
