@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from jointfmu_fmu_src.python.build import runtime_sources
 from jointfmu_tools import cli
 from jointfmu_tools.job.checks import default_ramp
-from jointfmu_tools.joints.harmonic_drive import figures
+from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
 from jointfmu_tools.report import motion
@@ -57,7 +57,7 @@ def main() -> None:
     if sys.argv[1:]:
         return
     result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    picture = figures.stiffness(result, validation.validate())
+    picture = job.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
     robot(IMAGES / "six_axis_robot.png")

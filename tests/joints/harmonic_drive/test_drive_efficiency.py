@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import pytest
-from jointfmu_tools.joints.harmonic_drive import figures
+from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
 from jointfmu_tools.report.course import Course
 from jointfmu_tools.report.joint import write_joint_report
@@ -59,7 +59,7 @@ def test_back_driving_takes_the_starting_torque_and_what_the_load_adds(fmu: Path
 
 
 def test_the_report_draws_it(fmu: Path) -> None:
-    *curves, back = figures.friction(fmu)
+    *curves, back = job.friction(fmu)
     for panel in curves:
         slow, _, fast, *_ = (series.y for series in panel.series)
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))

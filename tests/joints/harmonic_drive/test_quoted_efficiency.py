@@ -9,10 +9,10 @@ from pathlib import Path
 import drive_catalogue
 import numpy as np
 import pytest
-from jointfmu_tools.joints.harmonic_drive.beside import beside
 from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
+from jointfmu_tools.joints.harmonic_drive.friction import SPEED
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED
+from jointfmu_tools.joints.harmonic_drive.report import beside
 from jointfmu_tools.report.beside import OWN, PREDICTED, SET
 from jointfmu_tools.report.joint import write_joint_report
 

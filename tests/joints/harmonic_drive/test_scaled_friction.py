@@ -5,8 +5,8 @@ import pytest
 from drive_friction import DRIVES, JOINTS, drag, friction, joint, left_out, measured
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
+from jointfmu_tools.joints.harmonic_drive.friction import PrintedFriction, scaled
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.scaling import PrintedFriction, scaled
 from jointfmu_tools.uncertainty.problem import pose
 
 from jointfmu.joints.harmonic_drive.friction import dry_factor

@@ -10,7 +10,7 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO
 from ...catalogue import Printed
 from ...drawing.part import Drawing, Given, NewJoint, Option
 from ...drawing.reading import flag, number, temperature
-from .quoted_friction import QUOTED, SPEED, efficiency, friction, interval_text
+from .friction import QUOTED, SPEED, efficiency, friction, interval_text
 
 if TYPE_CHECKING:
     from .fit.drive import Row
@@ -158,8 +158,8 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     """The drive with the stiffness of the row itself."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
+    from .efficiency import LOST_MOTION, lost_motion
     from .fit import catalogue
-    from .quoted import LOST_MOTION, lost_motion
 
     _row(printed)  # refuses what cannot be
     rated, peak = printed["rated_torque"].value, printed.pop("peak_torque", None)
