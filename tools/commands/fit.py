@@ -96,7 +96,7 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """The joint whose procedure reads the file; ValueError if none does or an option is another joint's."""
     if len(choices) == 1:
         return next(iter(choices))
-    from ..fitting.heads import OTHERS
+    from ..fitting.measurement import OTHERS
 
     have = {*columns.names(args.file)}
     found = [j for j, procedure in choices.items() if have & {procedure.column, *OTHERS[procedure.column]}]

@@ -15,8 +15,7 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.parameters import load as load_file
 
 from ..drawing.part import Drawing, NewJoint, Option
-from ..fitting.outcome import FitResult, percent
-from ..fitting.picture import draw, size
+from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
 from ..joint_parts import part
 from .joint import Facts, Joint

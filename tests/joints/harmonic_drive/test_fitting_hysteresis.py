@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
-from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.fitting.hysteresis import Oscillator
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
 from memory_measurements import save
 

@@ -22,12 +22,11 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import sizes
 
-from ....fitting import memory, memory_pictures
-from ....fitting.exchange import Exchange
-from ....fitting.heads import Heads
+from ....fitting import memory
+from ....fitting import memory as memory_pictures
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Array, Unknown
-from ....fitting.measurement import Measurement, measured
+from ....fitting.least_squares import Array, Exchange, Unknown
+from ....fitting.measurement import Heads, Measurement, measured
 from ....fitting.outcome import FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
 

@@ -22,14 +22,12 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.units import sizes
 
-from ....fitting import memory, memory_pictures
+from ....fitting import memory
 from ....fitting.branches import Loops
-from ....fitting.heads import Heads
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
-from ....fitting.identifiability import undetermined
 from ....fitting.least_squares import Array, Solution, Unknown, solve
-from ....fitting.measurement import measured
-from ....fitting.outcome import FitResult, Picture, fitted, unknowns
+from ....fitting.measurement import Heads, measured
+from ....fitting.outcome import FitResult, Picture, fitted, undetermined, unknowns
 from . import drive
 from .log_reading import Samples
 
@@ -105,7 +103,7 @@ def fit(
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
     solution, scale = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
-    picture, beside = memory_pictures.pictures(data, model, solution.values, scale)
+    picture, beside = memory.pictures(data, model, solution.values, scale)
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])
     described = {"friction_torque": (limit, "N.m", "bound of the friction torque")}

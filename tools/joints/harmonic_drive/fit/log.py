@@ -16,9 +16,8 @@ from scipy.linalg import block_diag
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ....fitting.identifiability import undetermined
 from ....fitting.least_squares import Array, Solution
-from ....fitting.outcome import FitResult, Picture, fitted
+from ....fitting.outcome import FitResult, Picture, fitted, undetermined
 from . import hysteresis
 from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor
 from .log_reading import ONE_SPEED, Samples, joined, named, read

@@ -17,7 +17,7 @@ from jointfmu.quantity.units import Sizes, sizes
 
 from ....fitting import loop
 from ....fitting.least_squares import NOTHING, Array, Solution, solve
-from ....fitting.outcome import FitResult, Picture, fitted, model, unknowns
+from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -30,8 +30,6 @@ LEAST = 10
 ARCMIN = COLUMNS["angle"]["arcmin"]
 CREATED = 0.01
 """Energy that a loop may create, as noise and drift do, over that of its box [1]."""
-ALIKE = 0.5
-"""Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,13 +187,7 @@ def _notes(line: loop.Backbone, rest: Array) -> list[str]:
         notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
     elif line.drift is None:
         notes.append("a single loop that is not closed: a drift cannot be told from the loop")
-    alike = float(np.sum(rest[1:] * rest[:-1]) / np.sum(rest**2)) if np.any(rest) else 0.0
-    if alike > ALIKE:
-        notes.append(
-            f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the curve "
-            "systematically, the standard deviations are too small"
-        )
-    return notes
+    return notes + systematic(rest, "curve")
 
 
 MOST, FEWEST = 24, 4
