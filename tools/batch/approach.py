@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from jointfmu.contact.interface import SIDE, InterfaceLaw, checked_spots
 from jointfmu.contact.powerlaw import Spots
 from jointfmu.mechanics.curve import CLOSING_RATIO, closing, closing_reach
+from jointfmu.quantity import Array
 
 from . import chebyshev
-
-Array = NDArray[np.float64]
 
 COLLOCATION = 15
 """Chebyshev nodes per regime [1]."""

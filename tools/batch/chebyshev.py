@@ -4,9 +4,8 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 
 def nodes(count: int) -> Array:

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Limit, assemble, flat_fields, flatten
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 T = TypeVar("T")
 

@@ -46,7 +46,8 @@ def add(commands: Commands) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
     with installed("the finite-element analysis"):
-        from ..fem import assembly_modes, shapes
+        from ..fem import modes as assembly_modes
+        from ..fem import results
         from ..fem.assembly import load
         from ..fem.bolted_contact import BoltedContact
     assembly = load(args.assembly)
@@ -60,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
         modes = assembly_modes.computed(solution, shear, args.count)
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
     if args.vtu:
-        write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
+        write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
     found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
     if args.json:
         print(json.dumps(_document(args, assembly.name, modes, even) | found.document()))

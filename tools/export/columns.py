@@ -2,17 +2,14 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
 from jointfmu.files.columns import Column, rows, text
+from jointfmu.quantity import Array
 
 from .placing import Placing, header
 from .springs import Springs
 from .tables import LoadTable
 from .units import Units
 
-Array = NDArray[np.float64]
 Heads = Sequence[tuple[str, str]]
 """(name, SI unit) of every column."""
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.quantity.refusal import Refusal
 
@@ -11,8 +10,6 @@ from .placing import Placing, header
 from .springs import Springs
 from .tables import LoadTable
 from .units import Units
-
-Array = NDArray[np.float64]
 
 CALCULIX_ROWS = 200
 """Most rows of a table in CalculiX (its arrays `xiso(200)`)."""

@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu import __version__
+from jointfmu.quantity import Array
 
 from .units import SI, Units
-
-Array = NDArray[np.float64]
 
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 """{axis of the model that is the joint's normal: axes of the model along the joint's x, y, z}."""

@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from jointfmu.mechanics.curve import Curve
+from jointfmu.quantity import Array
 
 from ..thinning import kept
-
-Array = NDArray[np.float64]
 
 STIFFNESS = 0.01
 """Error of the stiffness [1] above which a table's reader should know."""

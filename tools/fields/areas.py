@@ -11,7 +11,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .nodal_result import Array, Nodes
+from jointfmu.quantity import Array
+
+from .nodal_result import Nodes
 
 CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
     3: ((0, 1, 2),),

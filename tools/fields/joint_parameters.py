@@ -15,11 +15,11 @@ from jointfmu.mechanics.footprint.shape import (
     means,
 )
 from jointfmu.parameters import ORIGINS, ParameterFile
-from jointfmu.quantity import build
+from jointfmu.quantity import Array, build
 from jointfmu.quantity.refusal import Refusal
 
 from .clamped import BoltedInterface, clamping
-from .contact import Array, ContactField
+from .contact import ContactField
 from .reduction import MOST, Reduction, reduce
 
 FORCE_ERROR = 0.01

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.quantity import Array
+
 from .areas import CORNERS
 from .bodies import bodies, boundary
-from .nodal_result import Array, NodalResult, Nodes
+from .nodal_result import NodalResult, Nodes
 
 
 @dataclass(frozen=True, slots=True)

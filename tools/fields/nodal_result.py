@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import sizes
 
-Array = NDArray[np.float64]
 Nodes = NDArray[np.intp]
 
 LENGTHS = sizes("m", "mm", "um")

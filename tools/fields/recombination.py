@@ -9,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import nnls
 
-from .nodal_result import Array, Nodes
+from jointfmu.quantity import Array
+
+from .nodal_result import Nodes
 
 GROUPS = 2
 """Groups over kept sums [1]."""

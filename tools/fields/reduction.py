@@ -18,10 +18,11 @@ from jointfmu.mechanics.footprint.patches import highest
 from jointfmu.mechanics.footprint.reproducible import rounded, to_digits
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
 from .clamped import BoltedInterface, Pressures
 from .loads import PRELOADS, SEED, Load, first_loads, further_loads, largest_moment
-from .nodal_result import Array, Nodes
+from .nodal_result import Nodes
 from .recombination import recombined
 from .sums import Sums, SumsAtLoads, balance, grouped
 

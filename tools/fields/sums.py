@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.quantity import Array
 
 from .clamped import BoltedInterface, Pressures
 from .loads import PRELOADS, Load
-from .nodal_result import Array, Nodes
+from .nodal_result import Nodes
 
 COUPLED = 100.0
 """How much larger the deviations of first and mixed moments may be [1]."""

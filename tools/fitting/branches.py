@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 from scipy.signal import find_peaks
 
+from jointfmu.quantity import Array
+
 from .hysteresis import HysteresisLaw
-from .least_squares import Array
 
 PROMINENCE = 0.02
 """Least reversal of the motion, over its range [1], that is a turning point."""

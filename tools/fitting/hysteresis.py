@@ -25,8 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from jointfmu.quantity import Array
+
 from .decay import Points
-from .least_squares import Array
 
 Force = Callable[[Array], Array]
 _ANGLE, _WEIGHT = np.polynomial.legendre.leggauss(64)

@@ -14,9 +14,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
+
 Residuals = Callable[[Mapping[str, float]], Array]
 """Residuals (n) [1] at {name: value}; ValueError or RuntimeError where the model refuses the values."""
 

@@ -17,8 +17,9 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
+from jointfmu.quantity import Array
+
 from .branches import extremes
-from .least_squares import Array
 
 PROMINENCE = 0.1
 """Least reversal of the torque, over its range [1], that counts as a turning point."""

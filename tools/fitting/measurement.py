@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.files import columns
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
 
 from .branches import Loops, cut
 from .decay import Points, points
 from .hysteresis import Free, Response
-from .least_squares import Array
 
 LEAST = 8
 """Fewest rows of a file."""

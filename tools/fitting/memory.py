@@ -7,11 +7,12 @@ from itertools import product
 import numpy as np
 
 from jointfmu.plots import shown
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
 from .branches import Loops, ordered
 from .hysteresis import Free, HysteresisLaw, Oscillator, Response
-from .least_squares import Array, Exchange, Residuals, Solution, Unknown, solve
+from .least_squares import Exchange, Residuals, Solution, Unknown, solve
 from .measurement import Measurement
 from .outcome import Picture, systematic
 

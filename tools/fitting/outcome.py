@@ -17,15 +17,13 @@ from jointfmu import plots
 from jointfmu.contact.roughness import ROUGHEST
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flat_fields
+from jointfmu.quantity import Array, Interval, flat_fields
 
 from .least_squares import Solution, Unknown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
-Array = NDArray[np.float64]
 
 LOOSEST = 0.2
 """Standard deviation of a logarithm [1] up to which a parameter counts as determined: about 20 %."""

@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointfmu import plots
 from jointfmu.files import columns
 from jointfmu.files.writing import write_text
+from jointfmu.quantity import Array
 
 from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 ENDS = 5
 """Rows at the begin and at the end that are printed."""
 

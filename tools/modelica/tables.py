@@ -5,13 +5,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.mechanics.curve import Curve
+from jointfmu.quantity import Array
 
 from ..thinning import kept
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-7
 """Largest relative error of load and stiffness [1] against the package's curve."""

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure as Canvas
 
 from jointfmu.joints import KINDS
+from jointfmu.quantity import Array
 
-from ..systems.master import Array
 from ..systems.system import System
 from ..systems.wiring import model_of, wires
 from .figure import Figure, Panel, Series, drawn

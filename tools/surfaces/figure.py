@@ -7,8 +7,8 @@ import numpy as np
 
 from jointfmu import plots
 from jointfmu.contact.fractal import second_difference
+from jointfmu.quantity import Array
 
-from .heights import Array
 from .results import Identification, Result
 from .structure import power_law
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from .heights import Array
+from jointfmu.quantity import Array
+
 from .series import ScaleSeries
 
 FLOOR = 0.03

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .heights import FORMS, Array, Heights
+from jointfmu.quantity import Array
+
+from .heights import FORMS, Heights
 
 Mask = NDArray[np.bool_]
 SPIKE = 8.0

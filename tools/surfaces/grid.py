@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .heights import Array
+from jointfmu.quantity import Array
 
 Places = NDArray[np.int64]
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 FORMS = ("tilt", "mean", "curvature")
 """What is removed before anything else: a plane (default), the mean height, a surface of second order."""

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from jointfmu.contact import fractal
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
 from .fit import SelfAffineLaw, fit
 from .form import prepare
-from .heights import Areal, Array, Heights
+from .heights import Areal, Heights
 from .results import (
     TEXTURE,
     ArealFractal,

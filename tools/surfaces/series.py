@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .heights import Array
+from jointfmu.quantity import Array
 
 METHODS = ("structure", "psd")
 SIDES = ("1", "2", "both")

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from .heights import Areal, Array, Heights
+from jointfmu.quantity import Array
+
+from .heights import Areal, Heights
 from .series import KERNEL, LEAST, ScaleSeries
 
 HANN = 35.0 / 18.0

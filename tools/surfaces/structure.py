@@ -6,8 +6,9 @@ from functools import cache
 import numpy as np
 
 from jointfmu.contact.fractal import second_difference, structure_constant
+from jointfmu.quantity import Array
 
-from .heights import Areal, Array, Heights
+from .heights import Areal, Heights
 from .series import KERNEL, LEAST, ScaleSeries
 
 MODES = 256

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from jointfmu.quantity import check, quantity, smooth_step, smooth_step_slopes
+from jointfmu.quantity import Array, check, quantity, smooth_step, smooth_step_slopes
 
-Array = NDArray[np.float64]
 AXES: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0, 0.0, 1.0])}
 
 

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
-from .master import Array, Slave
+from .master import Slave
 from .ssp import fmu_names, values
 from .structure import MASTERS, Master
 from .system import System, systems

@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.progress import track
-from jointfmu.quantity import Interval, build
+from jointfmu.quantity import Array, Interval, build
 
 from ..batch.samples import columns, inside
 from .problem import LOAD_END, Problem
 from .study import Refused, samples_of, unit_design
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Singles = NDArray[np.float32]
 

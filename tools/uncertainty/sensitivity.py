@@ -9,13 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import sobol_indices
+
+from jointfmu.quantity import Array
 
 from .problem import Problem
 from .propagate import run
-
-Array = NDArray[np.float64]
 
 LOADS = 21
 """Most loads along the ramp at which indices are computed."""

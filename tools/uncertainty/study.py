@@ -15,15 +15,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from jointfmu.parameters import read_document
+from jointfmu.quantity import Array
 
 from . import distributions
 from .distributions import Uncertain
-
-Array = NDArray[np.float64]
 
 MOST_SAMPLES = 2**24
 

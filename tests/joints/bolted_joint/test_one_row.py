@@ -2,8 +2,7 @@
 
 import pytest
 from jointfmu_tools.commands.footprint.finite_elements import with_assembly
-from jointfmu_tools.fem.bolts import BoltList
-from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 
 from jointfmu.parameters import default
 

@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
-        from ...fem.symmetry import unlike_holes
+        from ...fem.convergence import unlike_holes
     assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
@@ -123,7 +123,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
-    from ...fem.joint_file import with_solution
+    from ...fem.bolted_contact import with_solution
 
     made = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:

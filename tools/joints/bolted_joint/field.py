@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.footprint.shape import MergedShape, PressureShape
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
-from ...fields.clamped import Array, Clamping
+from ...fields.clamped import Clamping
 from .layout import PlaneLayout
 
 if TYPE_CHECKING:

@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.bolts import BoltPattern, pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.mechanics.footprint.shape import NodalField
-
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import limits, viscous
+from jointfmu.quantity import Array
 
 from ...catalogue import Item, Printed
-
-Array = NDArray[np.float64]
 
 LEVEL = 0.95
 SIZE, RATIO = 20.0, 100.0

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive import KIND
@@ -16,6 +16,7 @@ from jointfmu.joints.harmonic_drive.law import (
 )
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.mechanics.curve import Curve
+from jointfmu.quantity import Array
 
 from ...export.exports import Exports, LoadCurve
 from ...interface.joint import Joint
@@ -23,9 +24,6 @@ from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
     from ...export.tables import LoadTable
-
-
-Array = NDArray[np.float64]
 
 
 class DriveJoint(Joint):

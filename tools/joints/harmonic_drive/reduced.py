@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive import KIND
 from jointfmu.joints.harmonic_drive.drive import Drive
@@ -13,12 +12,11 @@ from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive, drive_stiffness
 from jointfmu.joints.harmonic_drive.lost_motion import play
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
+from jointfmu.quantity import Array
 
 from ...batch import chebyshev
 from ...batch.samples import columns
 from ...uncertainty.reduced import Reduced
-
-Array = NDArray[np.float64]
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""

@@ -1,14 +1,12 @@
 """The bolted joint's normal force over its separation, as a table."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.quantity import Array
 
 from ....export.tables import LoadTable, thinned
-
-Array = NDArray[np.float64]
 
 STRONGEST = 10.0
 """End of the table: its total force over the one at tightening [1]."""

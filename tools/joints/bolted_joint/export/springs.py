@@ -15,8 +15,6 @@ from jointfmu.mechanics.footprint.shape import PressureShape
 from ....export.mesh import Mesh
 from ....export.springs import Springs
 
-Array = NDArray[np.float64]
-
 SUMS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
 FORCE_TOLERANCE = 0.3
 """How far the force of the pressures on a mesh may be from the joint's before it is made equal [1]."""

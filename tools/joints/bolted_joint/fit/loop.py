@@ -19,13 +19,13 @@ from scipy.interpolate import CubicHermiteSpline
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import sizes
 
 from ....fitting import memory
-from ....fitting import memory as memory_pictures
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Array, Exchange, Unknown
+from ....fitting.least_squares import Exchange, Unknown
 from ....fitting.measurement import Heads, Measurement, measured
 from ....fitting.outcome import FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
@@ -175,7 +175,7 @@ def fit(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
     law, described = first_loading(result.values, force, beside(solution.values))
-    picture, second = memory_pictures.pictures(data, model, solution.values, scale)
+    picture, second = memory.pictures(data, model, solution.values, scale)
     return FitResult(
         result,
         solution,

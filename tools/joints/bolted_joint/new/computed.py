@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
@@ -16,7 +15,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
-from jointfmu.quantity import flatten
+from jointfmu.quantity import Array, flatten
 
 from ....drawing.vdi2230 import ClampedPart
 from ....fem import installed
@@ -25,8 +24,6 @@ from . import ATTACHED
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
     from ....fem.whole_joint import WholeJoint
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +42,7 @@ class Plates:
 
     def assembly(self, file: ParameterFile) -> "Assembly":
         """The bodies. Raises ValueError for heads that overlap or leave the plate."""
-        from ....fem.bolts import BoltList
-        from ....fem.geometry import Assembly, Plate, TappedPlate
+        from ....fem.geometry import Assembly, BoltList, Plate, TappedPlate
 
         sides = [
             Plate(
@@ -73,8 +69,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     """
 
     with installed("--field computed"):
-        from ....fem.bolted_contact import BoltedContact
-        from ....fem.joint_file import with_solution
+        from ....fem.bolted_contact import BoltedContact, with_solution
 
         step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)

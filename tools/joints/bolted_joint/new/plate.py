@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ....drawing import faces, vdi2230
 from ....drawing.part import Given, NewJoint
@@ -20,7 +20,6 @@ from ..loss import friction_band
 from . import layout, whole
 from .computed import Plates, with_computed_field
 
-Array = NDArray[np.float64]
 REST = (0.0, 0.0, 0.0)
 SAME = 1e-6
 """How far the thicknesses may be from the grip [1]."""

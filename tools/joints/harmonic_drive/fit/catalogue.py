@@ -16,10 +16,10 @@ import numpy as np
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import CORNER, CatalogueDrive
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import build, flat_fields
+from jointfmu.quantity import Array, build, flat_fields
 
 from ....catalogue import Printed
-from ....fitting.least_squares import NOTHING, Array, Solution, solve
+from ....fitting.least_squares import NOTHING, Solution, solve
 from ....fitting.outcome import FitResult, fitted, model, unknowns
 from . import drive
 from .drive import Row, angle_picture, stiffness, stiffness_picture
@@ -206,11 +206,11 @@ def _pair(row: Row, start: ParameterFile | None) -> tuple[Drive | None, list[str
     return drive, []
 
 
-def _facts(row: Row, drive: CatalogueDrive, most: float) -> dict[str, tuple[float, str, str]]:
+def _facts(row: Row, law: CatalogueDrive, most: float) -> dict[str, tuple[float, str, str]]:
     """How far the law's angle is from the lines."""
     facts = {}
     for name, T in (("T1", row.T1), ("T2", row.T2), ("rated", row.rated), ("max", most)):
-        miss = float(drive.windup(drive, np.array(T)) / row.angle(T)) - 1.0
+        miss = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
         facts[f"angle_error_{name}"] = (miss, "1", f"law over catalogue - 1 at {T:g} N.m")
     text = f"{MAX_OVER_RATED:g} times the rated torque {row.rated:g} N.m"
     return facts | {"max_torque": (most, "N.m", text)}

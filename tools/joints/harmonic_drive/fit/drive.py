@@ -17,11 +17,10 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import check, quantity
+from jointfmu.quantity import Array, check, quantity
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, factor, measured
 
-from ....fitting.least_squares import Array
 from ....fitting.outcome import Picture
 
 LEVELS: Mapping[str, tuple[str, ...]] = {

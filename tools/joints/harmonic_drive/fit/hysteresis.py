@@ -20,12 +20,13 @@ from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import sizes
 
 from ....fitting import memory
 from ....fitting.branches import Loops
 from ....fitting.hysteresis import HysteresisLaw, NonlinearSpring
-from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.measurement import Heads, measured
 from ....fitting.outcome import FitResult, Picture, fitted, undetermined, unknowns
 from . import drive

@@ -14,9 +14,10 @@ from scipy import stats
 from scipy.linalg import block_diag
 
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ....fitting.least_squares import Array, Solution
+from ....fitting.least_squares import Solution
 from ....fitting.outcome import FitResult, Picture, fitted, undetermined
 from . import hysteresis
 from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor

@@ -16,8 +16,9 @@ import numpy as np
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, limits, viscous
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
-from ....fitting.least_squares import Array, Solution, solve
+from ....fitting.least_squares import Solution, solve
 from ....fitting.outcome import unknowns
 from .log_reading import Samples
 

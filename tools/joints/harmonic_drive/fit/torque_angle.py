@@ -11,12 +11,12 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import build, flat_fields
+from jointfmu.quantity import Array, build, flat_fields
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, sizes
 
 from ....fitting import loop
-from ....fitting.least_squares import NOTHING, Array, Solution, solve
+from ....fitting.least_squares import NOTHING, Solution, solve
 from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
 
