@@ -7,7 +7,7 @@ from jointfmu_tools.export import columns
 from jointfmu_tools.export.mesh import COLUMNS as PAIRS
 from jointfmu_tools.export.units import UNITS as SETS
 from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
-from jointfmu_tools.fields.csvfile import COLUMNS as FIELD
+from jointfmu_tools.fields.nodal_result import COLUMNS as FIELD
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.surfaces.csvfile import LENGTHS

@@ -9,8 +9,8 @@ import numpy as np
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
-from ..fields.contact import ContactField
 from ..fields.joint_parameters import with_field
+from ..fields.nodal_result import ContactField
 from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 
-from ..fields.contact import ContactField
+from ..fields.nodal_result import ContactField
 from .bolted_contact import BoltedContact, JointSolution
 from .contact import PressureLaw
 from .geometry import Assembly

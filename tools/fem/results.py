@@ -10,7 +10,7 @@ from jointfmu import plots
 from jointfmu.files.writing import check_writable, write_bytes, write_text
 from jointfmu.quantity import Array
 
-from ..fields import csvfile
+from ..fields import nodal_result
 from .bolted_contact import JointSolution
 from .elasticity import ElasticBody, Index
 from .modes import NaturalModes
@@ -42,7 +42,7 @@ def write(solution: JointSolution, path: str | Path) -> None:
     """Write the field: quadrature points and their areas as .csv, the nodes of the mesh as .vtu."""
     check(path)
     if Path(path).suffix.lower() == ".csv":
-        write_text(path, csvfile.text(solution.field))
+        write_text(path, nodal_result.csv_text(solution.field))
     else:
         write_bytes(path, vtu(solution))
 

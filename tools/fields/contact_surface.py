@@ -10,9 +10,8 @@ from scipy.spatial import cKDTree
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
-from .areas import CORNERS, nodal_areas
-from .contact import ContactField
-from .nodal_result import NodalResult, Nodes
+from .mesh import CORNERS, nodal_areas
+from .nodal_result import ContactField, NodalResult, Nodes
 
 AXES = "xyz"
 FLAT = 1e-3

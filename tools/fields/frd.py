@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from .bodies import bodies, boundary
+from .mesh import bodies, boundary
 from .nodal_result import NodalResult, Nodes
 
 TYPES: dict[int, tuple[str, int]] = {

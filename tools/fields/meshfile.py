@@ -8,8 +8,7 @@ import numpy as np
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
-from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
-from .mesh import no_reader
+from .mesh import PASSED, SURFACES, VOLUMES, bodies, boundary, no_reader
 from .nodal_result import NodalResult
 
 

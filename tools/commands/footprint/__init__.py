@@ -19,7 +19,7 @@ from . import compute as footprint_compute
 from .finite_elements import joint_file
 
 if TYPE_CHECKING:
-    from ...fields.contact import ContactField
+    from ...fields.nodal_result import ContactField
     from ...fields.reduction import Reduction
 
 
@@ -81,7 +81,7 @@ def _run_import(args: argparse.Namespace) -> int:
         check_writable(args.out)
     if args.plot:
         plots.check(args.plot)
-    from ...fields import figure
+    from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_ERROR, with_field
 
     start = joint_file(args.params)
@@ -107,7 +107,7 @@ def _run_import(args: argparse.Namespace) -> int:
         preload = args.preload + file.values.embedding
         file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces")
     if args.plot:
-        figure.draw(field, reduction, args.plot)
+        joint_parameters.draw(field, reduction, args.plot)
     if args.out:
         write_text(args.out, dump(file))
     facts = _findings(args, file, field, reduction)
@@ -179,7 +179,7 @@ def _findings(
 
 
 def _lines(facts: dict[str, Any], before: float) -> list[str]:
-    from ...fields.loads import PRELOADS
+    from ...fields.sums import PRELOADS
 
     low, high = PRELOADS
     part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)

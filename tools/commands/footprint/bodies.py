@@ -11,7 +11,7 @@ from jointfmu.quantity import Array
 from ...drawing.reading import number, numbers
 from ...drawing.tables import threads
 from ...fields.clamped import clamping
-from ...fields.contact import ContactField
+from ...fields.nodal_result import ContactField
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
