@@ -30,7 +30,7 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools import cli
 from jointfmu_tools.job import checks, pipeline
-from jointfmu_tools.systems import system as systems
+from jointfmu_tools.systems import system
 from proofs import BOTH
 from proofs import copy as changed_copy
 from pythonfmu import FmuBuilder
@@ -388,10 +388,10 @@ def test_the_main_job_builds_checks_and_reports(job: tuple[Path, str]) -> None:
     assert int(proved[1]) > 3 * len(NAMES)  # those of systems, too
     assert int(proved[2]) > 15 * 5 * len(NAMES)  # of two flavours in both interfaces, of one in one
     for flavour in ("fmi2", "fmi3", "python"):
-        own = [f"six_axis_robot_{drive}" for drive in systems.system("six_axis_robot").joints]
+        own = [f"six_axis_robot_{drive}" for drive in system.system("six_axis_robot").joints]
         partners = [] if flavour == "python" else [*PARTNERS, *own]
         assert {p.stem for p in (folder / flavour).iterdir()} == {*NAMES, *partners}
-    archives = {f"{name}{suffix}" for name in systems.names() for suffix in ("", "_in_turn")}
+    archives = {f"{name}{suffix}" for name in system.names() for suffix in ("", "_in_turn")}
     for ssp in ("ssp", "ssp2"):
         assert {p.stem for p in (folder / ssp).iterdir()} == archives
     report = folder / "report"

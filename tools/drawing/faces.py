@@ -9,7 +9,6 @@ from jointfmu.contact import fractal, roughness
 from jointfmu.quantity import Number
 
 from ..surfaces import form, reading
-from ..surfaces import roughness as scanned
 from .part import Given, Option
 from .reading import both, flag, number
 from .sheet import Sheet
@@ -214,8 +213,8 @@ def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
 
 def _of_scan(path: str, unit: str | None) -> Face:
     prepared = form.prepare(reading.read(Path(path), unit))
-    longest = scanned.default_wave(prepared.whole)
-    found = scanned.of_scan(prepared.gappy, prepared.whole, longest)
+    longest = form.default_wave(prepared.whole)
+    found = form.of_scan(prepared.gappy, prepared.whole, longest)
     source = f"scan {Path(path).name}"
     return Face(
         found.h,

@@ -27,7 +27,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import measured, sizes
 
-from . import grid
+from . import heights as grid
 from .heights import Areal, Heights, Profile
 
 LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")

@@ -8,7 +8,7 @@ from scipy.optimize import least_squares
 
 from jointfmu.quantity import Array
 
-from .series import ScaleSeries
+from .spectrum import ScaleSeries
 
 FLOOR = 0.03
 """Least standard deviation of ln(value) from the law at every scale [1]."""

@@ -9,8 +9,7 @@ from jointfmu.progress import track
 from jointfmu.quantity import Array
 
 from .master import Slave
-from .ssp import fmu_names, values
-from .structure import MASTERS, Master
+from .ssp import MASTERS, Master, fmu_names, values
 from .system import System, systems
 from .wiring import lags, wires
 

@@ -14,7 +14,7 @@ from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
-from ...surfaces.series import METHODS, SIDES
+from ...surfaces.spectrum import METHODS, SIDES
 from . import synthesize
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _identify(args: argparse.Namespace) -> int:
     if args.out and file:
         write_text(args.out, dump(file))
     if args.plot:
-        from ...surfaces.figure import draw
+        from ...surfaces.results import draw
 
         draw(identified, args.plot)
     surface_results.show(identified, heights, file, args)
