@@ -15,7 +15,7 @@ from jointfmu_tools.fem.assembly import load
 from jointfmu_tools.fem.elasticity import Array
 from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoxSection
 from jointfmu_tools.fem.modes import REFINEMENT
-from jointfmu_tools.joints.bolted_joint.frequencies import FREQUENCIES
+from jointfmu_tools.joints.bolted_joint.field import FREQUENCIES
 from scipy.optimize import least_squares
 
 from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio

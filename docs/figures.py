@@ -19,7 +19,7 @@ from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
-from jointfmu_tools.report import motion
+from jointfmu_tools.report import systems
 from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_tools.report.systems import SIZE, draw
 from jointfmu_tools.systems import cosimulation, ringing, ssp
@@ -88,8 +88,8 @@ def robot(path: Path) -> None:
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), [found])
         run = cosimulation.simulate(found, Path(folder) / "fmi2")
-    with plots.drawing(path, motion.SIZE) as canvas:
-        motion.draw(canvas, found, run)
+    with plots.drawing(path, systems.MOTION_SIZE) as canvas:
+        systems.draw_motion(canvas, found, run)
 
 
 def resonance(path: Path) -> None:

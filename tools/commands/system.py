@@ -56,17 +56,17 @@ def _system(args: argparse.Namespace) -> int:
     write_text(written, model)
     paths = [*built, written]
     if args.csv or args.plot:
-        from ..report import motion
+        from ..report import systems
         from ..systems import cosimulation
 
         run = cosimulation.simulate(found, args.out / "fmi2")
         if args.csv:
-            units = motion.units(found)
+            units = systems.units(found)
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
         if args.plot:
-            with plots.drawing(args.plot, motion.SIZE) as figure:
-                motion.draw(figure, found, run)
+            with plots.drawing(args.plot, systems.MOTION_SIZE) as figure:
+                systems.draw_motion(figure, found, run)
         paths += [path for path in (args.csv, args.plot) if path]
     if args.json:
         print(json.dumps({"system": found.name, "built": [str(path) for path in paths]}))

@@ -57,7 +57,7 @@ def chosen(joint: str | None, params: Path | None) -> ParameterFile:
 
 def _uncertainty(args: argparse.Namespace) -> int:
     from ..uncertainty import problem, propagate, report, study
-    from ..uncertainty.sensitivity import sensitivity
+    from ..uncertainty.propagate import sensitivity
 
     file = chosen(args.joint, args.params)
     count = study.power_of_two(args.samples)
@@ -77,9 +77,9 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import figure
+        from ..uncertainty import report
 
-        figure.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
+        report.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
     if args.json:
         print(json.dumps(report.as_json(task, bands, indices) | found.document()))

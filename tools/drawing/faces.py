@@ -9,9 +9,8 @@ from jointfmu.contact import fractal, roughness
 from jointfmu.quantity import Number
 
 from ..surfaces import form, reading
-from .part import Given, Option
+from .part import Given, Option, Sheet
 from .reading import both, flag, number
-from .sheet import Sheet
 from .tables import Known, TableRow, row
 
 OPTIONS = (

@@ -11,8 +11,7 @@ import numpy as np
 
 from jointfmu.quantity import Array
 
-from .placing import Placing, header
-from .springs import Springs
+from .placing import Placing, Springs, header
 
 MATRIX27, STIFFNESS, DAMPING = 27, 4, 5
 _UPPER = np.triu_indices(12)

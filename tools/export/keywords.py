@@ -6,10 +6,8 @@ import numpy as np
 
 from jointfmu.quantity.refusal import Refusal
 
-from .placing import Placing, header
-from .springs import Springs
+from .placing import Placing, Springs, Units, header
 from .tables import LoadTable
-from .units import Units
 
 CALCULIX_ROWS = 200
 """Most rows of a table in CalculiX (its arrays `xiso(200)`)."""

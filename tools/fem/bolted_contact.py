@@ -1,6 +1,4 @@
-"""The bolted joint as a contact problem: from an assembly and a preload to the pressure field, and to a
-joint's parameters with it.
-"""
+"""The bolted joint as a contact problem: from an assembly and a preload to the field, and a joint with it."""
 
 from dataclasses import dataclass, replace
 

@@ -15,7 +15,7 @@ from ..joint_parts import part
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFrequencies:
-    """Frequencies of a bolted assembly: `FREQUENCIES` of the file frequencies.py in a clamped joint's folder.
+    """Frequencies of a bolted assembly: `FREQUENCIES` of a clamped joint's folder.
 
     points   : file of published numbers in models/reference/; `where` of each has `preload` [N] per bolt,
                `moment` [N.m] and `mode`, from 1

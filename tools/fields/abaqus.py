@@ -1,5 +1,4 @@
-"""Abaqus listings: field reports (.rpt) of Abaqus/CAE and printed tables (.dat) of Abaqus/Standard; input
-decks.
+"""Abaqus: field reports (.rpt) of Abaqus/CAE, printed tables (.dat) of Abaqus/Standard, input decks (.inp).
 
 A report says for which part it lists nodes; a line of dashes parts the names of its columns from the rows,
 and where the page is too narrow for all columns both go on in the next line. In a data file the columns stand

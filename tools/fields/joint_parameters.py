@@ -1,6 +1,4 @@
-"""From a nodal contact result to the parameter file of a joint with bolts that has the field, and its
-picture.
-"""
+"""From a nodal contact result to the parameter file of a joint with bolts that has it; its picture."""
 
 from dataclasses import replace
 from pathlib import Path

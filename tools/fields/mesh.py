@@ -1,5 +1,4 @@
-"""The mesh of a nodal result: boundary faces of its cells, which of these make one body, what part of the
-surface a node stands for.
+"""The mesh of a nodal result: faces of its cells, its bodies, what part of the surface a node stands for.
 
 Names of cells and orders of nodes are meshio's. A field's sums are those of a nonlinear function, the
 stiffness k(p), so every node must have a positive area. Those consistent with the shape functions (their

@@ -1,6 +1,4 @@
-"""A file's measurement of a joint with memory: which it is, loops, free vibration or a response, and its
-columns.
-"""
+"""A file's measurement of a joint with memory: loops, free vibration or a response; its columns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

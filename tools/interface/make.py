@@ -18,8 +18,8 @@ from ..drawing.part import Drawing, NewJoint, Option
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
 from ..joint_parts import part
+from .frame import Table
 from .joint import Facts, Joint
-from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,8 +16,7 @@ from jointfmu import __version__
 from jointfmu.files.writing import write_text
 from jointfmu.quantity import units
 
-from .describe import described
-from .modules import compiled, modules
+from .describe import compiled, described, modules
 
 _FOLDER = Path(__file__).with_name("web")
 _SCRIPTS = (

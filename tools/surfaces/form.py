@@ -1,5 +1,4 @@
-"""Form removal and repair of a scan, each repair named and counted; its rms height and slope of all waves
-up to a longest one.
+"""Form removal and repair of a scan, each repair named and counted; its rms height and slope.
 
 h and slope are those of an isotropic surface, as the contact laws mean them. A line has the height of its
 surface where the surface has no longer waves, and 1/sqrt(2) of its slope.

@@ -1,6 +1,4 @@
-"""What is identified: parameters of profiles and of surfaces, never one for the other, its warnings, its
-picture.
-"""
+"""What is identified: of profiles and of surfaces, never one for the other; warnings, picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,5 +1,4 @@
-"""The components of a serial arm with a drive in every axis, out of the section `[arm]` of a system's
-file.
+"""A serial arm with a drive in every axis, out of the section `[arm]` of a system's file.
 
     [arm]
     start, duration = ...

@@ -12,9 +12,8 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flat_fields, problem
 from jointfmu.quantity.refusal import Refusal
 
-from .distributions import Uncertain, is_relative
 from .reduced import Reduced, reduced
-from .study import samples_of, split
+from .study import Uncertain, is_relative, samples_of, split
 
 INTERVAL = "interval"
 """Word for the interval that the parameter file states in a source."""

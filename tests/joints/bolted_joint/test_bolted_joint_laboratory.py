@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.laboratory.modules import modules
+from jointfmu_tools.laboratory.describe import modules
 from webassembly import Instance
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from jointfmu_tools.joints.bolted_joint.layout import PlaneLayout
+from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
 from jointfmu_tools.report.course import Course

@@ -97,7 +97,7 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
-    from jointfmu_tools.modelica.tables import curve_of
+    from jointfmu_tools.modelica.records import curve_of
 
     file = default("harmonic_drive", law)
     (record,) = COMPONENT.records(file, [()])

@@ -13,7 +13,7 @@ from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
 from jointfmu_tools.joints.harmonic_drive.friction import SPEED
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from jointfmu_tools.joints.harmonic_drive.report import beside
-from jointfmu_tools.report.beside import OWN, PREDICTED, SET
+from jointfmu_tools.report.figure import OWN, PREDICTED, SET
 from jointfmu_tools.report.joint import write_joint_report
 
 from jointfmu.joints import MODELS

@@ -12,7 +12,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.quantity import Array
 
-from .layout import PlaneLayout
+from .field import PlaneLayout
 
 WIDE, HIGH = 420.0, 330.0
 """Most that the plan takes of the picture [px]."""

@@ -22,9 +22,7 @@ from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
 from jointfmu.quantity import Array, flatten
 
-from ...batch.approach import held, tabulate
-from ...batch.chebyshev import discrete_gauss
-from ...batch.samples import columns
+from ...batch.approach import columns, discrete_gauss, held, tabulate
 from ...uncertainty.reduced import Reduced
 from .loss import SHEAR, loss_factor, loss_factors, shear_at
 

@@ -11,8 +11,8 @@ def _flanks(given: Given) -> NewJoint:
 
     from ...drawing import faces
     from ...drawing.line_contact import patch
+    from ...drawing.part import Sheet
     from ...drawing.reading import number
-    from ...drawing.sheet import Sheet
 
     sheet = Sheet(KIND.name, "roughness")
     faces.put(sheet, given)

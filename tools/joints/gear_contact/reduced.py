@@ -8,8 +8,7 @@ from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
 from jointfmu.quantity import Array
 
-from ...batch.approach import held, tabulate
-from ...batch.samples import columns
+from ...batch.approach import columns, held, tabulate
 from ...uncertainty.reduced import Reduced
 
 

@@ -11,9 +11,8 @@ from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 from ...drawing import faces
 from ...drawing.faces import OPTIONS
 from ...drawing.line_contact import patch
-from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.part import Drawing, Given, NewJoint, Option, Sheet
 from ...drawing.reading import number
-from ...drawing.sheet import Sheet
 
 E_STEEL = 206e9
 """Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""

@@ -13,8 +13,7 @@ from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, pairs, phase
 from jointfmu.quantity import Array
 
-from ...batch.approach import Rows, tabulate
-from ...batch.samples import columns
+from ...batch.approach import Rows, columns, tabulate
 from ...uncertainty.reduced import Reduced
 
 RAMP_END = 0.05

@@ -1,6 +1,4 @@
-"""What catalogues quote of a drive, found by running it: efficiency, starting and back-driving torque,
-hysteresis loss, lost motion.
-"""
+"""What catalogues quote of a drive, found by running it: efficiency, torques without load, its loop."""
 
 import math
 from collections.abc import Iterator, Mapping

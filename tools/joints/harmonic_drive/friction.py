@@ -1,5 +1,4 @@
-"""Friction of every drive of the catalogue: of what is printed of it, and the rest scaled from drives that
-print it.
+"""Friction of every drive of the catalogue: as it is printed, or scaled from drives that print it.
 
 Without load, at the wave generator of a drive of size D and ratio R,
 

@@ -1,6 +1,4 @@
-"""What the page of a user's drive shows: its friction, and what it does beside what catalogues publish of
-it.
-"""
+"""What a drive's page shows: its friction, and what it does beside what catalogues publish of it."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -13,9 +11,8 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ...catalogue import Item, Printed
-from ...report.beside import OWN, PREDICTED, SET, Beside
 from ...report.course import Course
-from ...report.figure import Figure, Panel, Series
+from ...report.figure import OWN, PREDICTED, SET, Beside, Figure, Panel, Series
 from .catalogue import find
 from .efficiency import Bench, hysteresis_loss, lost_motion, spring_bench
 from .fit.drive import Row

@@ -11,7 +11,7 @@ from jointfmu.mechanics.footprint.reproducible import NOTHING
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
-from ....modelica.tables import InterpolationTable, thinned
+from ....modelica.records import InterpolationTable, thinned
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error of a dissipation factor [1], which is interpolated linearly."""

@@ -11,13 +11,12 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
 from ....drawing import faces, vdi2230
-from ....drawing.part import Given, NewJoint
+from ....drawing.part import Given, NewJoint, Sheet
 from ....drawing.reading import number, numbers
-from ....drawing.sheet import Sheet
 from ....drawing.tables import Thread, classes, thread_source
 from ....pressure import overload
 from ..loss import friction_band
-from . import layout, whole
+from . import computed, layout
 from .computed import Plates, with_computed_field
 
 REST = (0.0, 0.0, 0.0)
@@ -106,7 +105,7 @@ def joint(given: Given) -> NewJoint:
     facts = _facts(file, one, heights, preload)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
-    found = whole.facts(file, plates, given["attached"] or "faces", given["sides"])
+    found = computed.facts(file, plates, given["attached"] or "faces", given["sides"])
     return NewJoint(found.file, facts | found.facts, [*warnings, *found.warnings])
 
 

@@ -1,5 +1,4 @@
-"""A robot's log to the friction of its drive: steady speeds, or motion with time; what is told and drawn of
-it.
+"""A robot's log to the friction of its drive: steady speeds, or motion with time; facts and pictures.
 
 The last 30 % of each log, or every third row of a table, are predicted by a fit to the rest.
 """
