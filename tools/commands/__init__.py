@@ -1,1 +1,1 @@
-"""The commands of the command line, each a module of its name."""
+"""The commands of the command line, most of them modules of their names."""
