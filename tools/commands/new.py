@@ -9,17 +9,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import Commands, Parser, command, flag, tell
-from jointfmu.files.writing import check_writable
+from jointfmu.commands.common import Commands, Parser, command, tell
 from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
-from ..drawing.part import Drawing, Option
+from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
+from . import check_files, declare
 
 
 def add(commands: Commands) -> None:
@@ -39,29 +39,14 @@ def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     sub = command(things, name, partial(_make, drawing), f"make {drawing.text}")
     sub.example = f"new {name} {drawing.example} --out my.toml"
     for option in drawing.options:
-        _option(sub, option)
+        declare(sub, option)
     sub.add_argument("--name", metavar="NAME", help="of the parameter set (default: by its sizes)")
     sub.add_argument("--out", type=Path, metavar="FILE", help="write the parameter file (TOML)")
 
 
-def _option(sub: argparse.ArgumentParser, option: Option) -> None:
-    if option.flag:
-        sub.add_argument(flag(option.name), action="store_true", help=option.text)
-        return
-    sub.add_argument(
-        flag(option.name),
-        nargs="+" if option.many else None,
-        choices=option.choices or None,
-        required=option.required,
-        metavar=None if option.choices else option.metavar,
-        help=option.text,
-    )
-
-
 def _make(drawing: Drawing, args: argparse.Namespace) -> int:
     """Check what is to be written before the work, and make the joint."""
-    if args.out:
-        check_writable(args.out)
+    check_files(args.out)
     joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))

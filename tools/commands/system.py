@@ -7,9 +7,10 @@ from pathlib import Path
 from jointfmu import plots
 from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files import columns
-from jointfmu.files.writing import check_folder, check_writable, write_text
+from jointfmu.files.writing import check_folder, write_text
 
 from ..systems.system import names, system
+from . import check_files
 
 
 def add(commands: Commands) -> None:
@@ -33,10 +34,7 @@ def add(commands: Commands) -> None:
 def _system(args: argparse.Namespace) -> int:
     found = system(args.file)
     check_folder(args.out)
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     try:
         from ..modelica import library
         from ..modelica.systems import model_name

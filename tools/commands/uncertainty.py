@@ -7,12 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, settings, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
 from ..pressure import judge_file
+from . import check_files
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
@@ -63,12 +64,7 @@ def _uncertainty(args: argparse.Namespace) -> int:
     file = chosen(args.joint, args.params)
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        from jointfmu import plots
-
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     given = study.settings(args.study, args.settings)
     task = problem.pose(file, given, args.to, args.points)
     A, B = propagate.design(task, count, args.seed)

@@ -10,32 +10,11 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build, flat_fields
 
+from ..joint_parts import Option
 from .tables import Known
 
 Given = Mapping[str, Any]
 """{name of an option: its text, a list of texts, or whether a flag is there; None where it is left out}."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Option:
-    """Something on a drawing.
-
-    name     : on the command line with hyphens
-    text     : meaning, a number's with the unit that it has without one
-    metavar  : what stands for its value in the help
-    many     : it takes several texts
-    flag     : it takes none
-    choices  : words that are allowed; none: any
-    required : it must be stated
-    """
-
-    name: str
-    text: str
-    metavar: str = "VALUE"
-    many: bool = False
-    flag: bool = False
-    choices: Sequence[str] = ()
-    required: bool = False
 
 
 @dataclass(frozen=True, slots=True)

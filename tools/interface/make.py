@@ -14,10 +14,10 @@ from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.parameters import load as load_file
 
-from ..drawing.part import Drawing, NewJoint, Option
+from ..drawing.part import Drawing, NewJoint
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
-from ..joint_parts import part
+from ..joint_parts import Option, part
 from .frame import Table
 from .joint import Facts, Joint
 

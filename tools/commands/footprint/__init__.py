@@ -6,14 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
 from ...fields.clamped import clamping
+from .. import check_files
 from . import bodies
 from . import compute as footprint_compute
 from .finite_elements import joint_file
@@ -77,10 +77,7 @@ def _import(steps: Commands) -> None:
 def _run_import(args: argparse.Namespace) -> int:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
-    if args.out:
-        check_writable(args.out)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.out, plot=args.plot)
     from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_ERROR, with_field
 

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu import plots
 from jointfmu.commands.common import Commands, command, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
 from ...fem import installed
 from ...fields.clamped import clamping
+from .. import check_files
 from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
@@ -102,10 +102,7 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
     if args.attached and not args.out:
         raise ValueError(f"--attached {args.attached} without --out: expected the file for the whole joint")
-    for path in filter(None, (args.out, args.field)):
-        check_writable(path)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.out, args.field, plot=args.plot)
 
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
