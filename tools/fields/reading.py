@@ -100,10 +100,7 @@ class Reading:
 
     def _units(self, path: Path) -> tuple[float, float]:
         """Sizes of the stated units."""
-        for value, name, units in (
-            (self.length, "length", LENGTHS),
-            (self.pressure, "pressure", PRESSURES),
-        ):
+        for value, name, units in ((self.length, "length", LENGTHS), (self.pressure, "pressure", PRESSURES)):
             if value is None:
                 raise Refusal(f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name)
         return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]

@@ -19,10 +19,7 @@ from jointfmu.quantity import units
 from .describe import compiled, described, modules
 
 _FOLDER = Path(__file__).with_name("web")
-_SCRIPTS = (
-    *("engine", "sight", "controls"),
-    *("curves", "path", "turn", "contact", "body", "files", "main"),
-)
+_SCRIPTS = (*("engine", "sight", "controls"), *("curves", "path", "turn", "contact", "body", "files", "main"))
 """Files of the page, in the order in which they are run, after the charts."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),

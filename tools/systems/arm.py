@@ -81,11 +81,7 @@ class Arm:
         x = (np.asarray(time, dtype=np.float64)[:, None] - self.start) / self.duration
         travel = np.array([link.travel for link in self.links])
         rate, bend = smooth_step_slopes(x)
-        return (
-            travel * smooth_step(x),
-            travel * rate / self.duration,
-            travel * bend / self.duration**2,
-        )
+        return (travel * smooth_step(x), travel * rate / self.duration, travel * bend / self.duration**2)
 
     def frames(self, q: Array) -> tuple[list[Array], list[Array], Array]:
         """Turns of the links (n, 3, 3), places of axes and tip (n, 3) [m] at angles (n, axes) [rad]."""

@@ -62,11 +62,7 @@ def as_json(task: Problem, bands: Bands, sensitivity: Sensitivity | None) -> dic
         "parameters": {parameter.name: parameter.text for parameter in task.uncertain},
         "load": {"name": load.name, "unit": load.unit, "values": bands.loads.tolist()},
         "samples": bands.samples,
-        "refused": {
-            "count": refused.count,
-            "example": dict(refused.example),
-            "reason": refused.reason,
-        },
+        "refused": {"count": refused.count, "example": dict(refused.example), "reason": refused.reason},
         "reduction_error": bands.error,
         "outputs": outputs,
         "indices": None if sensitivity is None else _indices_json(sensitivity),

@@ -4,17 +4,7 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    (
-        "export",
-        "field",
-        "fit",
-        "laboratory",
-        "modelica",
-        "new",
-        "reduced",
-        "report",
-        "ringing",
-    ),
+    ("export", "field", "fit", "laboratory", "modelica", "new", "reduced", "report", "ringing"),
     checks="job",
     figures="job",
     frequencies="field",

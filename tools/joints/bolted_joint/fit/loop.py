@@ -31,16 +31,10 @@ from ....fitting.outcome import FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
-FREE: Mapping[str, tuple[str, ...]] = {
-    "zhao2018": ("mu", "surface.G", "surface.D"),
-    "roughness": ("mu", "h"),
-}
+FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("mu", "surface.G", "surface.D"), "roughness": ("mu", "h")}
 """What is fitted, of each law: friction, level and, where the law has one, exponent. Vibrations hardly see
 the exponent beside the level: without it."""
-STARTS: Mapping[str, Sequence[float]] = {
-    "mu": (0.05, 0.15, 0.4),
-    "surface.D": (1.2, 1.45),
-}
+STARTS: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """Where the fit looks for a start, beside the start file's; the level begins where the data have it."""
 BESIDE = (memory.DAMPING, SERIES)
 """Unknowns that are no parameters of the joint."""
@@ -189,9 +183,7 @@ def fit(
 
 
 def _level(
-    file: ParameterFile,
-    names: Sequence[str],
-    rest: Callable[[Mapping[str, float]], float],
+    file: ParameterFile, names: Sequence[str], rest: Callable[[Mapping[str, float]], float]
 ) -> Exchange | None:
     """The stiffness at rest, [N/m] of the values, and the parameter of its level, if that is fitted."""
     _, level, *_ = FREE[file.law]

@@ -289,11 +289,7 @@ def _facts(
         "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, bolts apart"),
         "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
         "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
-        "member_stiffness": (
-            one.members,
-            "N/m",
-            "of the parts that one bolt clamps, 1/delta_P of VDI 2230",
-        ),
+        "member_stiffness": (one.members, "N/m", "of the parts that one bolt clamps, 1/delta_P of VDI 2230"),
         "load_factor": (
             one.bolt / (one.bolt + one.members),
             "1",

@@ -38,8 +38,5 @@ def _wheels(mesh: Mesh) -> dict[str, float]:
 
 
 COMPONENT = ModelicaComponent(
-    name="GearMesh",
-    base="GearMesh",
-    records=_records,
-    texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"},
+    name="GearMesh", base="GearMesh", records=_records, texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"}
 )

@@ -23,10 +23,7 @@ from jointfmu.quantity.units import Sizes, factor, measured
 
 from ....fitting.outcome import Picture
 
-LEVELS: Mapping[str, tuple[str, ...]] = {
-    "hu2023": ("K_FTS0", "drive_scale"),
-    "catalogue": ("K1", "K2", "K3"),
-}
+LEVELS: Mapping[str, tuple[str, ...]] = {"hu2023": ("K_FTS0", "drive_scale"), "catalogue": ("K1", "K2", "K3")}
 """{law: its stiffnesses}, the two of Eq. 46 or the lines': scaled together they scale K_WTS."""
 LEAST_PRESSURE = 0.05
 """Least peak pressure without torque over that at rated torque [1] that a fit may find."""

@@ -33,10 +33,7 @@ from . import drive
 from .log_reading import Samples
 
 HEADS = Heads(
-    "torque",
-    "angle",
-    sizes("N.m", "mN.m", "kN.m"),
-    sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
+    "torque", "angle", sizes("N.m", "mN.m", "kN.m"), sizes("rad", "mrad", "deg", "arcmin", "arcsec")
 )
 _UNITS = {HEADS.force: HEADS.forces, HEADS.motion: HEADS.motions}
 LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")

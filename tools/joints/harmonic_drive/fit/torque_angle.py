@@ -74,9 +74,7 @@ def fit(
 
     angles = model(file, lambda joint: drive.windup(joint, line.torque))
     solution = solve(
-        unknowns(file, names, drive.bounds(file)),
-        lambda values: miss(angles(values)),
-        nuisances=1,
+        unknowns(file, names, drive.bounds(file)), lambda values: miss(angles(values)), nuisances=1
     )
     result = fitted(file, solution.values, "calibration", record.path.name, span(line))
     return outcome(record, result, solution, offset(angles(solution.values)), solution.noise * size)
