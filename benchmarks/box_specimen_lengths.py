@@ -10,13 +10,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from jointfmu_tools.fem import assembly_modes
+from jointfmu_tools.fem import modes
 from jointfmu_tools.fem.assembly import load
-from jointfmu_tools.fem.assembly_modes import REFINEMENT
-from jointfmu_tools.fem.bolts import BoltGrid
 from jointfmu_tools.fem.elasticity import Array
-from jointfmu_tools.fem.geometry import Assembly, BoxSection
-from jointfmu_tools.joints.bolted_joint.frequencies import FREQUENCIES
+from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoxSection
+from jointfmu_tools.fem.modes import REFINEMENT
+from jointfmu_tools.joints.bolted_joint.field import FREQUENCIES
 from scipy.optimize import least_squares
 
 from jointfmu.joints.bolted_joint.law import BoltedJoint, shear_ratio
@@ -83,7 +82,7 @@ def frequencies(
     assembly: Assembly, joint: BoltedJoint, states: Sequence[tuple[float, float]], **options: Any
 ) -> Array:
     """As those of assembly_modes, with the joint's own shear."""
-    return assembly_modes.frequencies(assembly, joint, float(shear_ratio(joint)), states, **options)
+    return modes.frequencies(assembly, joint, float(shear_ratio(joint)), states, **options)
 
 
 def identify(

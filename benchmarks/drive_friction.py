@@ -11,9 +11,8 @@ from importlib.resources import files
 
 import numpy as np
 from jointfmu_tools.joints.harmonic_drive import catalogue
-from jointfmu_tools.joints.harmonic_drive.named_friction import known
+from jointfmu_tools.joints.harmonic_drive.friction import known, scaled
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.scaling import scaled
 from scipy.optimize import minimize_scalar
 
 from jointfmu.joints.harmonic_drive.friction import dry_factor, limits, viscous

@@ -23,7 +23,7 @@ from jointfmu_fmu_src.native import compiler, generate
 from jointfmu_fmu_src.native.build import build_fmi3
 from jointfmu_tools.fem.elastic_sides import Cells, States
 from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
-from jointfmu_tools.joints.bolted_joint.new import NEW, computed, whole
+from jointfmu_tools.joints.bolted_joint.new import NEW, computed
 from numpy.typing import NDArray
 from whole_joint import EXAMPLE
 
@@ -64,7 +64,7 @@ class Joint:
     def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE, refinement: float = 1.0) -> "Joint":
         """Made as the command makes it, beside finite elements of sizes divided by `refinement` [1]."""
         seen: dict[str, object] = {}
-        real = whole.whole_joint
+        real = computed.whole_joint
 
         def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
             joint = WholeJoint.of(plates.assembly(file), to, refinement)
@@ -79,13 +79,13 @@ class Joint:
             ):
                 return real(file, plates, to)
 
-        whole.whole_joint = watched
+        computed.whole_joint = watched
         try:
             given = dict.fromkeys(option.name for option in NEW.options) | dict(example)
             given["attached"] = attached
             made = NEW.run(given)
         finally:
-            whole.whole_joint = real
+            computed.whole_joint = real
         facts: dict[str, tuple[float, str, str]] = dict(made.facts)
         return cls(file=made.file, members=facts["member_stiffness"][0], **seen)  # type: ignore[arg-type]
 

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 from jointfmu_tools import cli
-from jointfmu_tools.fields import csvfile
-from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.joint_parameters import pressure_shape
+from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import reduce
 
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
@@ -56,7 +56,7 @@ def main() -> None:
             took = time.process_time() - start
             with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
                 path = Path(folder) / "field.csv"
-                path.write_text(csvfile.text(one))
+                path.write_text(nodal_result.csv_text(one))
                 start = time.process_time()
                 line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}", "--open", "keep"]
                 cli.main([*line, "--out", str(path.with_suffix(".toml"))])

@@ -19,11 +19,10 @@ import numpy as np
 import scipy.sparse as sp
 from jointfmu_tools.fem import convergence
 from jointfmu_tools.fem.assembly import load
-from jointfmu_tools.fem.bolted_contact import BoltedContact, JointSolution
+from jointfmu_tools.fem.bolted_contact import TILT, BoltedContact, JointSolution
 from jointfmu_tools.fem.contact import trace
+from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.geometry import Assembly, BoxSection
-from jointfmu_tools.fem.joint_file import TILT
-from jointfmu_tools.fem.sparse import Cholesky
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector
 from skfem.models.elasticity import lame_parameters, linear_elasticity

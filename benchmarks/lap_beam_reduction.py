@@ -9,7 +9,7 @@ import lap_beam
 import numpy as np
 import scipy.sparse as sp
 from jointfmu_tools.fem.contact import ContactModel, Interface, trace
-from jointfmu_tools.fem.sparse import Cholesky
+from jointfmu_tools.fem.elasticity import Cholesky
 from lap_beam_plan import plan
 from lap_beam_shanks import shanks
 from scipy.sparse.linalg import LinearOperator, eigsh

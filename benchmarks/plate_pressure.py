@@ -15,8 +15,7 @@ import numpy as np
 from jointfmu_tools import cli
 from jointfmu_tools.drawing.tables import threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
-from jointfmu_tools.fem.bolts import BoltList
-from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring

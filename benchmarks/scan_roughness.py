@@ -4,7 +4,7 @@ Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surf
 """
 
 import numpy as np
-from jointfmu_tools.surfaces import roughness
+from jointfmu_tools.surfaces import form
 from jointfmu_tools.surfaces.form import without_form
 from surface_round_trip import FRESH, gaussian
 
@@ -20,7 +20,7 @@ def ratios(heights, D, G):
     rows = []
     for share in SHARES:
         longest = share * heights.lengths[0]
-        found = roughness.of_scan(flat, flat, longest)
+        found = form.of_scan(flat, flat, longest)
         h = fractal.rms_height(H, G, longest, 2.0 * heights.dx)
         slope = fractal.rms_slope(H, G, longest, found.shortest_wave)
         rows.append((found.h / h, found.slope / slope))

@@ -20,7 +20,7 @@ import numpy as np
 from coulomb_springs import Springs
 from elastic_sides import Joint, along, on_cells
 from jointfmu_tools.fem import elastic_sides as reduction
-from jointfmu_tools.fem.sparse import Cholesky
+from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops

@@ -16,9 +16,9 @@ from tempfile import TemporaryDirectory
 from jointfmu_fmu_src.python.build import runtime_sources
 from jointfmu_tools import cli
 from jointfmu_tools.job.checks import default_ramp
-from jointfmu_tools.joints.harmonic_drive import figures
-from jointfmu_tools.joints.harmonic_drive.fit import lines
-from jointfmu_tools.joints.harmonic_drive.fit.row import Row
+from jointfmu_tools.joints.harmonic_drive import job
+from jointfmu_tools.joints.harmonic_drive.fit import catalogue
+from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
 from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_tools.report.systems import SIZE, draw
 from jointfmu_tools.systems import ringing, ssp
@@ -56,7 +56,7 @@ def main() -> None:
     if sys.argv[1:]:
         return
     result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    picture = figures.stiffness(result, validation.validate())
+    picture = job.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
 
@@ -83,7 +83,7 @@ def example(script: Path) -> None:
 def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
     row = Row(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
-    drive = lines.fit(row, ratio=100.0).parameters
+    drive = catalogue.fit_lines(row, ratio=100.0).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.vibrating_joint(system("robot_joint"))

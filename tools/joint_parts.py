@@ -5,6 +5,7 @@ loaded when its tool asks for it.
 """
 
 from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
@@ -61,6 +62,37 @@ class ToolParts:
     def load(self, tool: str) -> ModuleType | None:
         """The part for a tool; None if the joint has none."""
         return import_module(f"{self.package}.{self.modules[tool]}") if tool in self.modules else None
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """What a user states to a part: a word, a number, or a number with a unit of its own, as text.
+
+    name     : on the command line with hyphens
+    text     : meaning, a number's with its unit
+    metavar  : what stands for its value in the help
+    default  : where nothing is stated
+    choices  : words that are allowed; none: any
+    many     : it takes several
+    flag     : it takes none
+    required : it must be stated
+    number   : it is a number in the unit of its text
+    unit     : of a number that may be stated with a unit of its own
+    unit_by  : the option that states the unit of numbers without one; it is not passed on
+    """
+
+    name: str
+    text: str
+    metavar: str = "VALUE"
+    _: KW_ONLY
+    default: float | str | None = None
+    choices: Sequence[str] = ()
+    many: bool = False
+    flag: bool = False
+    required: bool = False
+    number: bool = False
+    unit: str = ""
+    unit_by: str = ""
 
 
 PARTS: dict[str, ToolParts] = {}

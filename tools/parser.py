@@ -17,11 +17,13 @@ GROUPS = {
     "check": ("prove", "validate"),
     "study": ("uncertainty", "sweep"),
 }
-"""{heading: commands}; each is declared by the module of its name, which `commands` has."""
+"""{heading: commands}; each is declared by `add` of the module of its name, which `commands` has."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
 KERNEL = ("law", "parameters", "ramp")
 """Those that lie in the kernel, as they need no tool."""
+BESIDE = {"cache": "build", "catalogue": "new", "sweep": "uncertainty", "validate": "prove"}
+"""{command: that in whose module it is declared, by `add_COMMAND`}."""
 
 
 class CommandLine(Parser):
@@ -110,5 +112,6 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
         package = "jointfmu.commands" if name in KERNEL else "jointfmu_tools.commands"
-        import_module(f"{package}.{name}").add(commands)
+        module = import_module(f"{package}.{BESIDE.get(name, name)}")
+        (getattr(module, f"add_{name}") if name in BESIDE else module.add)(commands)
     return top

@@ -1,4 +1,4 @@
-"""What a joint's file `pressure.py` gives: how its load presses on its interface; its judgement at a load."""
+"""What a joint's part `pressure` gives: how its load presses on its interface; its judgement at a load."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from .joint_parts import part
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NominalPressure:
-    """PRESSURE of `pressure.py` in a joint's folder.
+    """PRESSURE of a joint's folder.
 
     load  : the input or output of the joint whose value a working point is
     usual : parameter set -> load where none is asked for

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.batch.approach import tabulate
-from jointfmu_tools.batch.samples import columns
+from jointfmu_tools.batch.approach import columns, tabulate
 from jointfmu_tools.cli import main
 from scipy.integrate import quad
 from scipy.linalg import expm

@@ -5,11 +5,10 @@ import json
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.drawing.proof import proof_load
 from jointfmu_tools.drawing.tables import threads
-from jointfmu_tools.drawing.vdi2230 import stress_area
-from jointfmu_tools.fem.symmetry import unlike_holes
-from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
+from jointfmu_tools.fem.convergence import unlike_holes
+from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.pressure import judge_file, nominal_pressure
 
 from jointfmu.contact.interface import at_pressure, beyond

@@ -9,7 +9,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.export import exports
-from jointfmu_tools.export.forms import FORMS
+from jointfmu_tools.export.exports import FORMS
 
 from jointfmu import __version__
 from jointfmu.parameters import default, dump

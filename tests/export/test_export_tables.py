@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.export import columns, keywords, tables, writing
-from jointfmu_tools.export.units import SI, UNITS
+from jointfmu_tools.export import keywords, tables, writing
+from jointfmu_tools.export.placing import SI, UNITS
 from jointfmu_tools.joints.bolted_joint.export import Tightening
-from jointfmu_tools.joints.bolted_joint.export.pull import STRONGEST, pull_table
+from jointfmu_tools.joints.bolted_joint.export.springs import STRONGEST, pull_table
 from scipy.interpolate import PchipInterpolator
 
 import jointfmu
@@ -275,7 +275,7 @@ def test_header_is_plain_text():
     text = writing.contact("abaqus", odd, SI, 1e-2).text
     assert "** parameters: Z?hne *STEP (gear_contact)" in text
     assert text.isascii()
-    assert columns.modelica_text(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"
+    assert tables.modelica_text(np.eye(2), "t", ["a\nb"]).splitlines()[2] == "# a b"
 
 
 def test_a_catalogue_drive_has_rows_for_a_per_cent_of_its_stiffness(tmp_path, capsys):

@@ -8,11 +8,9 @@ import pytest
 from jointfmu_tools.fem import newton
 from jointfmu_tools.fem.balance import RigidBalance
 from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
-from jointfmu_tools.fem.bolts import BoltList
 from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
-from jointfmu_tools.fem.elasticity import ElasticBody
-from jointfmu_tools.fem.geometry import Assembly, Plate
-from jointfmu_tools.fem.sparse import Cholesky
+from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 

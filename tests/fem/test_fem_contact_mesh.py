@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools.fem.assembly import load
-from jointfmu_tools.fem.bolts import BoltGrid, BoltList
 from jointfmu_tools.fem.elasticity import ElasticBody
-from jointfmu_tools.fem.geometry import Assembly, BoxSection, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 from jointfmu_tools.fem.mesh import body_mesh, contact_cells, contact_mesh, plan_of
 from skfem import Basis, BilinearForm, ElementHexS2, ElementVector, LinearForm, MeshHex, condense, solve
 from skfem.models.elasticity import lame_parameters, linear_elasticity

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jointfmu_tools.fem.bolts import BoltList
-from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 from jointfmu_tools.fem.whole_joint import ATTACHED, WholeJoint
 
 pytestmark = pytest.mark.slow  # solves finite elements

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_tools.fields import cdb
-from jointfmu_tools.fields.areas import nodal_areas
+from jointfmu_tools.fields import ansys
 from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.mesh import nodal_areas
 from jointfmu_tools.fields.reading import Reading
 from mapdl_archive import examples
 from test_fields_files import UNITS, blocks, faces, listing
@@ -87,7 +87,7 @@ def test_solids_of_an_archive(tmp_path):
     (examples.tetarchivefile, 2 * 1.0 * 1.0 + 4 * 1.0 * 10.0),
 ])  # fmt: skip
 def test_files_of_ansys(example, area):
-    mesh = cdb.read(Path(example))
+    mesh = ansys.read_archive(Path(example))
     found = 0.0
     for axis in range(3):
         for block in mesh.faces():
@@ -131,7 +131,7 @@ def test_what_is_no_archive_is_one_line(tmp_path, text, message):
 def test_without_the_package_it_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mapdl_archive", None)
     with pytest.raises(ValueError, match=r"mapdl_archive is missing, .*: pip install 'jointfmu\[field\]'"):
-        cdb.read(tmp_path / "mesh.cdb")
+        ansys.read_archive(tmp_path / "mesh.cdb")
 
 
 def test_a_node_that_the_archive_has_not(tmp_path):

@@ -5,10 +5,9 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from jointfmu_tools.fields import csvfile
-from jointfmu_tools.fields.areas import nodal_areas
-from jointfmu_tools.fields.bodies import SURFACES, VOLUMES, boundary
+from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.contact_surface import Plane
+from jointfmu_tools.fields.mesh import SURFACES, VOLUMES, boundary, nodal_areas
 from jointfmu_tools.fields.reading import Reading
 
 DATA = Path(__file__).parent
@@ -116,7 +115,7 @@ def test_csv_states_its_units(tmp_path):
 
 
 def _written(path, field):
-    path.write_text(csvfile.text(field))
+    path.write_text(nodal_result.csv_text(field))
     return path
 
 

@@ -10,10 +10,9 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import branches, decay
-from jointfmu_tools.fitting.heads import LEAST, Heads, read
-from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring
+from jointfmu_tools.fitting.hysteresis import HysteresisLaw, NonlinearSpring, Oscillator
 from jointfmu_tools.fitting.least_squares import Solution, Unknown
-from jointfmu_tools.fitting.oscillator import Oscillator
+from jointfmu_tools.fitting.measurement import LEAST, Heads, read
 from jointfmu_tools.fitting.outcome import FitResult, Picture
 from jointfmu_tools.joints.bolted_joint.fit import loop
 from jointfmu_tools.joints.harmonic_drive.fit.hysteresis import HEADS as DRIVE_HEADS

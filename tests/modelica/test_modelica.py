@@ -20,8 +20,8 @@ from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
 from jointfmu_tools.cli import main
 from jointfmu_tools.joint_parts import part
 from jointfmu_tools.joints.bolted_joint.modelica import tight
-from jointfmu_tools.modelica import library, tables
-from jointfmu_tools.modelica.text import identifier
+from jointfmu_tools.modelica import library, records
+from jointfmu_tools.modelica.records import identifier
 from jointfmu_tools.systems.system import system
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
@@ -184,16 +184,16 @@ def test_a_joint_without_a_part_keeps_its_wrapper_and_leaves_the_rest(
 @pytest.mark.parametrize("kind", ["drive", "gear"])
 def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.FixtureRequest):
     curve = request.getfixturevalue(kind).curve
-    table = tables.thinned(curve)
+    table = records.thinned(curve)
     assert table.rows.shape[0] < curve.displacement.size / 3
     x = np.linspace(curve.displacement[0], 1.1 * curve.end[0], 20001)[1:]
-    for exact, rough in zip(curve.derivatives(x), tables.curve_of(table).derivatives(x), strict=True):
+    for exact, rough in zip(curve.derivatives(x), records.curve_of(table).derivatives(x), strict=True):
         assert np.all(np.abs(rough - exact) <= EXACT * np.abs(exact))
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
     joint = tight.tightened(bolted, 15e3, 4500.0)
-    total = tables.curve_of(joint.table)
+    total = records.curve_of(joint.table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.motion(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     for s_z in (-5e-6, -1e-6, -1e-7, 0.0, 1e-7, 1e-6, 5e-6, 2e-5, 4e-5):

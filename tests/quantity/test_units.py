@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from jointfmu_fmu_src.partners import PARTNERS
-from jointfmu_tools.export import columns
+from jointfmu_tools.export import tables
 from jointfmu_tools.export.mesh import COLUMNS as PAIRS
-from jointfmu_tools.export.units import UNITS as SETS
+from jointfmu_tools.export.placing import UNITS as SETS
 from jointfmu_tools.fem.geometry import BoxSection, Layer, Plate
-from jointfmu_tools.fields.csvfile import COLUMNS as FIELD
+from jointfmu_tools.fields.nodal_result import COLUMNS as FIELD
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.surfaces.csvfile import LENGTHS
@@ -208,7 +208,7 @@ def declared():
             yield from ((f"{name}.{part.name}.{key}", unit) for key, unit in part.units.items() if unit)
     for spec in (preload.COLUMNS, torque_angle.COLUMNS, PAIRS, FIELD, {"height": LENGTHS}):
         yield from ((name, next(iter(units))) for name, units in spec.items())
-    yield from (*columns.LABEL_HEADS, *columns.SPRING_HEADS)
+    yield from (*tables.LABEL_HEADS, *tables.SPRING_HEADS)
 
 
 def test_no_unit_is_declared_that_the_table_lacks():

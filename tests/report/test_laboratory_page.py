@@ -11,7 +11,7 @@ from conftest import made_once
 from joint_cases import JOINTS
 from jointfmu_tools import cli
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.modules import modules
+from jointfmu_tools.laboratory.describe import modules
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump, load

@@ -15,7 +15,7 @@ from browser import PROGRAM, browser
 from conftest import Fmu
 from joint_cases import random_inputs
 from jointfmu_tools.laboratory.assemble import write_laboratory
-from jointfmu_tools.laboratory.modules import Module, modules
+from jointfmu_tools.laboratory.describe import Module, modules
 from webassembly import Instance, native_fmu, random_values, refused_values
 
 pytestmark = pytest.mark.slow

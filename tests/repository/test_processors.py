@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jointfmu_tools import cli
-from jointfmu_tools.joints.bolted_joint.new import whole
+from jointfmu_tools.joints.bolted_joint.new import computed
 from numpy._core._multiarray_umath import __cpu_features__
 
 pytestmark = pytest.mark.slow
@@ -57,7 +57,7 @@ def paths(tmp_path_factory) -> list[Path]:
         for name, given in PLATES.items():
             out = ["--out", str(folder / f"{name}.toml")]
             assert cli.main(["new", "bolted-joint", *given, *more, *out]) == 0
-            patch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
+            patch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
     return sorted(folder.iterdir())
 
 

@@ -14,8 +14,8 @@ from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
-from jointfmu_tools.fields import csvfile
-from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields import nodal_result
+from jointfmu_tools.fields.nodal_result import ContactField
 
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
@@ -78,7 +78,7 @@ def folder(tmp_path_factory, native):
         patch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes are read as many are
         shape, mean = joint.pattern.shape(), 9e3 * joint.n_bolts / joint.A_0
     field = ContactField(joint.A_0 * shape.share, shape.position, mean * shape.equal)
-    (place / "my_field.csv").write_text(csvfile.text(field))
+    (place / "my_field.csv").write_text(nodal_result.csv_text(field))
     (place / "models/robots").mkdir()
     shutil.copy(ROOT / "models/robots/six_axis.xml", place / "models/robots")
     speeds = (s * w for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.surfaces import csvfile, sift, synthesis
+from jointfmu_tools.surfaces import csvfile, synthesis
+from jointfmu_tools.surfaces import heights as sift
 from jointfmu_tools.surfaces.form import filled, without_form, without_spikes
 from jointfmu_tools.surfaces.heights import Areal, Profile
 from jointfmu_tools.surfaces.reading import read

@@ -15,8 +15,7 @@ from jointfmu_tools.surfaces.heights import Areal, Profile
 from jointfmu_tools.surfaces.identify import identify
 from jointfmu_tools.surfaces.joint_parameters import changes, with_surface
 from jointfmu_tools.surfaces.results import RoughnessEstimate
-from jointfmu_tools.surfaces.spectrum import psd
-from jointfmu_tools.surfaces.structure import structure
+from jointfmu_tools.surfaces.spectrum import psd, structure
 from scipy.integrate import quad
 
 from jointfmu.contact import fractal

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.surfaces import roughness, synthesis
+from jointfmu_tools.surfaces import form, synthesis
 from jointfmu_tools.surfaces.form import without_form
 from jointfmu_tools.surfaces.heights import Areal, Profile
 
@@ -62,7 +62,7 @@ def test_specimen_of_zhao():
 
 def test_a_sine_counts_up_to_its_wavelength():
     line = sine(5e-5, 2e-6)
-    over, under = (roughness.of_scan(line, line, wave) for wave in (5.1e-5, 4.9e-5))
+    over, under = (form.of_scan(line, line, wave) for wave in (5.1e-5, 4.9e-5))
     assert over.h == pytest.approx(2e-6 / np.sqrt(2.0), rel=1e-6)
     assert under.h < 1e-9 * over.h
     assert (over.rms, over.mean) == (
@@ -73,9 +73,9 @@ def test_a_sine_counts_up_to_its_wavelength():
     assert over.slope == pytest.approx(2.0 * np.pi / 5e-5 * 2e-6, rel=1e-6)
     assert under.slope < 1e-9 * over.slope
     with pytest.raises(ValueError, match=r"longest wave = 1e-05 m is outside \[2e-05, 0.001\]"):
-        roughness.of_scan(line, line, 1e-5)
+        form.of_scan(line, line, 1e-5)
     with pytest.raises(ValueError, match=r"longest wave = 0\.002 m is outside"):
-        roughness.of_scan(line, line, 2e-3)
+        form.of_scan(line, line, 2e-3)
 
 
 @pytest.mark.parametrize("D", [2.3, 2.7])
@@ -86,7 +86,7 @@ def test_height_of_a_scan_over_a_longest_wave(D):
     flat = without_form(cut)
     shortest = 2.0 * SIZE / POINTS
     for longest in (SIZE / 5.0, SIZE / 10.0):
-        found = roughness.of_scan(flat, flat, longest)
+        found = form.of_scan(flat, flat, longest)
         H = 3.0 - D
         assert found.h == pytest.approx(fractal.rms_height(H, G, longest, shortest), rel=0.06)
         slope = fractal.rms_slope(H, G, longest, found.shortest_wave)
@@ -97,6 +97,6 @@ def test_missing_points_count_in_h_as_filled():
     line = sine(5e-5, 1e-6)
     z = line.z.copy()
     z[100:110] = np.nan
-    found = roughness.of_scan(line.with_heights(z), line, 1e-3)
+    found = form.of_scan(line.with_heights(z), line, 1e-3)
     assert found.rms == pytest.approx(1e-6 / np.sqrt(2.0), rel=0.02)
     assert np.isfinite(found.h)

@@ -40,11 +40,11 @@ from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
 from jointfmu_tools.job.checks import check_decays, check_ringing
 from jointfmu_tools.joints.harmonic_drive.ringing import LOADING
-from jointfmu_tools.report.motion import windup
+from jointfmu_tools.report.systems import windup
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system
 from jointfmu_tools.systems.master import Slave, motion
-from jointfmu_tools.systems.structure import MASTERS, Master
+from jointfmu_tools.systems.ssp import MASTERS, Master
 from jointfmu_tools.systems.system import names, system, systems
 from jointfmu_tools.systems.wiring import model_of, wires
 from lxml import etree

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jointfmu_tools.batch import chebyshev
+from jointfmu_tools.batch import approach
 from jointfmu_tools.joints.gear_contact import reduced as gear
-from jointfmu_tools.uncertainty import propagate, sensitivity, study
-from jointfmu_tools.uncertainty.distributions import parse
+from jointfmu_tools.uncertainty import propagate, study
 from jointfmu_tools.uncertainty.problem import pose
+from jointfmu_tools.uncertainty.study import parse
 from scipy import stats
 
 from jointfmu.parameters import default
@@ -72,22 +72,22 @@ def test_refused_distribution(text, words):
 
 
 def test_chebyshev_matrices_are_exact_for_polynomials():
-    x, at = chebyshev.nodes(9), np.linspace(0.0, 1.0, 33)
+    x, at = approach.nodes(9), np.linspace(0.0, 1.0, 33)
     value = x**8 - 3.0 * x**3
-    assert value @ chebyshev.interpolation(9, at) == pytest.approx(at**8 - 3.0 * at**3, abs=1e-13)
+    assert value @ approach.interpolation(9, at) == pytest.approx(at**8 - 3.0 * at**3, abs=1e-13)
     integral = at**9 / 9.0 - 0.75 * at**4
-    assert value @ chebyshev.integration(9, at) == pytest.approx(integral, abs=1e-13)
+    assert value @ approach.integration(9, at) == pytest.approx(integral, abs=1e-13)
 
 
 def test_gauss_points_of_a_discrete_measure():
     rng = np.random.default_rng(3)
     values, weights = rng.normal(size=500), rng.uniform(size=500)
-    at, shares = chebyshev.discrete_gauss(values, weights, 5)
+    at, shares = approach.discrete_gauss(values, weights, 5)
     for degree in range(10):
         assert shares @ at**degree == pytest.approx(weights @ values**degree, rel=1e-12, abs=1e-12 * 500)
-    assert np.sum(
-        chebyshev.discrete_gauss(np.array([1.0, 2.0]), np.array([0.5, 0.5]), 5)[1]
-    ) == pytest.approx(1)
+    assert np.sum(approach.discrete_gauss(np.array([1.0, 2.0]), np.array([0.5, 0.5]), 5)[1]) == pytest.approx(
+        1
+    )
 
 
 def test_powers_of_two():
@@ -134,7 +134,7 @@ def test_bands_of_a_linear_output():
     assert found.mean["K_N"] == pytest.approx(found.loads * 10.5, rel=1e-4)
     assert found.sd["K_N"] == pytest.approx(found.loads * law.std(), rel=2e-3)
     assert found.refused.count == 0
-    indices = sensitivity.sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
+    indices = propagate.sensitivity(task, A[:4096], B[:4096]).outputs["K_N"]
     exact = np.array([0.36, 0.0025]) / 0.3625
     assert np.all(np.abs(indices.first - exact) < 0.01)  # Sobol' sequence of 4096
     assert np.all(np.abs(indices.total - exact) < 0.01)
@@ -172,7 +172,7 @@ def designs(n, d, seed):
 
 def test_ishigami():
     A, B, mixed = designs(4096, 3, 0)
-    found = sensitivity.indices(
+    found = propagate.indices(
         ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     )
     assert found.first[0] == pytest.approx(ISHIGAMI_FIRST, abs=0.01)  # seen: 0.003
@@ -185,7 +185,7 @@ def test_confidence_intervals_of_independent_samples():
     for _ in range(100):
         A, B = rng.uniform(-np.pi, np.pi, (2, 3, 1024))
         mixed = np.stack([np.where(np.arange(3)[:, None] == i, B, A) for i in range(3)])
-        found = sensitivity.indices(
+        found = propagate.indices(
             ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
         )
         hits[0] += np.abs(found.first[0] - ISHIGAMI_FIRST) <= found.first_half[0]
@@ -197,8 +197,8 @@ def test_refused_rows_count_for_nothing():
     A, B, mixed = designs(1024, 3, 1)
     f_A, f_B, f_AB = ishigami(A)[None], ishigami(B)[None], np.stack([ishigami(m)[None] for m in mixed])
     keep = np.arange(1024) < 512  # the first half is a design of its own
-    some = sensitivity.indices(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
+    some = propagate.indices(f_A[:, keep], f_B[:, keep], f_AB[..., keep])
     f_A[:, ~keep] = np.nan
-    holes = sensitivity.indices(f_A, f_B, f_AB)
+    holes = propagate.indices(f_A, f_B, f_AB)
     for name in ("first", "total", "first_half", "total_half"):
         assert getattr(holes, name) == pytest.approx(getattr(some, name), rel=1e-10)

@@ -1,24 +1,119 @@
 """Stiffness and approach over pressure of an interface, tabulated for many samples at once.
 
-The same curve as `curve.approach_curve` with fewer nodes: load and stiffness are integrals over the
-log-area u of the largest spot, from the end of the contact's closing on; Chebyshev polynomials between
-the ends of the law's regimes. A table is a row of nodes per sample, ascending in the log-pressure, with
-cubics between them.
+The same curve as `curve.approach_curve` with fewer nodes: load and stiffness are integrals over the log-area
+u of the largest spot, from the end of the contact's closing on; Chebyshev polynomials between the ends of the
+law's regimes. A table is a row of nodes per sample, ascending in the log-pressure, with cubics between them.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
+from typing import TypeVar
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from jointfmu.contact.interface import SIDE, InterfaceLaw, checked_spots
 from jointfmu.contact.powerlaw import Spots
 from jointfmu.mechanics.curve import CLOSING_RATIO, closing, closing_reach
+from jointfmu.quantity import Array, Limit, assemble, flat_fields, flatten
 
-from . import chebyshev
+Mask = NDArray[np.bool_]
+T = TypeVar("T")
 
-Array = NDArray[np.float64]
+
+def columns(cls: type[T], values: Mapping[str, object], axes: int = 0) -> T:
+    """The parameter set `cls` with samples (n) among its values, as (n, 1, ...) with `axes` ones.
+
+    Unchecked: `inside` tells the samples apart.
+    """
+    shaped = {k: v.reshape(-1, *[1] * axes) if isinstance(v, np.ndarray) else v for k, v in values.items()}
+    return assemble(cls, shaped, _unchecked)
+
+
+def _unchecked(cls: type[object], arguments: Mapping[str, object]) -> object:
+    """A frozen instance without its checks, which take no samples."""
+    instance = object.__new__(cls)
+    for name, value in arguments.items():
+        object.__setattr__(instance, name, value)
+    return instance
+
+
+def inside(joint: object, count: int) -> Mask:
+    """Which of `count` samples have every parameter in its interval, those that others decide included."""
+    good = np.ones(count, dtype=bool)
+    values = flatten(joint)
+    for name, item in flat_fields(type(joint)):
+        meta, value = item.metadata, values.get(name)
+        if "allowed" in meta or not isinstance(value, np.ndarray):
+            continue
+        good &= meta["interval"].contains(value)
+        if meta["whole"]:
+            good &= value % 1.0 == 0.0
+    with np.errstate(all="ignore"):
+        for which in ("limits", "table_limits"):
+            limits = getattr(joint, which, None)
+            good &= within(values, limits() if limits else [], count)
+    return good
+
+
+def within(values: Mapping[str, object], limits: Iterable[Limit], count: int) -> Mask:
+    """Which samples lie between the limits that other parameters decide."""
+    good = np.ones(count, dtype=bool)
+    for limit in limits:
+        good &= limit.interval.contains(np.asarray(values[limit.name]))
+    return good
+
+
+def nodes(count: int) -> Array:
+    """Chebyshev points of the second kind on [0, 1], ends included, ascending."""
+    return np.asarray(0.5 * (1.0 - np.cos(np.pi * np.arange(count) / (count - 1))))
+
+
+@cache
+def coefficients(count: int) -> Array:
+    """(count, count) from values at `nodes` to Chebyshev coefficients: values @ matrix."""
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(2.0 * nodes(count) - 1.0, count - 1)).T)
+
+
+def interpolation(count: int, x: Array) -> Array:
+    """(count, x.size) from values at `nodes` to values at x in [0, 1]: values @ matrix."""
+    return np.asarray(coefficients(count) @ chebyshev.chebvander(2.0 * x - 1.0, count - 1).T)
+
+
+def integration(count: int, x: Array) -> Array:
+    """(count, x.size) from values at `nodes` to integrals from 0 to x: values @ matrix."""
+    # column j: coefficients of the integral of T_j
+    integral = chebyshev.chebint(np.eye(count), lbnd=-1.0, axis=0)
+    at = chebyshev.chebvander(2.0 * x - 1.0, count) @ integral
+    return np.asarray(np.where(x > 0.0, 0.5 * coefficients(count) @ at.T, 0.0))
+
+
+def discrete_gauss(values: Array, weights: Array, count: int) -> tuple[Array, Array]:
+    """Gauss quadrature of a discrete measure: `count` nodes that integrate polynomials of its values exactly.
+
+    values, weights : (n) of the measure
+    Returns nodes and weights (count), exact up to degree 2 count - 1 (Lanczos; Golub and Welsch 1969).
+    """
+    from scipy.linalg import eigh_tridiagonal
+
+    total = float(np.sum(weights))
+    basis = [np.sqrt(weights / total)]
+    diagonal, off = [], []
+    for k in range(count):
+        q = values * basis[k]
+        diagonal.append(float(q @ basis[k]))
+        for earlier in (*basis, *basis):  # twice: keeps the basis orthogonal to round-off
+            q = q - (q @ earlier) * earlier
+        norm = float(np.linalg.norm(q))
+        if k + 1 == count or norm <= 1e-13 * float(np.max(np.abs(values))):
+            break
+        off.append(norm)
+        basis.append(q / norm)
+    at, vectors = eigh_tridiagonal(np.array(diagonal), np.array(off))
+    return np.asarray(at), np.asarray(total * vectors[0] ** 2)
+
 
 COLLOCATION = 15
 """Chebyshev nodes per regime [1]."""
@@ -28,10 +123,10 @@ WIDEST = 8.0
 """Log-area of a regime [1] from which on it is taken in several parts."""
 CLOSING = np.unique(np.round(512.0 * np.geomspace(1.0 / 512.0, 1.0, 64)).astype(int))[:-1]
 """Nodes of the closing of the contact, out of 512 evenly spaced ones [1]."""
-_CHEBYSHEV = chebyshev.nodes(COLLOCATION)
-_INTEGRAL = chebyshev.integration(COLLOCATION, _CHEBYSHEV)
+_CHEBYSHEV = nodes(COLLOCATION)
+_INTEGRAL = integration(COLLOCATION, _CHEBYSHEV)
 _UNIFORM = np.linspace(0.0, 1.0, FINE)
-_REFINE = chebyshev.interpolation(COLLOCATION, _UNIFORM)
+_REFINE = interpolation(COLLOCATION, _UNIFORM)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,35 @@
-"""The commands of the command line, each a module of its name."""
+"""The commands of the command line, most of them modules of their names; what they share."""
+
+import argparse
+from pathlib import Path
+
+from jointfmu import plots
+from jointfmu.commands.common import flag
+from jointfmu.files.writing import check_writable
+
+from ..joint_parts import Option
+
+
+def declare(sub: argparse.ArgumentParser, option: Option) -> None:
+    """Declare an option of a joint's part."""
+    if option.flag:
+        sub.add_argument(flag(option.name), action="store_true", help=option.text)
+        return
+    sub.add_argument(
+        flag(option.name),
+        nargs="+" if option.many else None,
+        type=float if option.number else str,
+        default=option.default,
+        choices=option.choices or None,
+        required=option.required,
+        metavar=None if option.choices else option.metavar,
+        help=option.text,
+    )
+
+
+def check_files(*paths: Path | None, plot: Path | None = None) -> None:
+    """Raise ValueError, before the work, if a file could not be written; `plot` is a picture."""
+    for path in filter(None, paths):
+        check_writable(path)
+    if plot:
+        plots.check(plot)

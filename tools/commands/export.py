@@ -12,9 +12,8 @@ from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
 from ..export import exports
-from ..export.forms import ERROR, FORMS, ROBOTS, WHAT
-from ..export.placing import AXES, Placing
-from ..export.units import SI, UNITS
+from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
+from ..export.placing import AXES, SI, UNITS, Placing
 from ..pressure import judge_file, nominal_pressure
 
 if TYPE_CHECKING:

@@ -10,16 +10,17 @@ from pathlib import Path
 from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
 from jointfmu.files import columns
-from jointfmu.files.writing import check_writable
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.progress import step
 
 from ..drawing.reading import number
 from ..fitting.outcome import percent
-from ..fitting.procedure import FitOption, Procedure, procedures
+from ..fitting.procedure import Procedure, procedures
 from ..interface.make import Fit
+from ..joint_parts import Option
 from ..pressure import judge_file
+from . import check_files, declare
 
 
 def add(commands: Commands) -> None:
@@ -45,29 +46,12 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     sub.add_argument("--force", action="store_true", help="write a fit that says nothing of the joint too")
     sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
-        _option(sub, option)
-
-
-def _option(sub: argparse.ArgumentParser, option: FitOption) -> None:
-    metavar = "TEXT" if option.word else "VALUE"
-    sub.add_argument(
-        flag(option.name),
-        nargs="+" if option.many else None,
-        type=str if option.word or option.unit else float,
-        default=option.default,
-        choices=option.choices or None,
-        required=option.required,
-        metavar=None if option.choices else metavar,
-        help=option.text,
-    )
+        declare(sub, option)
 
 
 def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
     """Check what is to be written before the work, and fit."""
-    if args.out:
-        check_writable(args.out)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.out, plot=args.plot)
     joint = _joint(choices, args)
     procedure = choices[joint]
     start = load(args.params, joint) if args.params else None
@@ -82,7 +66,7 @@ def _options(procedure: Procedure, args: argparse.Namespace) -> dict[str, object
     return {option.name: _value(option, args) for option in procedure.options if option.name not in units}
 
 
-def _value(option: FitOption, args: argparse.Namespace) -> object:
+def _value(option: Option, args: argparse.Namespace) -> object:
     value = getattr(args, option.name)
     if not option.unit or value is None:
         return value
@@ -96,7 +80,7 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     """The joint whose procedure reads the file; ValueError if none does or an option is another joint's."""
     if len(choices) == 1:
         return next(iter(choices))
-    from ..fitting.heads import OTHERS
+    from ..fitting.measurement import OTHERS
 
     have = {*columns.names(args.file)}
     found = [j for j, procedure in choices.items() if have & {procedure.column, *OTHERS[procedure.column]}]

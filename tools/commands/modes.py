@@ -12,12 +12,7 @@ from jointfmu.mechanics.curve import approach_curve
 
 from ..fem import installed
 from ..fields.clamped import clamping
-from .footprint.finite_elements import (
-    assembly_arguments,
-    joint_file,
-    judge_assembly,
-    with_assembly,
-)
+from .footprint.finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
     from ..fem.modes import NaturalModes
@@ -34,11 +29,7 @@ def add(commands: Commands) -> None:
     sub.add_argument("--moment", type=float, default=0.0, metavar="M", help="about x [N.m] (default: 0)")
     sub.add_argument("--count", type=int, default=6, metavar="N", help=f"modes, 1 to {MOST} (default: 6)")
     sub.add_argument(
-        "--refinement",
-        type=float,
-        default=1.0,
-        metavar="R",
-        help="divides all element sizes (default: 1)",
+        "--refinement", type=float, default=1.0, metavar="R", help="divides all element sizes (default: 1)"
     )
     sub.add_argument("--vtu", type=Path, metavar="FILE", help="write the shapes of the modes (.vtu)")
 
@@ -46,7 +37,8 @@ def add(commands: Commands) -> None:
 def run(args: argparse.Namespace) -> int:
     """Run the command; returns the exit status."""
     with installed("the finite-element analysis"):
-        from ..fem import assembly_modes, shapes
+        from ..fem import modes as assembly_modes
+        from ..fem import results
         from ..fem.assembly import load
         from ..fem.bolted_contact import BoltedContact
     assembly = load(args.assembly)
@@ -60,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
         modes = assembly_modes.computed(solution, shear, args.count)
         even = assembly_modes.uniform(contact, law, force, shear, args.count)
     if args.vtu:
-        write_bytes(args.vtu, shapes.vtu(contact.bodies, modes))
+        write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
     found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
     if args.json:
         print(json.dumps(_document(args, assembly.name, modes, even) | found.document()))

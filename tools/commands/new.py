@@ -1,22 +1,25 @@
-"""`jointfmu new`: a joint from what stands on its drawing; the tables of materials, finishes and bolts."""
+"""`jointfmu new`: a joint from its drawing; the shipped tables; `jointfmu catalogue`: the bought joints."""
 
 import argparse
 import json
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import Commands, Parser, command, flag, tell
-from jointfmu.files.writing import check_writable
+from jointfmu.commands.common import Commands, Parser, command, tell
 from jointfmu.joints import KINDS
+from jointfmu.quantity.units import factor
 
-from ..drawing.part import Drawing, Option
+from ..catalogue import Column, Item
+from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
+from . import check_files, declare
 
 
 def add(commands: Commands) -> None:
@@ -36,29 +39,14 @@ def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     sub = command(things, name, partial(_make, drawing), f"make {drawing.text}")
     sub.example = f"new {name} {drawing.example} --out my.toml"
     for option in drawing.options:
-        _option(sub, option)
+        declare(sub, option)
     sub.add_argument("--name", metavar="NAME", help="of the parameter set (default: by its sizes)")
     sub.add_argument("--out", type=Path, metavar="FILE", help="write the parameter file (TOML)")
 
 
-def _option(sub: argparse.ArgumentParser, option: Option) -> None:
-    if option.flag:
-        sub.add_argument(flag(option.name), action="store_true", help=option.text)
-        return
-    sub.add_argument(
-        flag(option.name),
-        nargs="+" if option.many else None,
-        choices=option.choices or None,
-        required=option.required,
-        metavar=None if option.choices else option.metavar,
-        help=option.text,
-    )
-
-
 def _make(drawing: Drawing, args: argparse.Namespace) -> int:
     """Check what is to be written before the work, and make the joint."""
-    if args.out:
-        check_writable(args.out)
+    check_files(args.out)
     joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
     if args.name:
         joint = replace(joint, file=replace(joint.file, name=args.name))
@@ -158,3 +146,63 @@ def _bolts() -> Iterator[dict[str, object]]:
 
 TABLES = {"materials": _materials, "finishes": _finishes, "bolts": _bolts}
 """{name: its rows}."""
+
+
+def add_catalogue(commands: Commands) -> None:
+    """Declare the command."""
+    sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
+    text = "parts of a name, as CSG-17, csg25-100 or csg 25 100"
+    sub.add_argument("words", nargs="*", metavar="WORD", help=text)
+
+
+def _catalogue(args: argparse.Namespace) -> int:
+    """Print the joints whose names have the word in them."""
+    found = [
+        (kind.name, own.CATALOGUE.columns, item)
+        for kind in KINDS.values()
+        if (own := part(kind, "catalogue"))
+        for item in own.CATALOGUE.items()
+        if _in(args.words, item.name)
+    ]
+    if not found:
+        word = " ".join(args.words)
+        raise ValueError(f"no joint of the catalogues has {word!r} in its name (jointfmu catalogue)")
+    if args.json:
+        print(json.dumps([_item_document(*row) for row in found]))
+        return 0
+    shown = None
+    for joint, columns, item in found:
+        if joint != shown:
+            head = (f"{c.name}{'' if c.shown == '1' else f' [{c.shown}]'}" for c in columns)
+            print(f"{joint.replace('_', '-'):13}  {'  '.join(head)}")
+            shown = joint
+        print(f"{item.name:13}  {'  '.join(map(_cell(item), columns))}".rstrip())
+    if any(number.kind == "estimate" for _, _, item in found for number in item.numbers.values()):
+        print("~ is an estimate, < an upper limit; --json tells where each number comes from")
+    return 0
+
+
+def _in(words: Sequence[str], name: str) -> bool:
+    """Whether the words are in a name one after the other, whatever their case, signs and spaces."""
+    wanted, own = (re.sub(r"[^a-z0-9]", "", text.lower()) for text in ("".join(words), name))
+    return wanted in own
+
+
+def _cell(item: Item) -> Any:
+    """What makes a cell of a column, as wide as the column's head."""
+
+    def cell(column: Column) -> str:
+        width = len(f"{column.name}{'' if column.shown == '1' else f' [{column.shown}]'}")
+        if (number := item.numbers.get(column.name)) is None:
+            return f"{'-':{width}}"
+        mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
+        return f"{mark + format(number.value * factor(column.unit, column.shown), '.4g'):{width}}"
+
+    return cell
+
+
+def _item_document(joint: str, columns: Any, item: Item) -> dict[str, Any]:
+    """A joint with the origin of each number, SI units."""
+    units = {column.name: column.unit for column in columns}
+    numbers = {name: number._asdict() | {"unit": units[name]} for name, number in item.numbers.items()}
+    return {"joint": joint, "name": item.name, "numbers": numbers}

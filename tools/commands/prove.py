@@ -1,8 +1,9 @@
-"""`jointfmu prove`: the experiments that an FMU carries, executed in an importer."""
+"""`jointfmu prove`: the experiments that an FMU carries; `jointfmu validate`: the published numbers."""
 
 import argparse
 import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command
@@ -12,6 +13,10 @@ from jointfmu.parameters import load
 from jointfmu.proof import listing, report
 from jointfmu.proof.importers import IMPORTERS
 from jointfmu.proof.run import Expected, prove
+from jointfmu.published import validation
+
+from ..fem import installed
+from ..fem.validation import natural_frequencies
 
 
 def add(commands: Commands) -> None:
@@ -81,3 +86,28 @@ def _expected(fmu: Path, path: Path) -> Expected:
             return Expected(str(path), starts, proof(own, file))
     known = ", ".join(model.name for model in KINDS[file.joint].models)
     raise ValueError(f"{fmu}: has not the variables of {known}, for which {path} is")
+
+
+def add_validate(commands: Commands) -> None:
+    """Declare the command."""
+    sub = command(commands, "validate", _validate, "compare every published number with the computed one")
+    sub.add_argument(
+        "--frequencies",
+        action="store_true",
+        help="add the measured natural frequencies, by finite elements (half a minute)",
+    )
+
+
+def _validate(args: argparse.Namespace) -> int:
+    rows = validation.validate()
+    if args.frequencies:
+        with installed("the finite-element analysis"):
+            rows += natural_frequencies()
+    misses = validation.missed(rows)
+    if args.json:
+        counts = asdict(validation.counts(rows))
+        print(json.dumps({"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)}))
+        return int(bool(misses))
+    print(validation.table(rows))
+    print(validation.summary(rows))
+    return int(bool(misses))

@@ -12,10 +12,11 @@ import numpy as np
 from jointfmu import plots
 from jointfmu.commands.common import Commands, command, settings, without_package
 from jointfmu.files import columns
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
 from ..systems.system import names, system
+from . import check_files
 
 
 def add(commands: Commands) -> None:
@@ -149,10 +150,7 @@ def _check(args: argparse.Namespace, unit: str) -> None:
         raise ValueError(f"inertia = {args.inertia:g} {unit} is outside (0, inf)")
     if args.amplitude is not None and not 0.0 < args.amplitude < math.inf:
         raise ValueError(f"amplitude = {args.amplitude:g} is outside (0, inf)")
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
 
 
 def _row(point: Any) -> dict[str, float]:

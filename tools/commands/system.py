@@ -7,9 +7,10 @@ from pathlib import Path
 from jointfmu import plots
 from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files import columns
-from jointfmu.files.writing import check_folder, check_writable, write_text
+from jointfmu.files.writing import check_folder, write_text
 
 from ..systems.system import names, system
+from . import check_files
 
 
 def add(commands: Commands) -> None:
@@ -33,10 +34,7 @@ def add(commands: Commands) -> None:
 def _system(args: argparse.Namespace) -> int:
     found = system(args.file)
     check_folder(args.out)
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     try:
         from ..modelica import library
         from ..modelica.systems import model_name
@@ -56,17 +54,17 @@ def _system(args: argparse.Namespace) -> int:
     write_text(written, model)
     paths = [*built, written]
     if args.csv or args.plot:
-        from ..report import motion
+        from ..report import systems
         from ..systems import cosimulation
 
         run = cosimulation.simulate(found, args.out / "fmi2")
         if args.csv:
-            units = motion.units(found)
+            units = systems.units(found)
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
         if args.plot:
-            with plots.drawing(args.plot, motion.SIZE) as figure:
-                motion.draw(figure, found, run)
+            with plots.drawing(args.plot, systems.MOTION_SIZE) as figure:
+                systems.draw_motion(figure, found, run)
         paths += [path for path in (args.csv, args.plot) if path]
     if args.json:
         print(json.dumps({"system": found.name, "built": [str(path) for path in paths]}))

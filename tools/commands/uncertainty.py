@@ -1,17 +1,19 @@
-"""`jointfmu uncertainty`: from uncertain parameters to bands of stiffness, damping and displacement."""
+"""`jointfmu uncertainty`: bands from uncertain parameters; `jointfmu sweep`: a study of an FMU."""
 
 import argparse
 import json
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, settings, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
 from ..pressure import judge_file
+from . import check_files
 
 SYNTAX = (
     "distributions: LOW..HIGH (any value alike), VALUE+-PERCENT%, loguniform(LOW, HIGH), "
@@ -57,17 +59,12 @@ def chosen(joint: str | None, params: Path | None) -> ParameterFile:
 
 def _uncertainty(args: argparse.Namespace) -> int:
     from ..uncertainty import problem, propagate, report, study
-    from ..uncertainty.sensitivity import sensitivity
+    from ..uncertainty.propagate import sensitivity
 
     file = chosen(args.joint, args.params)
     count = study.power_of_two(args.samples)
     study.check_seed(args.seed)
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        from jointfmu import plots
-
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     given = study.settings(args.study, args.settings)
     task = problem.pose(file, given, args.to, args.points)
     A, B = propagate.design(task, count, args.seed)
@@ -77,9 +74,9 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import figure
+        from ..uncertainty import report
 
-        figure.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
+        report.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
     if args.json:
         print(json.dumps(report.as_json(task, bands, indices) | found.document()))
@@ -87,3 +84,65 @@ def _uncertainty(args: argparse.Namespace) -> int:
         print(report.table(task, bands, indices))
         tell(found)
     return 0
+
+
+def add_sweep(commands: Commands) -> None:
+    """Declare the command."""
+    many = command(
+        commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"
+    )
+    many.epilog = SYNTAX
+    many.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
+    many.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
+    settings(many)
+    many.add_argument("--input", required=True, metavar="NAME", help="input to drive")
+    many.add_argument("--to", type=float, required=True, metavar="VALUE", help="end of the ramp (SI)")
+    many.add_argument("--step", type=float, required=True, metavar="VALUE", help="step of the ramp (SI)")
+    many.add_argument(
+        "--samples",
+        type=int,
+        default=256,
+        metavar="N",
+        help="runs, rounded up to a power of two (default: 256)",
+    )
+    many.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the Sobol' sequence")
+    many.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
+    where = many.add_mutually_exclusive_group()
+    where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler of a cluster, tcp://HOST:PORT")
+    where.add_argument("--workers", type=int, metavar="N", help="local processes (default: one per core)")
+
+
+def _sweep(args: argparse.Namespace) -> int:
+    from ..uncertainty import journal, study
+    from ..uncertainty.cluster import leave
+    from ..uncertainty.sweep import plan, sweep
+    from ..uncertainty.worker import LoadRamp
+
+    if args.workers is not None and args.workers < 1:
+        raise ValueError(f"workers = {args.workers} is outside [1, inf)")
+    count = study.power_of_two(args.samples)
+    study.check_seed(args.seed)
+    drive = LoadRamp(args.input, args.to, args.step)
+    given = study.settings(args.study, args.settings)
+    record, runs = plan(args.fmu, drive, given, count, args.seed)
+    try:
+        with journal.claimed(args.out, record):
+            done = sweep(args.fmu, drive, runs, args.out, args.scheduler, args.workers)
+    except KeyboardInterrupt:
+        print(
+            f"jointfmu sweep: interrupted; finished runs are kept in {args.out}, the same command resumes",
+            file=sys.stderr,
+        )
+        leave(130)
+    failure = done.first_failure
+    if args.json:
+        example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
+        counts = {"runs": done.runs, "now": done.now, "failed": done.failed}
+        print(json.dumps({"out": str(args.out), **counts, "first_failure": example}))
+    else:
+        before = done.runs - done.now
+        print(f"{done.runs} runs in {args.out}: {done.now} now, {before} before, {done.failed} failed")
+        if failure:
+            values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
+            print(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
+    return int(done.failed == done.runs)

@@ -8,31 +8,24 @@ import numpy as np
 from jointfmu.contact import fractal, roughness
 from jointfmu.quantity import Number
 
+from ..joint_parts import Option
 from ..surfaces import form, reading
-from ..surfaces import roughness as scanned
-from .part import Given, Option
+from .part import Given, Sheet
 from .reading import both, flag, number
-from .sheet import Sheet
 from .tables import Known, TableRow, row
 
 OPTIONS = (
     Option(
-        name="material",
-        text="of both sides, or of each (jointfmu new materials)",
-        metavar="NAME",
-        many=True,
-        required=True,
+        "material", "of both sides, or of each (jointfmu new materials)", "NAME", many=True, required=True
     ),
-    Option(
-        name="finish", text="of both sides, or of each (jointfmu new finishes)", metavar="NAME", many=True
-    ),
-    Option(name="Ra", text="Ra of both sides, or of each [um]", metavar="RA", many=True),
-    Option(name="Rq", text="Rq or Sq of both sides, or of each [um]", metavar="RQ", many=True),
-    Option(name="surface", text="a scan of both sides, or of each", metavar="SCAN", many=True),
-    Option(name="unit", text="length unit of scans that state none: m, mm, um, nm", metavar="UNIT"),
-    Option(name="longest_wave", text="longest wave of the roughness [mm] (default: the cut-off of its Ra)"),
-    Option(name="hardness", text="hardness of the softer side [MPa] (default: of the material)"),
-    Option(name="mu", text="coefficient of friction [1] (default: 0.15)"),
+    Option("finish", "of both sides, or of each (jointfmu new finishes)", "NAME", many=True),
+    Option("Ra", "Ra of both sides, or of each [um]", "RA", many=True),
+    Option("Rq", "Rq or Sq of both sides, or of each [um]", "RQ", many=True),
+    Option("surface", "a scan of both sides, or of each", "SCAN", many=True),
+    Option("unit", "length unit of scans that state none: m, mm, um, nm", "UNIT"),
+    Option("longest_wave", "longest wave of the roughness [mm] (default: the cut-off of its Ra)"),
+    Option("hardness", "hardness of the softer side [MPa] (default: of the material)"),
+    Option("mu", "coefficient of friction [1] (default: 0.15)"),
 )
 """What every joint with rough faces takes."""
 MU, MU_RANGE = 0.15, (0.1, 0.3)
@@ -214,8 +207,8 @@ def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
 
 def _of_scan(path: str, unit: str | None) -> Face:
     prepared = form.prepare(reading.read(Path(path), unit))
-    longest = scanned.default_wave(prepared.whole)
-    found = scanned.of_scan(prepared.gappy, prepared.whole, longest)
+    longest = form.default_wave(prepared.whole)
+    found = form.of_scan(prepared.gappy, prepared.whole, longest)
     source = f"scan {Path(path).name}"
     return Face(
         found.h,

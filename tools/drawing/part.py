@@ -1,36 +1,20 @@
-"""What a joint's part `new` says: NEW, the options of a drawing, and the joint that they make."""
+"""What a joint's part `new` says: NEW, the options of a drawing, the joint that they make, and its
+parameters as they are collected, each with where it comes from.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from jointfmu.parameters import ParameterFile
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import build, flat_fields
+
+from ..joint_parts import Option
+from .tables import Known
 
 Given = Mapping[str, Any]
 """{name of an option: its text, a list of texts, or whether a flag is there; None where it is left out}."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Option:
-    """Something on a drawing.
-
-    name     : on the command line with hyphens
-    text     : meaning, a number's with the unit that it has without one
-    metavar  : what stands for its value in the help
-    many     : it takes several texts
-    flag     : it takes none
-    choices  : words that are allowed; none: any
-    required : it must be stated
-    """
-
-    name: str
-    text: str
-    metavar: str = "VALUE"
-    many: bool = False
-    flag: bool = False
-    choices: Sequence[str] = ()
-    required: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,3 +44,57 @@ class Drawing:
     example: str
     options: Sequence[Option]
     run: Callable[[Given], NewJoint]
+
+
+@dataclass(slots=True)
+class Sheet:
+    """{structured name: (value, kind, source)} of a joint, start values of its inputs, ranges of some."""
+
+    joint: str
+    law: str
+    known: dict[str, tuple[object, str, str]] = field(default_factory=dict)
+    inputs: dict[str, float] = field(default_factory=dict)
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    def put(self, name: str, value: Any, kind: str, source: str) -> None:
+        """A parameter, or with the prefix `inputs.` a start value."""
+        if name.startswith("inputs."):
+            self.inputs[name.removeprefix("inputs.")] = value
+        self.known[name] = (value, kind, source)
+
+    def between(self, name: str, low: float, high: float) -> None:
+        """Least and greatest value that a parameter may have, by the source of its value."""
+        self.ranges[name] = (low, high)
+
+    def stated(self, name: str, value: object) -> None:
+        """A parameter that stands on the drawing."""
+        self.put(name, value, "user", "stated on the drawing")
+
+    def take(self, name: str, known: Known) -> None:
+        """A parameter of a table."""
+        self.put(name, known.value, known.kind, known.source)
+
+    def value(self, name: str) -> Any:
+        """One of the values."""
+        return self.known[name][0]
+
+    def file(self, name: str, roughness: Mapping[str, float] | None = None) -> ParameterFile:
+        """The parameter file of that name, with those of the values that the joint's law has.
+
+        Raises ValueError as `quantity.build`.
+        """
+        cls = KINDS[self.joint].laws[self.law]
+        declared = {key for key, _ in flat_fields(cls)}
+        own = {key: known for key, known in self.known.items() if key in declared}
+        starts = {key: known for key, known in self.known.items() if key.startswith("inputs.")}
+        kept = own | starts
+        file = ParameterFile(
+            self.joint,
+            name,
+            build(cls, {key: value for key, (value, _, _) in own.items()}),
+            {key: kind for key, (_, kind, _) in kept.items()},
+            {key: source for key, (_, _, source) in kept.items()},
+            self.inputs,
+            ranges={name: ends for name, ends in self.ranges.items() if name in own},
+        )
+        return file.with_roughness(roughness, "user", "stated on the drawing") if roughness else file

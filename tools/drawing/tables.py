@@ -94,9 +94,7 @@ def threads() -> dict[str, Thread]:
     mm = factor("mm", "m")
     return {
         name: Thread(
-            name,
-            d=float(name[1:]) * mm,
-            **{c: v * f for c, v, f in zip(names, values, columns, strict=True)},
+            name, d=float(name[1:]) * mm, **{c: v * f for c, v, f in zip(names, values, columns, strict=True)}
         )
         for name, values in document["rows"].items()
     }

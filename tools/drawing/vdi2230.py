@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread
+from .tables import Thread, classes, threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
@@ -129,3 +129,21 @@ def shank_length(thread: Thread, grip: float, head: str, tapped: bool) -> float:
     """
     length = grip + (thread.d if tapped else 0.8 * thread.d + 2.0 * thread.pitch)
     return float(np.clip(length - 2.0 * thread.d - {"hexagon": 6e-3, "socket": 12e-3}[head], 0.0, grip))
+
+
+STRONGEST = "12.9"
+"""The strongest property class of ISO 898-1."""
+LARGE = 16e-3
+"""Diameter [m] above which a property class has its second proof stress."""
+
+
+def proof_load(hole: float) -> tuple[float, str] | None:
+    """Proof load [N] of the largest bolt that passes a hole [m], and what that is; None if none is known."""
+    fitting = [thread for thread in threads().values() if thread.d < hole]
+    largest = max(threads().values(), key=lambda thread: thread.d)
+    if not fitting or hole > 1.2 * largest.d:
+        return None
+    bolt = max(fitting, key=lambda thread: thread.d)
+    load = classes()[STRONGEST]["proof"][int(bolt.d > LARGE)] * stress_area(bolt)
+    name = f"{bolt.name}, class {STRONGEST} (ISO 898-1)"
+    return load, f"the proof load of {name}, the largest bolt that passes the hole"

@@ -8,12 +8,10 @@ is C1 = C58 = K, C7 = -K (element reference, MATRIX27).
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .placing import Placing, header
-from .springs import Springs
+from jointfmu.quantity import Array
 
-Array = NDArray[np.float64]
+from .placing import Placing, Springs, header
 
 MATRIX27, STIFFNESS, DAMPING = 27, 4, 5
 _UPPER = np.triu_indices(12)

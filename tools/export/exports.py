@@ -1,4 +1,4 @@
-"""What a joint's part `export` says: EXPORTS, all that other solvers can be given of the joint.
+"""What a joint's part `export` says, EXPORTS: all that other solvers can be given of it; the formats.
 
 Loads no part of scipy, nor do the parts until something is written: the command line asks what there is.
 """
@@ -17,9 +17,23 @@ if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
     from .mesh import Mesh
-    from .placing import Placing
-    from .springs import Springs
+    from .placing import Placing, Springs
     from .tables import LoadTable
+
+
+FORMS = {
+    "ansys": ("springs",),
+    "calculix": ("springs", "contact"),
+    "abaqus": ("springs", "contact"),
+    "modelica": ("curve",),
+    "csv": ("springs", "contact", "curve"),
+}
+"""{format: what it can hold}."""
+ROBOTS = ("mjcf", "urdf")
+"""Formats of robots, which hold a drive."""
+WHAT = ("springs", "contact", "curve")
+ERROR = 1e-3
+"""Largest error of a table's load [1] by straight lines, unless another is asked for."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

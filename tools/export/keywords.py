@@ -3,16 +3,11 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.quantity.refusal import Refusal
 
-from .placing import Placing, header
-from .springs import Springs
+from .placing import Placing, Springs, Units, header
 from .tables import LoadTable
-from .units import Units
-
-Array = NDArray[np.float64]
 
 CALCULIX_ROWS = 200
 """Most rows of a table in CalculiX (its arrays `xiso(200)`)."""

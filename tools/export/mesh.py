@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu.files.columns import Columns, read
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
-
-Array = NDArray[np.float64]
 
 COLUMNS: Mapping[str, Sizes] = {
     "node_1": sizes("1"),

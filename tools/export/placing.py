@@ -1,16 +1,71 @@
-"""How the joint lies in the model: axes, units, labels; and the comment at the head of a file."""
+"""How the joint lies in the model: springs between node pairs, axes, units, labels; the head of a file."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from jointfmu import __version__
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import factor, rewritten
 
-from .units import SI, Units
+T = TypeVar("T", float, NDArray[np.float64])
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """A consistent set of units.
+
+    name    : length, force, pressure and mass
+    symbols : {SI symbol: its own} where they differ
+    """
+
+    name: str
+    symbols: Mapping[str, str]
+
+    def of(self, value: T, unit: str) -> T:
+        """A value given in an SI unit, in this set."""
+        return value * factor(unit, self.symbol(unit))
+
+    def symbol(self, unit: str) -> str:
+        """How the set writes an SI unit."""
+        return rewritten(unit, self.symbols)
+
+
+SI = Units("m-N-Pa-kg", {})
+UNITS = {units.name: units for units in (SI, Units("mm-N-MPa-t", {"m": "mm", "Pa": "MPa", "kg": "t"}))}
+"""The sets by name, SI first; the second is the one usual in finite elements."""
+
+
+@dataclass(frozen=True, slots=True)
+class Springs:
+    """Springs and dashpots of the closed node pairs; x and y lie in the joint's plane, z is its normal.
+
+    nodes      : (n, 2) labels on side 1 and side 2
+    position   : (n, 2) [m] from the centroid of the contact
+    area       : (n)    [m2]
+    pressure   : (n)    [Pa]
+    K_n, K_t   : (n)    [N/m] along z; along x and along y
+    C_n, C_t   : (n)    [N.s/m] the same
+    sums       : what the joint has, and what the pairs add up to: K_ [N/m], C_ [N.s/m]
+    correction : [1] factor by which the pairs' stiffness was multiplied to add up to the joint's
+    opened     : pairs that are open and left out
+    """
+
+    nodes: NDArray[np.int64]
+    position: Array
+    area: Array
+    pressure: Array
+    K_n: Array
+    K_t: Array
+    C_n: Array
+    C_t: Array
+    sums: dict[str, float]
+    correction: float
+    opened: int
+
 
 AXES = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}
 """{axis of the model that is the joint's normal: axes of the model along the joint's x, y, z}."""

@@ -7,12 +7,10 @@ from functools import partial
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 
-from . import ansys, columns, keywords, tables
+from . import ansys, keywords, tables
 from .exports import LoadCurve, required
 from .mesh import Mesh
-from .placing import Placing
-from .springs import Springs
-from .units import Units
+from .placing import Placing, Springs, Units
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +29,7 @@ _SPRINGS: dict[str, tuple[Callable[[Springs, Placing, list[str]], str], tuple[st
         ("no dashpots: CalculiX has none along an axis between coincident nodes",),
     ),
     "abaqus": (partial(keywords.springs_text, dashpots=True), ()),
-    "csv": (columns.springs_csv, ()),
+    "csv": (tables.springs_csv, ()),
 }
 """{format: what writes springs, and lines about them}."""
 _FAR = f"the last row is {keywords.FAR:g} m further on the last tangent"
@@ -41,7 +39,7 @@ _CONTACTS: dict[str, tuple[Callable[[tables.LoadTable, Units, list[str]], str], 
         (_FAR, "for TYPE=NODE TO SURFACE: face to face CalculiX 2.20 takes no pressure from a table"),
     ),
     "abaqus": (keywords.contact_text, (_FAR,)),
-    "csv": (columns.contact_csv, ()),
+    "csv": (tables.contact_csv, ()),
 }
 """{format: what writes a contact, and lines about it}."""
 
@@ -112,8 +110,8 @@ def curve(form: str, file: ParameterFile, state: object, units: Units, error: fl
     ]
     if form == "modelica":
         facts = {"table": load.name, **_facts(table)}
-        return Written(columns.modelica_text(table.rows, load.name, about), facts, _warnings(table))
-    return Written(columns.table_csv(table.rows, heads, units, about), _facts(table), _warnings(table))
+        return Written(tables.modelica_text(table.rows, load.name, about), facts, _warnings(table))
+    return Written(tables.table_csv(table.rows, heads, units, about), _facts(table), _warnings(table))
 
 
 def _warnings(table: tables.LoadTable) -> tuple[str, ...]:

@@ -18,8 +18,7 @@ from typing import Any
 from jointfmu.parameters import entries, read_document
 from jointfmu.quantity import build, flat_fields
 
-from .bolts import BoltGrid, BoltList
-from .geometry import Assembly, BoxSection, Plate
+from .geometry import Assembly, BoltGrid, BoltList, BoxSection, Plate
 
 BODIES: dict[str, type[object]] = {"plate": Plate, "box": BoxSection}
 LAYOUTS: dict[str, type[object]] = {"grid": BoltGrid, "list": BoltList}

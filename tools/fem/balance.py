@@ -11,15 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, null_space, qr
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
-from .elasticity import ElasticBody
+from jointfmu.quantity import Array
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from .elasticity import ElasticBody, Index
 
 UNBALANCED = 1e-6
 """Largest unbalanced force over the sum of the loads' magnitudes [1].

@@ -1,17 +1,18 @@
-"""The bolted joint as a contact problem: from an assembly and a preload to the pressure field."""
+"""The bolted joint as a contact problem: from an assembly and a preload to the field, and a joint with it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..fields.contact import ContactField
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
+
+from ..fields.joint_parameters import with_field
+from ..fields.nodal_result import ContactField
 from .contact import ContactModel, ContactSolution, Interface, PressureLaw
 from .elasticity import ElasticBody
 from .geometry import Assembly, Body
 from .mesh import Plan, body_mesh, contact_cells, contact_mesh, plan_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -120,3 +121,24 @@ def midway(bolts: Array) -> Array:
             if np.sum(apart < 0.5 * np.hypot(*(bolts[i] - bolts[j])) * (1.0 + 1e-9)) == 2:
                 middles.append(middle)
     return np.array(middles).reshape(-1, 2)
+
+
+TILT = 1.0 / 3.0
+"""Moment of the second field, over the one that unloads a row of bolts [1]: that of Zhao 2018."""
+
+
+def with_solution(
+    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
+) -> ParameterFile:
+    """The joint with the field at a preload [N] per bolt, and what a moment adds from a second one.
+
+    solution : at that preload and moment [N.m]; what is missing is solved from there
+    """
+    joint = solution.joint
+    tilting = moment or TILT * joint.assembly.most_moment(preload)
+    equal = solution.under(preload).field if moment else solution.field
+    tilted = solution.field if moment else solution.under(preload, tilting).field if tilting else None
+    source = f"finite elements of the assembly {joint.assembly.name}"
+    bolts = joint.assembly.bolts.positions
+    file, _ = with_field(file, equal, preload, source, tilted=tilted, moment=tilting or None, bolts=bolts)
+    return replace(file, name=f"{file.name}, computed field")

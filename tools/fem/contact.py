@@ -17,16 +17,14 @@ from typing import Protocol
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skfem import Basis, Element, ElementQuadS2, MeshQuad
 
-from .balance import RigidBalance
-from .elasticity import ElasticBody
-from .newton import Energy, Minimum
+from jointfmu.quantity import Array
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+from .balance import RigidBalance
+from .elasticity import ElasticBody, Index
+from .newton import Energy, Minimum
 
 QUADRATURE = 4
 """Degree that the quadrature of the contact integrates exactly: 3 x 3 points in an element."""

@@ -17,17 +17,15 @@ from typing import Any
 import numpy as np
 import scipy.linalg as la
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.quantity import Array
 
-from .sparse import Cholesky
+from .elasticity import Cholesky
 from .whole_joint import AXES, Linear, WholeJoint
-
-Array = NDArray[np.float64]
 
 LEAST = 1e-3
 """Amplitude of the least mode over that of the largest [1], of states with as much energy each."""

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshHex, MeshQuad
 
-from .geometry import Array, Assembly, Body, Layer, TappedPlate, rectangles
+from jointfmu.quantity import Array
 
-Index = NDArray[np.int64]
+from .elasticity import Index
+from .geometry import Assembly, Body, Layer, TappedPlate, rectangles
 
 SIZE_AT_HOLES = 1.0 / 10.0
 """Edge of an element at a hole over the hole's circumference [1], at refinement 1."""

@@ -1,15 +1,22 @@
-"""Natural frequencies of two bodies that float freely, held together by the stiffness of their contact."""
+"""Natural frequencies of two bodies that float freely, held together by the stiffness of their contact:
+with given stiffnesses, and of a bolted assembly with those of its pressure.
+"""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from .contact import Interface, trace
-from .elasticity import Array, ElasticBody
-from .sparse import Cholesky
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.quantity import Array
+
+from ..fields.clamped import BoltedInterface
+from .bolted_contact import BoltedContact, JointSolution
+from .contact import Interface, PressureLaw, trace
+from .elasticity import Cholesky, ElasticBody
+from .geometry import Assembly
 
 RIGID = 6
 """Motions without strain of an assembly that floats freely."""
@@ -93,3 +100,59 @@ def _both(shape: Array, sign: float) -> tuple[Array, Array]:
     """Side 1, the mirror image in z = 0 (its opposite for sign -1), and side 2, together of mass 1 kg."""
     above = np.sqrt(0.5) * shape
     return sign * above * np.array([1.0, 1.0, -1.0]), above
+
+
+REFINEMENT = 0.5
+"""Of the meshes for frequencies of many states [1]; twice as fine ones lower those of the box specimen by
+less than 1 % (docs/finite_elements.md)."""
+
+
+def computed(solution: JointSolution, shear: float, count: int = 6) -> NaturalModes:
+    """Modes about the tightened state: every place of the contact has the stiffness of its pressure.
+
+    shear : [1] tangential over normal stiffness of the interface
+    count : of modes
+    """
+    return _on(solution.joint, solution.contact.stiffness, shear, count)
+
+
+def uniform(
+    joint: BoltedContact, law: PressureLaw, force: float, shear: float, count: int = 6
+) -> NaturalModes:
+    """Modes if the total force [N] of the bolts were spread evenly over the contact."""
+    area = joint.interface.area
+    approach = law.inverse(np.asarray(force / area.sum()))
+    stiffness = float(law.derivatives(approach, 1)[1])
+    return _on(joint, np.full(area.shape, stiffness), shear, count)
+
+
+def frequencies(
+    assembly: Assembly,
+    joint: BoltedInterface,
+    shear: float,
+    states: Sequence[tuple[float, float]],
+    refinement: float = REFINEMENT,
+    count: int = 6,
+    even: bool = False,
+) -> Array:
+    """Natural frequencies (states, count) [Hz] of an assembly.
+
+    joint  : gives the interface law; its area is that of the assembly
+    shear  : [1] tangential over normal stiffness of the interface
+    states : preloads [N] per bolt and moments [N.m]
+    even   : with the bolts' force spread evenly over the contact, instead of the computed field
+    """
+    law = approach_curve(replace(joint, A_0=assembly.contact_area))
+    contact = BoltedContact.of(assembly, refinement)
+    rows = []
+    for preload, moment in states:
+        if even:
+            force = float(assembly.bolt_forces(preload, moment).sum())
+            rows.append(uniform(contact, law, force, shear, count).frequency)
+        else:
+            rows.append(computed(contact.solve(law, preload, moment), shear, count).frequency)
+    return np.array(rows)
+
+
+def _on(joint: BoltedContact, normal: Array, shear: float, count: int) -> NaturalModes:
+    return modes(joint.bodies, joint.interface, normal, shear * normal, count)

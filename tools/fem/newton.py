@@ -6,15 +6,13 @@ from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.sparse.linalg import LinearOperator, cg
 
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
-from .sparse import Cholesky
-
-Array = NDArray[np.float64]
+from .elasticity import Cholesky
 
 TOLERANCE = 1e-11
 """Residual force over the force of the loads [1], as sums of magnitudes, at which Newton's method ends."""

@@ -1,19 +1,30 @@
-"""The computed contact as files: nodal CSV, VTU for ParaView, a picture."""
+"""The computed contact and the modes as files: nodal CSV, VTU for ParaView, a picture."""
 
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu import plots
 from jointfmu.files.writing import check_writable, write_bytes, write_text
+from jointfmu.quantity import Array
 
-from ..fields import csvfile
+from ..fields import nodal_result
 from .bolted_contact import JointSolution
-from .vtu import packed
+from .elasticity import ElasticBody, Index
+from .modes import NaturalModes
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
+
+def packed(points: Array, cell_type: str, cells: Index, data: Mapping[str, Array]) -> bytes:
+    """A VTU file: points (k, 3) [m], cells (m, corners) of meshio's `cell_type`, values (k, ...) by name."""
+    import meshio
+
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder) / "mesh.vtu"
+        meshio.Mesh(points, [(cell_type, cells)], point_data=dict(data)).write(place)
+        return place.read_bytes()
+
 
 SUFFIXES = (".csv", ".vtu")
 
@@ -31,7 +42,7 @@ def write(solution: JointSolution, path: str | Path) -> None:
     """Write the field: quadrature points and their areas as .csv, the nodes of the mesh as .vtu."""
     check(path)
     if Path(path).suffix.lower() == ".csv":
-        write_text(path, csvfile.text(solution.field))
+        write_text(path, nodal_result.csv_text(solution.field))
     else:
         write_bytes(path, vtu(solution))
 
@@ -89,3 +100,37 @@ def draw(solution: JointSolution, path: str | Path) -> None:
         force = solution.force / 1e3
         bolts = f"{force.min():g}" if np.ptp(force) == 0.0 else f"{force.min():g} to {force.max():g}"
         axes.set_title(f"{solution.joint.assembly.name}, {bolts} kN per bolt", size=10)
+
+
+def modes_vtu(bodies: tuple[ElasticBody, ...], modes: NaturalModes) -> bytes:
+    """Hexahedra of both bodies; at their corners one displacement [m] per mode, of 1 m at most.
+
+    bodies : as in jointfmu_tools.fem.modes; a mirror image is drawn too
+    """
+    from skfem.io.meshio import to_meshio
+
+    parts = [(body.mesh.p.T, to_meshio(body.mesh).cells[0].data) for body in bodies]
+    if len(parts) == 1:
+        points, cells = parts[0]
+        parts.insert(0, (points * np.array([1.0, 1.0, -1.0]), cells))
+    counts = [len(points) for points, _ in parts]
+    data = {}
+    for i, (frequency, shape) in enumerate(zip(modes.frequency, modes.shape, strict=True), 1):
+        moved = np.concatenate([u[rows] for u, rows in zip(shape, _corners(bodies), strict=True)])
+        data[f"mode {i}, {frequency:.1f} Hz"] = moved / np.linalg.norm(moved, axis=1).max()
+    points = np.concatenate([points for points, _ in parts])
+    cells = _outward(points, np.concatenate([parts[0][1], parts[1][1] + counts[0]]))
+    return packed(points, "hexahedron", cells, data)
+
+
+def _corners(bodies: tuple[ElasticBody, ...]) -> tuple[Index, Index]:
+    """Rows of a shape that belong to the corners of the elements, of side 1 and side 2."""
+    corners = [body.basis.nodal_dofs[0] for body in bodies]
+    return corners[0], corners[-1]
+
+
+def _outward(points: Array, cells: Index) -> Index:
+    """Hexahedra whose first face sees the second one on its positive side, as VTK wants them."""
+    a, b, d, e = (points[cells[:, k]] for k in (0, 1, 3, 4))
+    wrong = np.einsum("ij,ij->i", np.cross(b - a, d - a), e - a) < 0.0
+    return np.where(wrong[:, None], np.roll(cells, 4, axis=1), cells)

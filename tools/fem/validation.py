@@ -1,5 +1,9 @@
 """Measured natural frequencies beside those of finite elements."""
 
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default
 from jointfmu.published.reference import guesses, points
@@ -7,7 +11,24 @@ from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..fields.clamped import clamping
 from ..joint_parts import part
-from .frequencies import MeasuredFrequencies
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredFrequencies:
+    """Frequencies of a bolted assembly: `FREQUENCIES` of a clamped joint's folder.
+
+    points   : file of published numbers in models/reference/; `where` of each has `preload` [N] per bolt,
+               `moment` [N.m] and `mode`, from 1
+    assembly : file in models/assemblies/
+    """
+
+    points: str
+    assembly: str
+
+    @property
+    def path(self) -> Path:
+        """Of the assembly's file."""
+        return Path(str(files("jointfmu_models") / "assemblies" / f"{self.assembly}.toml"))
 
 
 def natural_frequencies() -> list[ValidatedPoint]:
@@ -20,12 +41,12 @@ def natural_frequencies() -> list[ValidatedPoint]:
 
 
 def _frequencies(joint: str, measured: MeasuredFrequencies) -> list[ValidatedPoint]:
-    from jointfmu_tools.fem import assembly, assembly_modes
+    from . import assembly, modes
 
     published, values = points(measured.points), default(joint).values
     states = list(dict.fromkeys((p.where["preload"], p.where["moment"]) for p in published))
     shear = float(clamping(joint).shear_ratio(values))
-    computed = assembly_modes.frequencies(assembly.load(measured.path), values, shear, states)
+    computed = modes.frequencies(assembly.load(measured.path), values, shear, states)
     at = dict(zip(states, computed.tolist(), strict=True))
     found = [at[p.where["preload"], p.where["moment"]][p.where["mode"] - 1] for p in published]
     guessed = guesses(published)

@@ -13,16 +13,13 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.compliances import Compliances
+from jointfmu.quantity import Array
 
 from .bolted_contact import elastic_body, head_loads
 from .contact import Interface, trace
-from .elasticity import ElasticBody
+from .elasticity import Cholesky, ElasticBody, Index
 from .geometry import Assembly
 from .mesh import contact_cells, contact_mesh, plan_of
-from .sparse import Cholesky
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 AXES = (0, 1, 2)
 SLACK = 1e-6

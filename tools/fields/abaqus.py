@@ -1,9 +1,10 @@
-"""Abaqus listings: field reports (.rpt) of Abaqus/CAE and printed tables (.dat) of Abaqus/Standard.
+"""Abaqus: field reports (.rpt) of Abaqus/CAE, printed tables (.dat) of Abaqus/Standard, input decks (.inp).
 
 A report says for which part it lists nodes; a line of dashes parts the names of its columns from the rows,
-and where the page is too narrow for all columns both go on in the next line. In a data file the columns
-stand after NODE, the rows after them may have a status (CL, OP), rows of zeros are left out, and tables
-repeat for each increment. Of several frames the last one with a pressure counts.
+and where the page is too narrow for all columns both go on in the next line. In a data file the columns stand
+after NODE, the rows after them may have a status (CL, OP), rows of zeros are left out, and tables repeat for
+each increment. Of several frames the last one with a pressure counts. A deck (.inp, of Abaqus or CalculiX,
+without parts) has the nodes and elements beside them.
 """
 
 import re
@@ -15,8 +16,8 @@ import numpy as np
 
 from jointfmu.quantity.refusal import Refusal
 
-from . import deck
-from .nodal_result import NodalResult
+from .mesh import FiniteElementMesh
+from .nodal_result import NodalResult, read_lines
 
 PRESSURE, AREA = "CPRESS", "CNAREA"
 _PLACE = ("COOR1", "COOR2", "COOR3")
@@ -90,7 +91,7 @@ def _on_deck(
             f"{path}: lists nodes of {len(parts)} parts ({', '.join(parts)}), an input deck has one numbering"
         )
         raise Refusal(text, "beside")
-    mesh = deck.read(mesh_path)
+    mesh = read_deck(mesh_path)
     listed = {node: value for (_, node), value in values.pressure.items()}
     if stray := mesh.stray(listed):
         raise ValueError(f"{path}: node {min(stray)} has a pressure and is not in {mesh_path}")
@@ -104,7 +105,7 @@ def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
     last, left_out = "", False
     places: dict[tuple[str, int], tuple[float, ...]] = {}
     for path in paths:
-        lines = _text(path)
+        lines = read_lines(path, "an Abaqus listing")
         report = any(line.lstrip().startswith("Field Output") for line in lines)
         left_out |= not report
         for row in _report(path, lines) if report else _printed(path, lines):
@@ -119,13 +120,6 @@ def _values(paths: Sequence[Path]) -> tuple[Values, bool]:
                 last = row.frame
     found = frames.get(last, Values({}, {}, {}))
     return Values(found.pressure, found.area, places | found.place), left_out
-
-
-def _text(path: Path) -> list[str]:
-    try:
-        return path.read_text(encoding="latin-1").splitlines()
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected an Abaqus listing") from None
 
 
 def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
@@ -214,3 +208,82 @@ def _printed(path: Path, lines: list[str]) -> Iterator[ListingRow]:
         elif columns and words[0].isdigit() and len(words) > 1:
             numbers = [word for word in words if not word.isalpha()]  # without CL, OP
             yield _row(f"{path}: line {number}", f"{step} {increment}", "", columns, numbers)
+
+
+_SOLID = re.compile(r"(?:AC3D|DC3D|C3D)(\d+)")
+_SHELL = re.compile(r"(?:S|SC|R3D|M3D|SFM3D|STRI|CPS|CPE|CPEG|CAX)(\d+)")
+SOLIDS = {
+    4: "tetra",
+    5: "pyramid",
+    6: "wedge",
+    8: "hexahedron",
+    10: "tetra10",
+    15: "wedge15",
+    20: "hexahedron20",
+}
+SHELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
+"""Kinds of meshio by the number in the name of an element; their nodes are in the same order."""
+COUNT = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8} | {kind: n for n, kind in SOLIDS.items()}
+REFUSED = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
+"""Keywords that make or move nodes and elements elsewhere."""
+
+
+def read_deck(path: Path) -> FiniteElementMesh:
+    """The nodes, the solids, and the shells if there are no solids; other elements are passed over.
+
+    Raises ValueError, one line with file and line: no deck, a keyword of REFUSED, a line that is none, an
+    element with a node that is not there.
+    """
+    places: dict[int, tuple[float, float, float]] = {}
+    rows: dict[str, list[list[int]]] = {}
+    open_row: list[int] = []  # goes on in the next line, after a comma at its end
+    for number, keyword, kind, words in _data(path):
+        try:
+            if keyword == "NODE":
+                x, y, z = (float(word or 0.0) for word in (*words[1:4], "", "")[:3])
+                places[int(words[0])] = x, y, z
+                continue
+            row = [*open_row, *(int(word) for word in words if word)]
+        except ValueError:
+            row = []
+        size = 1 + COUNT.get(kind, 0)
+        open_row = row if words[-1] == "" and 0 < len(row) < size else []
+        if not open_row and len(row) != size:
+            raise ValueError(
+                f"{path}: line {number}: {', '.join(words)!r} is no line of *{keyword}"
+                + (f" with {size - 1} nodes" if kind else "")
+            )
+        if not open_row:
+            rows.setdefault(kind, []).append(row[1:])
+    if not places or not rows:
+        raise ValueError(f"{path}: has no nodes and elements, expected an input deck with *NODE and *ELEMENT")
+    names = np.array(list(places), dtype=np.int64)
+    return FiniteElementMesh.of(path, names, np.array(list(places.values())), rows)
+
+
+def _data(path: Path) -> Iterator[tuple[int, str, str, list[str]]]:
+    """(line, keyword, kind of meshio, words) of the data lines of *NODE and *ELEMENT."""
+    keyword = kind = ""
+    for number, line in enumerate(read_lines(path, "an input deck"), 1):
+        if not line.strip() or line.startswith("**"):
+            continue
+        words = [word.strip() for word in line.split(",")]
+        if line.startswith("*"):
+            keyword, kind = words[0][1:].upper(), _kind(words[1:])
+            if keyword in REFUSED:
+                raise ValueError(
+                    f"{path}: line {number}: has *{keyword}, expected a deck whose nodes and elements are "
+                    "listed once, in one numbering (Abaqus/CAE: do not use parts and assemblies)"
+                )
+        elif keyword == "NODE" or (keyword == "ELEMENT" and kind):
+            yield number, keyword, kind, words
+
+
+def _kind(parameters: list[str]) -> str:
+    """Kind of meshio of the parameter TYPE; empty if the element has no faces here."""
+    values = (p.split("=")[1].strip().upper() for p in parameters if p.upper().startswith("TYPE"))
+    name = next(values, "")
+    for pattern, kinds in ((_SOLID, SOLIDS), (_SHELL, SHELLS)):
+        if found := pattern.match(name):
+            return kinds.get(int(found[1]), "")
+    return ""

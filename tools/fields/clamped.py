@@ -4,19 +4,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from jointfmu.contact.interface import InterfaceLaw
 from jointfmu.joints import KINDS
 from jointfmu.mechanics.footprint.bolts import PressureSource
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Number
+from jointfmu.quantity import Array, Number
 
 from ..joint_parts import part
 
-Array = NDArray[np.float64]
 Pressures = Callable[[Any, PressureShape, Array, Array], Array]
 
 

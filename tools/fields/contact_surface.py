@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
-from .areas import CORNERS, nodal_areas
-from .contact import ContactField
-from .nodal_result import Array, NodalResult, Nodes
+from .mesh import CORNERS, nodal_areas
+from .nodal_result import ContactField, NodalResult, Nodes
 
 AXES = "xyz"
 FLAT = 1e-3

@@ -11,8 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .bodies import bodies, boundary
-from .nodal_result import Array, NodalResult, Nodes
+from jointfmu.quantity import Array
+
+from .mesh import bodies, boundary
+from .nodal_result import NodalResult, Nodes
 
 TYPES: dict[int, tuple[str, int]] = {
     1: ("hexahedron", 8),

@@ -1,9 +1,11 @@
-"""From a nodal contact result to the parameter file of a joint with bolts that has the field."""
+"""From a nodal contact result to the parameter file of a joint with bolts that has it; its picture."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
+from jointfmu import plots
 from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.shape import (
     BOLT_MEANS,
@@ -15,11 +17,11 @@ from jointfmu.mechanics.footprint.shape import (
     means,
 )
 from jointfmu.parameters import ORIGINS, ParameterFile
-from jointfmu.quantity import build
+from jointfmu.quantity import Array, build
 from jointfmu.quantity.refusal import Refusal
 
 from .clamped import BoltedInterface, clamping
-from .contact import Array, ContactField
+from .nodal_result import ContactField
 from .reduction import MOST, Reduction, reduce
 
 FORCE_ERROR = 0.01
@@ -162,3 +164,30 @@ def _same_nodes(field: ContactField, tilted: ContactField) -> None:
             f"node {i + 1} of the field with a moment is at {tilted.position[i].tolist()} m with "
             f"{tilted.area[i]:g} m2, expected {field.position[i].tolist()} m with {field.area[i]:g} m2"
         )
+
+
+def draw(field: ContactField, reduction: Reduction, path: str | Path) -> None:
+    """Save the picture as .png or .svg."""
+    place = 1e3 * (field.position - field.centroid)
+    wide, high = np.ptp(place, axis=0)
+    with plots.drawing(path, (10.4, float(np.clip(4.6 * high / wide, 3.0, 7.0)))) as figure:
+        left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+        size = 20.0 * field.area / np.max(field.area) * min(1.0, 3000.0 / field.area.size)
+        shown = left.scatter(*place.T, c=1e-6 * field.pressure, s=size, cmap="viridis", lw=0.0)
+        figure.colorbar(shown, ax=left, label="pressure [MPa]", shrink=0.85)
+        left.set_title(f"{field.area.size} nodes, {field.force / 1e3:.4g} kN", loc="left", fontsize=10)
+        points = reduction.shape
+        mean = field.force / float(np.sum(field.area))
+        shown = right.scatter(
+            *(1e3 * points.position.T),
+            c=1e-6 * mean * points.equal,
+            s=np.clip(2000.0 * points.share, 4.0, 400.0),
+            cmap="viridis",
+            alpha=0.75,
+        )
+        figure.colorbar(shown, ax=right, label="pressure [MPa]", shrink=0.85)
+        right.set_title(f"{reduction.points} points, by their share of the area", loc="left", fontsize=10)
+        left.set_ylabel("y, across the bolt rows [mm]")
+        for axes in (left, right):
+            axes.set_xlabel("x, along the bolt rows [mm]")
+            axes.set_aspect("equal")

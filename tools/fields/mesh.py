@@ -1,4 +1,12 @@
-"""The mesh that belongs to a listing of nodal values, from a file of its own."""
+"""The mesh of a nodal result: faces of its cells, its bodies, what part of the surface a node stands for.
+
+Names of cells and orders of nodes are meshio's. A field's sums are those of a nonlinear function, the
+stiffness k(p), so every node must have a positive area. Those consistent with the shape functions (their
+integrals) are positive for linear faces only: they are zero at the corners of quadratic triangles and
+negative at those of quadratic quadrilaterals. A quadratic face is therefore cut through its nodes into linear
+ones. The sums are those of the trapezoidal rule on all nodes, second order in their distance, as with linear
+faces on the same nodes.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,10 +14,121 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
-from .areas import CORNERS
-from .bodies import bodies, boundary
-from .nodal_result import Array, NodalResult, Nodes
+from jointfmu.quantity import Array
+
+from .nodal_result import NodalResult, Nodes
+
+CUTS: dict[int, tuple[tuple[int, ...], ...]] = {
+    3: ((0, 1, 2),),
+    4: ((0, 1, 2, 3),),
+    6: ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
+    8: ((0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6, 7)),
+    9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)),
+}
+"""Linear faces into which a face with so many nodes is cut."""
+CORNERS = {3: 3, 4: 4, 6: 3, 8: 4, 9: 4}
+_GAUSS = 1.0 / np.sqrt(3.0)
+
+
+def nodal_areas(place: Array, faces: Sequence[Nodes]) -> Array:
+    """Area (n) [m2] of each node, from faces and places (n, 2) [m] in the plane; zero where there is none."""
+    area = np.zeros(len(place))
+    for block in faces:
+        for cut in CUTS[block.shape[1]]:
+            nodes = block[:, cut]
+            weights = _quadrilaterals(place[nodes]) if len(cut) == 4 else _triangles(place[nodes])
+            area += np.bincount(nodes.ravel(), weights.ravel(), len(place))
+    return area
+
+
+def _triangles(corners: Array) -> Array:
+    """Integrals (k, 3) of the shape functions of triangles with corners (k, 3, 2)."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return np.repeat(area[:, None] / 3.0, 3, axis=1)
+
+
+def _quadrilaterals(corners: Array) -> Array:
+    """Integrals (k, 4) of the bilinear shape functions of quadrilaterals with corners (k, 4, 2)."""
+    total = np.zeros(corners.shape[:2])
+    signs = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    for u, v in signs * _GAUSS:
+        along, across = 1.0 + signs[:, 0] * u, 1.0 + signs[:, 1] * v
+        slopes = 0.25 * np.stack([signs[:, 0] * across, signs[:, 1] * along])
+        jacobian = np.einsum("dn,knc->kdc", slopes, corners)
+        total += np.abs(np.linalg.det(jacobian))[:, None] * 0.25 * along * across
+    return total
+
+
+_TETRA = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+_WEDGE = ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (0, 2, 5, 3))
+_PYRAMID = ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 3, 4))
+_BRICK = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (0, 3, 7, 4))
+_TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
+_WEDGE_EDGES = ((0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5), (0, 3), (1, 4), (2, 5))
+_PYRAMID_EDGES = ((0, 1), (1, 2), (2, 3), (0, 3), (0, 4), (1, 4), (2, 4), (3, 4))
+_BRICK_EDGES = (
+    *((0, 1), (1, 2), (2, 3), (0, 3), (4, 5), (5, 6), (6, 7), (4, 7)),
+    *((0, 4), (1, 5), (2, 6), (3, 7)),
+)
+_Pairs = tuple[tuple[int, ...], ...]
+VOLUMES: dict[str, tuple[int, _Pairs, _Pairs]] = {
+    "tetra": (4, _TETRA, ()),
+    "tetra10": (4, _TETRA, _TETRA_EDGES),
+    "wedge": (6, _WEDGE, ()),
+    "wedge15": (6, _WEDGE, _WEDGE_EDGES),
+    "pyramid": (5, _PYRAMID, ()),
+    "pyramid13": (5, _PYRAMID, _PYRAMID_EDGES),
+    "hexahedron": (8, _BRICK, ()),
+    "hexahedron20": (8, _BRICK, _BRICK_EDGES),
+}
+"""Corners, faces by corners, and the edges whose middles follow the corners."""
+SURFACES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
+PASSED = ("vertex", "line", "line3")
+"""Cells that have no area."""
+
+
+def boundary(cells: Mapping[str, Nodes]) -> list[Nodes]:
+    """Faces that one volume cell alone has; the surface cells themselves if there are no volumes."""
+    volumes = {name: block for name, block in cells.items() if name in VOLUMES}
+    if not volumes:
+        return [block for name, block in cells.items() if name in SURFACES]
+    by_size: dict[int, list[Nodes]] = {}
+    for name, block in volumes.items():
+        for face in _faces(name):
+            by_size.setdefault(len(face), []).append(block[:, face])
+    return [_single(np.concatenate(blocks), size) for size, blocks in by_size.items()]
+
+
+def _faces(name: str) -> list[tuple[int, ...]]:
+    """Nodes of each face of a cell: corners, then the middles of its edges."""
+    corners, faces, edges = VOLUMES[name]
+    middle = {tuple(sorted(edge)): corners + i for i, edge in enumerate(edges)}
+    if not middle:
+        return list(faces)
+    return [
+        (*f, *(middle[tuple(sorted((a, b)))] for a, b in zip(f, (*f[1:], f[0]), strict=True))) for f in faces
+    ]
+
+
+def _single(faces: Nodes, size: int) -> Nodes:
+    """The faces (k, size) that occur once."""
+    keys = np.sort(faces[:, : CORNERS[size]], axis=1)
+    _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
+    return np.asarray(faces[np.sort(first[count == 1])])
+
+
+def bodies(cells: Mapping[str, Nodes], nodes: int) -> NDArray[np.int64]:
+    """(n) number of the body that each node belongs to: cells that share a node are one."""
+    rows = []
+    for block in cells.values():
+        rows.append(np.stack([np.repeat(block[:, :1], block.shape[1] - 1, axis=1), block[:, 1:]], axis=-1))
+    pairs = np.concatenate([row.reshape(-1, 2) for row in rows])
+    links = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(nodes, nodes))
+    return np.asarray(connected_components(links, directed=False)[1], dtype=np.int64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +142,24 @@ class FiniteElementMesh:
     names: NDArray[np.int64]
     place: Array
     cells: Mapping[str, Nodes]
+
+    @classmethod
+    def of(
+        cls, path: Path, names: NDArray[np.int64], place: Array, rows: Mapping[str, Sequence[Sequence[int]]]
+    ) -> "FiniteElementMesh":
+        """Of {kind: cells by the numbers of their nodes}; ValueError naming a node that is missing."""
+        order = np.argsort(names)
+        cells = {}
+        for kind, numbers in rows.items():
+            wanted = np.array(numbers, dtype=np.int64)
+            at = order[np.minimum(np.searchsorted(names, wanted, sorter=order), names.size - 1)]
+            if np.any(missing := names[at] != wanted):
+                raise ValueError(
+                    f"{path}: node {wanted[missing][0]} of an element is not there; expected elements of the "
+                    "nodes in the file"
+                )
+            cells[kind] = at.astype(np.intp)
+        return cls(names, place, cells)
 
     def faces(self) -> list[Nodes]:
         """The surfaces, or the boundary of the volumes."""
@@ -65,22 +202,6 @@ def listed_faces(faces: Sequence[Nodes], values: Array) -> list[Nodes]:
     there = np.isfinite(values)
     kept = [block[np.all(there[block[:, : CORNERS[block.shape[1]]]], axis=1)] for block in faces]
     return [block for block in kept if block.size]
-
-
-def cells_of(rows: Mapping[str, Sequence[Sequence[int]]], names: NDArray[np.int64]) -> dict[str, Nodes]:
-    """{kind: (k, m) places of nodes}, from their numbers.
-
-    Raises ValueError naming a node that is missing.
-    """
-    order = np.argsort(names)
-    cells = {}
-    for kind, numbers in rows.items():
-        wanted = np.array(numbers, dtype=np.int64)
-        at = order[np.minimum(np.searchsorted(names, wanted, sorter=order), names.size - 1)]
-        if np.any(missing := names[at] != wanted):
-            raise ValueError(f"node {wanted[missing][0]} of an element is not there")
-        cells[kind] = at.astype(np.intp)
-    return cells
 
 
 def no_reader(path: Path, error: ImportError) -> ValueError:

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
-from .bodies import PASSED, SURFACES, VOLUMES, bodies, boundary
-from .mesh import no_reader
-from .nodal_result import Array, NodalResult
+from .mesh import PASSED, SURFACES, VOLUMES, bodies, boundary, no_reader
+from .nodal_result import NodalResult
 
 
 def read(path: Path, length: float, pressure: float, data: str | None) -> NodalResult:

@@ -1,15 +1,53 @@
-"""A nodal contact result as a file has it, before it is checked."""
+"""A nodal contact result: on a plane joint, as a file has it before it is checked, and as CSV.
 
-from collections.abc import Sequence
+CSV has x [m], y [m], area [m2], pressure [Pa], one node per line. The heading states the units, which may be
+others (COLUMNS). x runs along the bolt rows, y across them.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity.units import sizes
+from jointfmu.files import columns
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import Sizes, sizes
 
-Array = NDArray[np.float64]
+
+def read_lines(path: Path, what: str) -> list[str]:
+    """The lines of a listing; ValueError, one line, for what cannot be read."""
+    try:
+        return path.read_text(encoding="latin-1").splitlines()
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read ({error.strerror}); expected {what}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class ContactField:
+    """Pressure at the nodes of a plane contact, whatever made it.
+
+    area     : (n)    [m2] part of the contact that the node stands for, > 0
+    position : (n, 2) [m]  in the joint's plane, any origin
+    pressure : (n)    [Pa] >= 0; 0 where the contact is open
+    """
+
+    area: Array
+    position: Array
+    pressure: Array
+
+    @property
+    def force(self) -> float:
+        """Total normal force [N]."""
+        return float(np.sum(self.area * self.pressure))
+
+    @property
+    def centroid(self) -> Array:
+        """Centroid of the contact (2) [m]."""
+        return np.asarray(np.average(self.position, axis=0, weights=self.area))
+
+
 Nodes = NDArray[np.intp]
 
 LENGTHS = sizes("m", "mm", "um")
@@ -46,3 +84,31 @@ class NodalResult:
     def at(self, i: int) -> str:
         """The file and the place of node i, for messages."""
         return f"{self.path}: {self.word} {self.names[i]}"
+
+
+COLUMNS: Mapping[str, Sizes] = {
+    "x": LENGTHS,
+    "y": LENGTHS,
+    "area": sizes(*(f"{unit}2" for unit in LENGTHS)),
+    "pressure": PRESSURES,
+}
+
+
+def read_csv(path: Path) -> NodalResult:
+    """The nodes of a file, in SI units; ValueError with file, line and column otherwise."""
+    table = columns.read(path, COLUMNS, 1)
+    quantities = {name: table.require(name, COLUMNS) for name in COLUMNS}
+    return NodalResult(
+        path=path,
+        word="line",
+        names=np.array(table.lines, dtype=np.int64),
+        place=np.column_stack([quantities["x"], quantities["y"], np.zeros_like(quantities["x"])]),
+        pressure=quantities["pressure"],
+        area=quantities["area"],
+    )
+
+
+def csv_text(field: ContactField) -> str:
+    """A field as the text of a file that `read` reads back, in SI units and to the last bit."""
+    heads = [(name, next(iter(units))) for name, units in COLUMNS.items()]
+    return columns.text(heads, [*field.position.T, field.area, field.pressure])

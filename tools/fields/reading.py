@@ -8,10 +8,9 @@ import numpy as np
 
 from jointfmu.quantity.refusal import Refusal
 
-from . import abaqus, ansys, csvfile, frd, meshfile
-from .contact import ContactField
+from . import abaqus, ansys, frd, meshfile, nodal_result
 from .contact_surface import OPEN, ContactSurface, Plane, contact_surface
-from .nodal_result import LENGTHS, PRESSURES, NodalResult
+from .nodal_result import LENGTHS, PRESSURES, ContactField, NodalResult
 
 FORMATS = ("csv", "mesh", "ansys", "abaqus", "frd")
 SUFFIXES = {
@@ -91,7 +90,7 @@ class Reading:
                 raise Refusal(f"{path}: is read as {format}, {what} for the format {allowed}", name)
         if format == "csv":
             self._stated_by_file(path)
-            return csvfile.read(path)
+            return nodal_result.read_csv(path)
         length, pressure = self._units(path)
         if format in LISTINGS:
             return LISTINGS[format]([path, *beside], length, pressure)
@@ -101,10 +100,7 @@ class Reading:
 
     def _units(self, path: Path) -> tuple[float, float]:
         """Sizes of the stated units."""
-        for value, name, units in (
-            (self.length, "length", LENGTHS),
-            (self.pressure, "pressure", PRESSURES),
-        ):
+        for value, name, units in ((self.length, "length", LENGTHS), (self.pressure, "pressure", PRESSURES)):
             if value is None:
                 raise Refusal(f"{path}: states no unit of {name}; expected one of {', '.join(units)}", name)
         return LENGTHS[str(self.length)], PRESSURES[str(self.pressure)]

@@ -1,29 +1,63 @@
 """Few points for many nodes: a field's sums at all loads, kept by some of its nodes with new shares.
 
-What a joint exports are sums over its nodes of share times a function of the node's two pressures
-(`equal`, `tilt`), with its position as a factor. At finitely many loads these are finitely many sums, most of
-which follow from the others. Some of the nodes with positive shares keep these (`recombination`), and as few
-of them as keep all within the tolerance are taken. Loads at which the points miss are added until none of
-further ones is missed. Which nodes and shares these are is found with rounded numbers
+What a joint exports are sums over its nodes of share times a function of the node's two pressures (`equal`,
+`tilt`), with its position as a factor. At finitely many loads these are finitely many sums, most of which
+follow from the others. Some of the nodes with positive shares keep these (`recombined`; Tchakaloff; Litterer
+and Lyons 2012), and as few of them as keep all within the tolerance are taken. Loads at which the points miss
+are added until none of further ones is missed. Which nodes and shares these are is found with rounded numbers
 (`footprint.reproducible`); the nodes are the field's own.
 """
 
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, pairwise
 
 import numpy as np
 from scipy.linalg import qr, solve_triangular
+from scipy.optimize import nnls
 
 from jointfmu.mechanics.footprint.patches import highest
 from jointfmu.mechanics.footprint.reproducible import rounded, to_digits
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
 from .clamped import BoltedInterface, Pressures
-from .loads import PRELOADS, SEED, Load, first_loads, further_loads, largest_moment
-from .nodal_result import Array, Nodes
-from .recombination import recombined
-from .sums import Sums, SumsAtLoads, balance, grouped
+from .nodal_result import Nodes
+from .sums import (
+    PRELOADS,
+    SEED,
+    Load,
+    Sums,
+    SumsAtLoads,
+    balance,
+    first_loads,
+    further_loads,
+    grouped,
+    largest_moment,
+)
+
+GROUPS = 2
+"""Groups over kept sums [1]."""
+
+
+def recombined(values: Array, weights: Array, turn: Array) -> tuple[Nodes, Array]:
+    """Nodes and their weights (at most d), with which values (n, d) have the sums that weights (n) > 0 give.
+
+    turn : (d, d) makes the d values independent
+
+    Raises RuntimeError if rounding stands in the way.
+    """
+    left, count = np.arange(len(values)), values.shape[1]
+    while left.size > count:
+        groups = np.linspace(0, left.size, min(GROUPS * count, left.size) + 1).astype(np.intp)
+        sums = [weights[a:b] @ values[a:b] for a, b in pairwise(groups)]
+        vectors = (np.array(sums) @ turn).T
+        factors, _ = nnls(vectors, np.sum(vectors, axis=1), maxiter=20 * count)
+        of_node = np.repeat(factors, np.diff(groups))
+        stays = of_node > 0.0
+        left, weights, values = left[stays], (weights * of_node)[stays], values[stays]
+    return left, weights
+
 
 TOLERANCE = 1e-6
 """Largest deviation of a sum [1] that a reduced field may have."""

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 from scipy.signal import find_peaks
 
+from jointfmu.quantity import Array
+
 from .hysteresis import HysteresisLaw
-from .least_squares import Array
 
 PROMINENCE = 0.02
 """Least reversal of the motion, over its range [1], that is a turning point."""
@@ -177,7 +178,12 @@ def turning_points(motion: Array) -> NDArray[np.int64]:
     least = max(PROMINENCE * float(np.ptp(motion)), NOISE * noise(motion))
     if not least > 0.0:
         return np.array([], dtype=np.int64)
-    return np.sort(np.concatenate([find_peaks(way * motion, prominence=least)[0] for way in (1.0, -1.0)]))
+    return extremes(motion, least)
+
+
+def extremes(signal: Array, least: float) -> NDArray[np.int64]:
+    """Places where a signal turns around by `least` or more."""
+    return np.sort(np.concatenate([find_peaks(way * signal, prominence=least)[0] for way in (1.0, -1.0)]))
 
 
 def turning_value(motion: Array, turn: int, noisy: float) -> float:
@@ -238,10 +244,11 @@ def _area(one: tuple[Array, Array], other: tuple[Array, Array]) -> tuple[float, 
     if not high > low or min(u.size, v.size) < LEAST:
         return None
     grid = np.linspace(low, high, _GRID)
-    up, down = (np.interp(grid, *_sorted(x, y)) for x, y in ((u, F), (v, G)))
+    up, down = (np.interp(grid, *ordered(x, y)) for x, y in ((u, F), (v, G)))
     return float(trapezoid(up - down, grid)), float(high - low)
 
 
-def _sorted(x: Array, y: Array) -> tuple[Array, Array]:
+def ordered(x: Array, y: Array) -> tuple[Array, Array]:
+    """Points (n) by rising x."""
     order = np.argsort(x, kind="stable")
     return x[order], y[order]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.optimize
 
-from .least_squares import Array
+from jointfmu.quantity import Array
 
 PERIODS = (2, 5)
 """Fewest and most periods of a window."""

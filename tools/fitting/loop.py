@@ -16,9 +16,10 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
-from .least_squares import Array
+from jointfmu.quantity import Array
+
+from .branches import extremes
 
 PROMINENCE = 0.1
 """Least reversal of the torque, over its range [1], that counts as a turning point."""
@@ -88,8 +89,7 @@ def backbone(torque: Array, angle: Array) -> Backbone:
 
 def _branches(torque: Array) -> list[_Branch]:
     """All branches between turning points, in order."""
-    least = PROMINENCE * float(np.ptp(torque))
-    turns = np.sort(np.concatenate([find_peaks(way * torque, prominence=least)[0] for way in (1.0, -1.0)]))
+    turns = extremes(torque, PROMINENCE * float(np.ptp(torque)))
     ends = np.concatenate([[0], turns, [torque.size - 1]])
     branches = []
     for first, last in pairwise(ends):

@@ -1,19 +1,95 @@
-"""What every fit hands back: the parameter file, how well it is determined, and the plotted data."""
+"""What every fit hands back: the parameter file, how well it is determined, and the plotted data.
+
+The singular values of the Jacobian in the logarithms, over the noise, are the reciprocal standard deviations
+of independent combinations `prod name^exponent`. A parameter or combination counts as determined if its
+standard deviation is at most its limit: LOOSEST, or a tenth of the parameter's interval where that is
+narrower (both in logarithms).
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from jointfmu import plots
 from jointfmu.contact.roughness import ROUGHEST
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flat_fields
+from jointfmu.quantity import Array, Interval, flat_fields
 
-from .identifiability import combinations, undetermined
-from .least_squares import Array, Solution, Unknown
+from .least_squares import Solution, Unknown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+LOOSEST = 0.2
+"""Standard deviation of a logarithm [1] up to which a parameter counts as determined: about 20 %."""
+PART_OF_INTERVAL = 0.1
+SIGNIFICANT = 0.01
+"""Least exponent of a combination, over its largest, that is named [1]."""
+NUMERICAL = 1e-5
+"""Least singular value over the largest that is told from zero [1]: the accuracy of the differences."""
+
+
+@dataclass(frozen=True, slots=True)
+class Combination:
+    """An independent combination of parameters, prod name^exponent, largest exponent 1.
+
+    deviation : relative standard deviation [1]; infinite if the data say nothing about it
+    """
+
+    exponents: Mapping[str, float]
+    deviation: float
+    determined: bool
+
+    def __str__(self) -> str:
+        return " ".join(
+            name if power == 1.0 else f"{name}^{power:.2g}" for name, power in self.exponents.items()
+        )
+
+
+def limit(unknown: Unknown) -> float:
+    """Standard deviation of the logarithm [1] up to which a parameter counts as determined."""
+    if unknown.low <= 0.0 or not np.isfinite(unknown.high):
+        return LOOSEST
+    return min(LOOSEST, PART_OF_INTERVAL * float(np.log(unknown.high / unknown.low)))
+
+
+def combinations(solution: Solution) -> list[Combination]:
+    """The independent combinations, best determined first."""
+    limits = np.array([limit(u) for u in solution.unknowns])
+    _, s, rows = np.linalg.svd(solution.jacobian * limits, full_matrices=False)
+    independent = []
+    for value, row in zip(s, rows, strict=True):
+        powers = row / limits  # ln of the combination is row . (ln x / limits)
+        top = powers[np.argmax(np.abs(row))]
+        named = np.abs(row) >= SIGNIFICANT * np.max(np.abs(row))
+        exponents = {
+            u.name: float(p / top)
+            for u, p, keep in zip(solution.unknowns, powers, named, strict=True)
+            if keep
+        }
+        blind = value <= NUMERICAL * s[0]
+        deviation = np.inf if blind else solution.noise / value
+        independent.append(Combination(exponents, float(deviation / abs(top)), bool(deviation <= 1.0)))
+    return independent
+
+
+def undetermined(solution: Solution) -> list[str]:
+    """Names of the parameters that the data do not determine, or that sit on a bound."""
+    blind = {name for c in combinations(solution) if not np.isfinite(c.deviation) for name in c.exponents}
+    return [
+        u.name
+        for u in solution.unknowns
+        if solution.deviations[u.name] > limit(u) or u.name in solution.at_bound or u.name in blind
+    ]
+
+
+ALIKE = 0.5
+"""Correlation of neighbouring residuals [1] above which the law itself misses the data."""
 
 WORST_AREA = 2.0
 """Factor between measured and fitted area of the widest loop beyond which a law is none of these data."""
@@ -153,6 +229,17 @@ class FitResult:
         }
 
 
+def systematic(rest: Array, what: str, same: NDArray[np.bool_] | slice = slice(None)) -> list[str]:
+    """The note where residuals (n) of `what` show that the law itself misses it, by neighbours `same`."""
+    alike = float(np.sum((rest[1:] * rest[:-1])[same]) / np.sum(rest**2)) if np.any(rest) else 0.0
+    if alike <= ALIKE:
+        return []
+    return [
+        f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the {what} "
+        "systematically, the standard deviations are too small"
+    ]
+
+
 def percent(part: float) -> str:
     """A relative standard deviation as text."""
     if part < 1.0:
@@ -203,3 +290,29 @@ def today() -> str:
     Raises ValueError if the variable is no number of seconds.
     """
     return build_time().date().isoformat()
+
+
+def size(outcome: FitResult) -> tuple[float, float]:
+    """Of the figure [inch]."""
+    return 3.6 * (1 + len(outcome.pictures)), 5.6
+
+
+def draw(figure: "Figure", outcome: FitResult) -> None:
+    """Data and law above, residuals below; pictures side by side."""
+    pictures = outcome.pictures
+    every = figure.subplots(2, len(pictures), sharex="col", height_ratios=(2.4, 1.0), squeeze=False)
+    for (above, below), picture in zip(every.T, pictures, strict=True):
+        x, y = picture.x, picture.y
+        above.plot(*picture.line, color=plots.BLUE, label="fitted law")
+        for (name, line), color in zip(picture.also.items(), (plots.GREEN, plots.GREY), strict=False):
+            above.plot(*line, "--", color=color, lw=1.0, label=name)
+        above.plot(x, y, ".", color=plots.RED, ms=4, label="data")
+        below.axhline(0.0, color=plots.BLUE, lw=1.0)
+        below.plot(x, picture.misfit, ".", color=plots.RED, ms=4)
+        if picture.marks is not None:
+            for axes, values in ((above, y), (below, picture.misfit)):
+                axes.plot(x[picture.marks], values[picture.marks], "o", color=plots.RED, ms=7)
+        above.set_ylabel(picture.labels[1])
+        below.set_xlabel(picture.labels[0])
+        below.set_ylabel(picture.labels[2])
+        above.legend()

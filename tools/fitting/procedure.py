@@ -6,36 +6,10 @@ from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
 
-from ..joint_parts import part
+from ..joint_parts import Option, part
 
 if TYPE_CHECKING:
     from .outcome import FitResult
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FitOption:
-    """A number or a word that a procedure takes beside its data.
-
-    name     : keyword of the procedure's function
-    text     : meaning, a number's with its unit
-    default  : where nothing is stated
-    choices  : words that are allowed; none: any
-    word     : it is a word; else a number
-    required : it must be stated
-    unit     : of a number that may be stated with a unit of its own
-    unit_by  : the option that states the unit of numbers without one; it is not passed on
-    many     : it takes several words
-    """
-
-    name: str
-    text: str
-    default: float | str | None = None
-    choices: Sequence[str] = ()
-    word: bool = False
-    required: bool = False
-    unit: str = ""
-    unit_by: str = ""
-    many: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +32,7 @@ class Procedure:
     file: bool
     many: bool = False
     column: str = ""
-    options: Sequence[FitOption] = ()
+    options: Sequence[Option] = ()
     run: "Callable[..., FitResult]"
 
 
@@ -72,9 +46,10 @@ def procedures() -> dict[str, dict[str, Procedure]]:
     return found
 
 
-DAMPING_RATIO = FitOption(
-    name="damping_ratio",
-    text="of the structure, beside the joint [1]; to fit it, free damping_ratio",
+DAMPING_RATIO = Option(
+    "damping_ratio",
+    "of the structure, beside the joint [1]; to fit it, free damping_ratio",
     default=0.0,
+    number=True,
 )
 """What procedures with a vibration take beside."""

@@ -3,6 +3,8 @@
 from jointfmu.joints import KINDS
 
 from .frame import Frame as Frame
+from .frame import Table as Table
+from .frame import run as run
 from .joint import Joint as Joint
 from .law import Law as Law
 from .law import law as law
@@ -10,8 +12,6 @@ from .make import Fit as Fit
 from .make import fit as fit
 from .make import load as load
 from .make import maker
-from .run import run as run
-from .table import Table as Table
 
 drive = maker(
     "drive",

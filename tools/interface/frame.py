@@ -1,22 +1,68 @@
-"""Columns of numbers with their units: what evaluating a joint and running an FMU give."""
+"""Columns of numbers with their units, what evaluating a joint and running an FMU give, and tables of
+numbers: text at a prompt, HTML in a notebook.
+"""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointfmu import plots
 from jointfmu.files import columns
 from jointfmu.files.writing import write_text
-
-from .table import Table
+from jointfmu.fmi import ramp
+from jointfmu.quantity import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
+
+LONGEST = 60
+"""Letters of a cell at a prompt; a notebook shows all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of cells under a title and heads; `lines` stand between title and rows.
+
+    >>> import jointfmu
+    >>> table = jointfmu.load("GearContact").parameters
+    >>> table.heads
+    ('name', 'value', 'unit', 'meaning', 'kind', 'source')
+    """
+
+    title: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    lines: Sequence[str] = ()
+
+    def __str__(self) -> str:
+        cells = [[_cut(cell) for cell in row] for row in (self.heads, *self.rows)]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        rows = ("  ".join(f"{c:{w}}" for c, w in zip(row, widths, strict=True)).rstrip() for row in cells)
+        return "\n".join([self.title, *self.lines, *rows])
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook."""
+        head = "".join(f"<th>{escape(cell)}</th>" for cell in self.heads)
+        body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in self.rows)
+        lines = "".join(f"<div>{escape(line)}</div>" for line in self.lines)
+        return (
+            f"<div><b>{escape(self.title)}</b></div>{lines}"
+            f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        )
+
+
+def _cut(cell: str) -> str:
+    return cell if len(cell) <= LONGEST else f"{cell[: LONGEST - 3]}..."
+
+
 ENDS = 5
 """Rows at the begin and at the end that are printed."""
 
@@ -98,3 +144,31 @@ class Frame(Mapping[str, Array]):
         table = pandas.DataFrame(dict(self))
         table.attrs["units"] = dict(self.units)
         return table
+
+
+def run(
+    fmu: str | Path,
+    inputs: Mapping[str, ArrayLike],
+    *,
+    time: ArrayLike | None = None,
+    settings: Mapping[str, object] | None = None,
+) -> Frame:
+    """Run an FMU in co-simulation along points of its inputs; every output at every point.
+
+    inputs   : {input: values (n) or one value} [SI]
+    time     : (n) [s] from the start on, rising; one second each by default
+    settings : {parameter or other input: value}
+
+    Raises ValueError, one line, for what is no FMU, an unknown name, inputs of different lengths, or what the
+    FMU itself refuses; RuntimeError if it does not instantiate.
+
+    >>> import jointfmu
+    >>> fmu = jointfmu.load("GearContact").build("dist", "fmi2")[0]
+    >>> frame = jointfmu.run(fmu, {"f": [0.0, 500.0, 1000.0]})
+    >>> bool(frame["K_N"][2] > frame["K_N"][1] > 0.0)
+    True
+    """
+    points = {name: np.atleast_1d(np.asarray(x, dtype=np.float64)) for name, x in inputs.items()}
+    clock = None if time is None else np.asarray(time, dtype=np.float64)
+    found = ramp.drive(fmu, points, clock, settings)
+    return Frame(found.columns, found.units, found.messages)

@@ -19,9 +19,8 @@ from jointfmu.parameters import ParameterFile, dump
 
 from ..pressure import judge_file
 from ..shown import quantity, stated
-from .frame import Frame
+from .frame import Frame, Table
 from .law import Law
-from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,8 +15,7 @@ from jointfmu.judgement import judge, law_height
 from jointfmu.quantity import flat_fields, flatten
 
 from ..shown import quantity
-from .frame import Frame
-from .table import Table
+from .frame import Frame, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

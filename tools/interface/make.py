@@ -14,13 +14,12 @@ from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.parameters import load as load_file
 
-from ..drawing.part import Drawing, NewJoint, Option
-from ..fitting.outcome import FitResult, percent
-from ..fitting.picture import draw, size
+from ..drawing.part import Drawing, NewJoint
+from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
-from ..joint_parts import part
+from ..joint_parts import Option, part
+from .frame import Table
 from .joint import Facts, Joint
-from .table import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,13 +14,13 @@ from jointfmu.progress import processes, track
 from jointfmu.proof.outcome import Proof
 from jointfmu.proof.run import prove
 from jointfmu.published import validation
+from jointfmu.quantity import Array
 
 from ..laboratory.assemble import write_laboratory
 from ..report.figure import Figure
 from ..report.page import drawn, write_report
 from ..systems import cosimulation, decays
 from ..systems.decays import Decay
-from ..systems.master import Array
 from ..systems.ringing import Ringing, examples
 from ..systems.ssp import build_systems
 from ..systems.system import System

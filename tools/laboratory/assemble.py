@@ -16,14 +16,10 @@ from jointfmu import __version__
 from jointfmu.files.writing import write_text
 from jointfmu.quantity import units
 
-from .describe import described
-from .modules import compiled, modules
+from .describe import compiled, described, modules
 
 _FOLDER = Path(__file__).with_name("web")
-_SCRIPTS = (
-    *("engine", "sight", "controls"),
-    *("curves", "path", "turn", "contact", "body", "files", "main"),
-)
+_SCRIPTS = (*("engine", "sight", "controls"), *("curves", "path", "turn", "contact", "body", "files", "main"))
 """Files of the page, in the order in which they are run, after the charts."""
 _FILE_UNITS = {
     "rad": ("rad", "mrad", "deg", "arcmin", "arcsec"),

@@ -10,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model, Variable
 from jointfmu.quantity.units import UNITS
 
-from .text import number, text
+from .records import number, text
 
 _ROTATIONAL, _TRANSLATIONAL = "Modelica.Mechanics.Rotational", "Modelica.Mechanics.Translational"
 _ADAPTORS = {  # (rotational, the FMU takes motion) -> adaptor

@@ -24,10 +24,8 @@ from jointfmu.quantity.smooth import STEP
 from ..joint_parts import part
 from ..systems.system import System, systems
 from .blocks import interface, wrapper
-from .records import ModelicaComponent, ModelicaRecord, WorkingPoint
+from .records import TOLERANCE, ModelicaComponent, ModelicaRecord, WorkingPoint, environment, text
 from .systems import model_name, system_model
-from .tables import TOLERANCE
-from .text import environment, text
 
 NAME = "JointStiffness"
 _PARTNERS = ("LinkWeight", "Load", "AngleProfile", "TorqueCurve")

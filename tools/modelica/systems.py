@@ -14,8 +14,7 @@ from ..joint_parts import part as joint_part
 from ..systems.system import Component as Part
 from ..systems.system import System
 from ..systems.wiring import End, ends
-from .records import ModelicaComponent, ModelicaRecord
-from .text import number, text
+from .records import ModelicaComponent, ModelicaRecord, number, text
 
 _MSL = "Modelica.Mechanics"
 _LIBRARY = "JointStiffness.Components"

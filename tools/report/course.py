@@ -5,14 +5,12 @@ from typing import Any
 
 import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
-from numpy.typing import NDArray
 
 from jointfmu.fmi.loops import HysteresisLoops, Swing, conjugate, of
 from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
-
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 _POINTS = 101
 _SWING = Swing(points=80)

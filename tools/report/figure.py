@@ -1,15 +1,55 @@
-"""A figure of the report; `figures(outcome)` in the file of a joint returns a list of them."""
+"""A figure of the report, and a row of a joint's page: a published number beside what the joint does."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
 from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.published.reference import PROVES_NOTHING, ROLES, Point
 
+from ..laboratory.assemble import web_file
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
+
+
+def style() -> str:
+    """The style sheet."""
+    return chart.style() + web_file("style.css") + _own("report.css")
+
+
+def script(*names: str) -> str:
+    """The charts of the figures, and scripts of this folder that use them."""
+    return chart.script("figures") + "".join(map(_own, names))
+
+
+def _own(name: str) -> str:
+    return Path(__file__).with_name(name).read_text(encoding="utf-8")
+
+
+SET, OWN, PREDICTED = "set by it", "a parameter of its own", "predicted"
+"""What the published number is for the file: a parameter comes from it; one is of the same meaning, but does
+not come from it; none of the two."""
+
+
+class Beside(NamedTuple):
+    """Numbers in the SI unit `unit`.
+
+    bound : the published number is an upper limit
+    role  : SET, OWN or PREDICTED
+    """
+
+    name: str
+    unit: str
+    published: float
+    bound: bool
+    computed: float
+    role: str
+    source: str
+
 
 __all__ = ["Figure", "Panel", "Series", "drawn", "published"]
 

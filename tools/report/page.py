@@ -17,10 +17,8 @@ from jointfmu.published.validation import shown_claim, shown_error, shown_tolera
 
 from ..joint_parts import part
 from ..systems.system import systems
-from .figure import Figure
-from .looks import script, style
-from .motion import motions
-from .systems import resonances, ring_downs
+from .figure import Figure, script, style
+from .systems import motions, resonances, ring_downs
 
 
 def drawn(outcome: Any) -> dict[str, list[Figure]]:

@@ -23,11 +23,12 @@ from jointfmu.files.columns import (
     separator,
     text_lines,
 )
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import measured, sizes
 
-from . import grid
-from .heights import Areal, Array, Heights, Profile
+from . import heights as grid
+from .heights import Areal, Heights, Profile
 
 LENGTHS = sizes("m", "mm", "um", "µm", "μm", "nm")
 """Allowed length units in metres."""

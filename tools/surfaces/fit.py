@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from .heights import Array
-from .series import ScaleSeries
+from jointfmu.quantity import Array
+
+from .spectrum import ScaleSeries
 
 FLOOR = 0.03
 """Least standard deviation of ln(value) from the law at every scale [1]."""

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from jointfmu.contact import fractal
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
 from .fit import SelfAffineLaw, fit
-from .form import prepare
-from .heights import Areal, Array, Heights
+from .form import check_wave, default_wave, of_scan, prepare
+from .heights import Areal, Heights
 from .results import (
     TEXTURE,
     ArealFractal,
@@ -22,10 +23,7 @@ from .results import (
     texture,
     warnings,
 )
-from .roughness import check_wave, default_wave, of_scan
-from .series import ScaleSeries
-from .spectrum import psd
-from .structure import structure
+from .spectrum import ScaleSeries, psd, structure
 
 LEVEL = 0.95
 """Level of the confidence intervals."""

@@ -12,7 +12,8 @@ import numpy as np
 from jointfmu.files.columns import cells, number, separator
 from jointfmu.quantity.refusal import Refusal
 
-from . import csvfile, sift
+from . import csvfile
+from . import heights as sift
 from .heights import Areal, Heights, Profile
 
 SHORTEST = 50e-6

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointfmu.contact.fractal import wave_power
-from jointfmu.quantity import Interval, Limit, check, quantity
+from jointfmu.quantity import Array, Interval, Limit, check, quantity
 
-from .heights import Areal, Array, Profile
+from .heights import Areal, Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
-from .master import Array, Slave
-from .ssp import fmu_names, values
-from .structure import MASTERS, Master
+from .master import Slave
+from .ssp import MASTERS, Master, fmu_names, values
 from .system import System, systems
 from .wiring import lags, wires
 

@@ -11,10 +11,11 @@ from scipy.interpolate import CubicSpline
 
 from jointfmu.fmi import loops
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
 from ..fitting import decay
 from ..fitting.hysteresis import HysteresisLaw
-from .master import Array, Slave, motion
+from .master import Slave, motion
 from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
 
 PERIODS, SETTLED = 60, 10

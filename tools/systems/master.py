@@ -8,11 +8,10 @@ from typing import Self, TypeVar
 
 import numpy as np
 from fmpy.fmi1 import FMICallException
-from numpy.typing import NDArray
 
 from jointfmu.fmi.host import opened, unpacked
+from jointfmu.quantity import Array
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 
 

@@ -11,10 +11,10 @@ from jointfmu_fmu_src.partners import parameters as partner_parameters
 
 from jointfmu.joints import KINDS
 from jointfmu.progress import track
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import Array, flat_fields
 
 from ..joint_parts import part
-from .master import Array, Slave, damping_ratio, motion, peak
+from .master import Slave, damping_ratio, motion, peak
 from .system import Component, System, systems
 from .wiring import wires
 

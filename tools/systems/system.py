@@ -11,7 +11,7 @@ with its FMU as `model`, of a joint its parameter file or, as `catalogue`, its n
 (neither: the default), and values of its own: parameters, and of a joint the inputs at which the system
 holds it. `connect` is a list of pairs: a load and the flange that it acts on, two flanges, or a flange of
 a joint and "ground". A section `[experiment]` has `stop_time` and `interval`. A section `[arm]` stands for
-the components of a serial arm, see `arm_system`.
+the components of a serial arm, see `arm`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default, entries, read_document
 from jointfmu.quantity import flat_fields, problem, quantity
 
-from .arm_system import arm_parts
+from .arm import arm_parts
 from .system_joint import KEYS, joint_file
 
 GROUND = "ground"

@@ -6,18 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Interval, flat_fields, problem
+from jointfmu.quantity import Array, Interval, flat_fields, problem
 from jointfmu.quantity.refusal import Refusal
 
-from .distributions import Uncertain, is_relative
 from .reduced import Reduced, reduced
-from .study import samples_of, split
-
-Array = NDArray[np.float64]
+from .study import Uncertain, is_relative, samples_of, split
 
 INTERVAL = "interval"
 """Word for the interval that the parameter file states in a source."""

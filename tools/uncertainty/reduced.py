@@ -4,15 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Variable
+from jointfmu.quantity import Array
 
 from ..joint_parts import part
 
-Array = NDArray[np.float64]
 Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
 
 

@@ -7,23 +7,187 @@ A study file is TOML, one entry per parameter with the same words as on the comm
     surface.D = "2.45..2.6"
     surface.G = "lognormal(20%)"
     eccentricity = "0..1e-5"
+
+What is known of a parameter, as one word of text, and its distribution:
+
+    1.42                          a value, true, false or a named choice: not uncertain
+    1.38..1.46                    anything between, equally likely
+    loguniform(1e-12, 1e-10)      the same in the logarithm
+    1.42+-2%                      2 % about a value, equally likely; `+-2%` about the file's value
+    normal(1.42, 0.02)            mean and standard deviation, this also in %; `normal(2%)` about the file's
+    lognormal(2.4e-7, 20%)        median and factor of one standard deviation, 1.2 or 20 %; `lognormal(20%)`
+    triangular(1.3, 1.4, 1.5)     least, most likely, largest
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy import stats
 from scipy.stats import qmc
 
 from jointfmu.parameters import read_document
+from jointfmu.quantity import Array
 
-from . import distributions
-from .distributions import Uncertain
+FORMS = (
+    "VALUE, LOW..HIGH, VALUE+-PERCENT%, loguniform(LOW, HIGH), normal(MEAN, SD), "
+    "lognormal(MEDIAN, FACTOR), triangular(LOW, MODE, HIGH)"
+)
+_CALL = re.compile(r"(\w+)\((.*)\)")
 
-Array = NDArray[np.float64]
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A parameter with a distribution.
+
+    text : as the user wrote it
+    law  : frozen distribution of scipy.stats
+    """
+
+    name: str
+    text: str
+    law: Any
+
+    @property
+    def support(self) -> tuple[float, float]:
+        """Least and largest value."""
+        low, high = self.law.support()
+        return float(low), float(high)
+
+
+def parse(name: str, text: str, base: float | None) -> Uncertain | None:
+    """The distribution that `text` describes; None if it is a plain value or word.
+
+    `base` is the value of the parameter file, about which a lone percentage lies.
+    Raises ValueError naming the parameter, the text and what is allowed.
+    """
+    try:
+        law = _law(text.strip(), base)
+    except ValueError as error:
+        raise ValueError(f"{name} = {text}: {error or 'is no distribution'}; allowed are {FORMS}") from None
+    return law and Uncertain(name, text, law)
+
+
+def _law(text: str, base: float | None) -> Any:
+    if ".." in text:
+        return _uniform(*_numbers(text.split(".."), 2))
+    if "+-" in text:
+        middle, _, spread = text.partition("+-")
+        m = _number(middle) if middle.strip() else _base(base)
+        half = abs(m) * _percent(spread) if _is_percent(spread) else _number(spread)
+        return _uniform(m - half, m + half)
+    if call := _CALL.fullmatch(text):
+        if call[1] not in _CALLS:
+            raise ValueError(f"there is no distribution {call[1]!r}")
+        return _CALLS[call[1]]([part.strip() for part in call[2].split(",")], base)
+    return None
+
+
+def _uniform(low: float, high: float) -> object:
+    _ascending(low, high)
+    return stats.uniform(low, high - low)
+
+
+def _loguniform(parts: list[str], base: float | None) -> object:
+    low, high = _numbers(parts, 2)
+    if low <= 0.0:
+        raise ValueError(f"low = {low:g} is outside (0, inf)")
+    _ascending(low, high)
+    return stats.loguniform(low, high)
+
+
+def _normal(parts: list[str], base: float | None) -> object:
+    mean, spread = _about(parts, base)
+    sd = abs(mean) * _percent(spread) if _is_percent(spread) else _number(spread)
+    if sd <= 0.0:
+        raise ValueError(f"standard deviation = {sd:g} is outside (0, inf)")
+    return stats.norm(mean, sd)
+
+
+def _lognormal(parts: list[str], base: float | None) -> object:
+    median, spread = _about(parts, base)
+    factor = 1.0 + _percent(spread) if _is_percent(spread) else _number(spread)
+    if median <= 0.0:
+        raise ValueError(f"median = {median:g} is outside (0, inf)")
+    if factor <= 1.0:
+        raise ValueError(f"factor = {factor:g} is outside (1, inf)")
+    return stats.lognorm(math.log(factor), scale=median)
+
+
+def _triangular(parts: list[str], base: float | None) -> object:
+    low, mode, high = _numbers(parts, 3)
+    _ascending(low, high)
+    if not low <= mode <= high:
+        raise ValueError(f"mode = {mode:g} is outside [{low:g}, {high:g}]")
+    return stats.triang((mode - low) / (high - low), low, high - low)
+
+
+_CALLS = {
+    "uniform": lambda parts, base: _uniform(*_numbers(parts, 2)),
+    "loguniform": _loguniform,
+    "normal": _normal,
+    "lognormal": _lognormal,
+    "triangular": _triangular,
+}
+
+
+def _about(parts: list[str], base: float | None) -> tuple[float, str]:
+    """Middle and spread; a lone percentage lies about the file's value."""
+    if len(parts) == 1 and _is_percent(parts[0]):
+        return _base(base), parts[0]
+    if len(parts) != 2:
+        raise ValueError(f"has {len(parts)} numbers, expected 2")
+    return _number(parts[0]), parts[1]
+
+
+def _ascending(low: float, high: float) -> None:
+    if not low < high:
+        raise ValueError(f"low = {low:g} is not below high = {high:g}")
+
+
+def _numbers(parts: list[str], count: int) -> list[float]:
+    if len(parts) != count:
+        raise ValueError(f"has {len(parts)} numbers, expected {count}")
+    return [_number(part) for part in parts]
+
+
+def _number(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise ValueError(f"{text.strip()!r} is no number") from None
+    if not math.isfinite(value):
+        raise ValueError(f"{value:g} is not finite")
+    return value
+
+
+def _is_percent(text: str) -> bool:
+    return text.strip().endswith("%")
+
+
+def _percent(text: str) -> float:
+    value = _number(text.strip()[:-1])
+    if value <= 0.0:
+        raise ValueError(f"{value:g} % is outside (0, inf)")
+    return value / 100.0
+
+
+def _base(base: float | None) -> float:
+    if base is None:
+        raise ValueError("a percentage needs a value before it here")
+    return base
+
+
+def is_relative(text: str) -> bool:
+    """Whether a text is a lone percentage: about a value that stands elsewhere."""
+    text = text.strip()
+    call = _CALL.fullmatch(text)
+    return text.startswith("+-") or bool(call and "," not in call[2] and _is_percent(call[2]))
+
 
 MOST_SAMPLES = 2**24
 
@@ -71,7 +235,7 @@ def split(
     for name, value in given.items():
         about = base.get(name)
         about = float(about) if isinstance(about, int | float) and not isinstance(about, bool) else None
-        law = distributions.parse(name, value, about) if isinstance(value, str) else None
+        law = parse(name, value, about) if isinstance(value, str) else None
         if law is None:
             plain[name] = value
         else:

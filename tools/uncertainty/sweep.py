@@ -11,13 +11,13 @@ from typing import Any
 from uuid import uuid4
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.files import columns
 from jointfmu.files.writing import write_text
 from jointfmu.fmi import ramp
 from jointfmu.fmi.host import unpacked
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
 from . import journal
@@ -26,8 +26,6 @@ from .journal import Journal
 from .propagate import QUANTILES
 from .study import samples_of, split, unit_design
 from .worker import LoadRamp, one_run
-
-Array = NDArray[np.float64]
 
 AHEAD = 4
 """Runs that wait at each worker [1]: enough to keep it busy."""

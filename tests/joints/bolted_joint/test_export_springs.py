@@ -10,10 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jointfmu_tools.export import ansys, columns, keywords
+from jointfmu_tools.export import ansys, keywords, tables
 from jointfmu_tools.export.mesh import Mesh, read_pairs
-from jointfmu_tools.export.placing import AXES, Placing
-from jointfmu_tools.export.units import SI, UNITS
+from jointfmu_tools.export.placing import AXES, SI, UNITS, Placing
 from jointfmu_tools.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
 
 from jointfmu.joints.bolted_joint.law import pressures
@@ -347,7 +346,7 @@ def test_calculix_text_has_the_same_springs_and_no_dashpots(found):
 
 
 def test_csv_is_read_by_the_standard_library(found):
-    text = columns.springs_csv(found, Placing(MM), ["about"])
+    text = tables.springs_csv(found, Placing(MM), ["about"])
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(io.StringIO("\n".join(lines))))
     read = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
@@ -360,6 +359,6 @@ def test_csv_is_read_by_the_standard_library(found):
 
 def test_what_is_written_as_csv_is_a_mesh_again(joint, found, tmp_path):
     path = tmp_path / "springs.csv"
-    path.write_text(columns.springs_csv(found, Placing(MM), []))
+    path.write_text(tables.springs_csv(found, Placing(MM), []))
     again = under_pressure(joint, read_pairs(path))
     np.testing.assert_allclose(again.K_n, found.K_n, rtol=1e-9)  # pressures of twelve digits, power 0.9

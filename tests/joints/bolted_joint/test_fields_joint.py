@@ -8,12 +8,11 @@ import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import PARTS, cli
-from jointfmu_tools.fields import csvfile
-from jointfmu_tools.fields.contact import ContactField
+from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
-from jointfmu_tools.fields.loads import PRELOADS, PRESSED, Load
+from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
-from jointfmu_tools.fields.sums import Sums
+from jointfmu_tools.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu_tools.modelica import library
 
 from jointfmu import plots
@@ -266,7 +265,7 @@ def test_fmus_have_the_field(imported, tmp_path, monkeypatch):
     shape = bolt_pattern(JOINT).shape()
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     many = ContactField(shape.share * JOINT.A_0, shape.position, mean * shape.equal)
-    (tmp_path / "field.csv").write_text(csvfile.text(many))
+    (tmp_path / "field.csv").write_text(nodal_result.csv_text(many))
     out = tmp_path / "joint.toml"
     line = [
         "footprint",
@@ -309,7 +308,7 @@ def test_uncertainty_of_a_joint_with_a_field(imported, tmp_path, capsys):
 def test_a_force_that_is_off_is_scaled_if_that_is_asked_for(tmp_path, capsys):
     """Nodal pressures of some solvers do not sum up to the contact force."""
     path = tmp_path / "field.csv"
-    path.write_text(csvfile.text(replace(FIELD, pressure=0.8 * FIELD.pressure)))
+    path.write_text(nodal_result.csv_text(replace(FIELD, pressure=0.8 * FIELD.pressure)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
     assert cli.main(line) == 2
     assert "(--force-tolerance)" in capsys.readouterr().err
@@ -329,7 +328,7 @@ def test_import_draws_and_refuses(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(plots, "RESOLUTION", 40)
     monkeypatch.setattr(bolts, "CELLS_ACROSS", 4)
     path = tmp_path / "field.csv"
-    path.write_text(csvfile.text(field(0.45)))
+    path.write_text(nodal_result.csv_text(field(0.45)))
     line = ["footprint", "import", str(path), "--preload", f"{PRELOAD:g}"]
     assert cli.main(line) == 2
     message = capsys.readouterr().err

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from jointfmu_tools.modelica import library
-from jointfmu_tools.modelica.text import identifier
+from jointfmu_tools.modelica.records import identifier
 from jointfmu_tools.systems.master import Slave
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.joints.harmonic_drive.fit import log, log_link
+from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from log_round_trips import CASES, TRUE, trip
 
@@ -67,7 +67,7 @@ def test_inertias_and_gravity_come_beside():
         "temperature",
         "torque at the joint",
     ]
-    assert {*log_link.OWN} < {*found.solution.values}
+    assert {*hysteresis.OWN} < {*found.solution.values}
 
 
 def test_a_load_that_is_measured_gives_the_losses(tmp_path):

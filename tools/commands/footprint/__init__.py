@@ -6,20 +6,20 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu import plots
 from jointfmu.commands.common import Commands, Parser, command, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
 from ...fields.clamped import clamping
+from .. import check_files
 from . import bodies
 from . import compute as footprint_compute
 from .finite_elements import joint_file
 
 if TYPE_CHECKING:
-    from ...fields.contact import ContactField
+    from ...fields.nodal_result import ContactField
     from ...fields.reduction import Reduction
 
 
@@ -77,11 +77,8 @@ def _import(steps: Commands) -> None:
 def _run_import(args: argparse.Namespace) -> int:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
-    if args.out:
-        check_writable(args.out)
-    if args.plot:
-        plots.check(args.plot)
-    from ...fields import figure
+    check_files(args.out, plot=args.plot)
+    from ...fields import joint_parameters
     from ...fields.joint_parameters import FORCE_ERROR, with_field
 
     start = joint_file(args.params)
@@ -107,7 +104,7 @@ def _run_import(args: argparse.Namespace) -> int:
         preload = args.preload + file.values.embedding
         file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces")
     if args.plot:
-        figure.draw(field, reduction, args.plot)
+        joint_parameters.draw(field, reduction, args.plot)
     if args.out:
         write_text(args.out, dump(file))
     facts = _findings(args, file, field, reduction)
@@ -179,7 +176,7 @@ def _findings(
 
 
 def _lines(facts: dict[str, Any], before: float) -> list[str]:
-    from ...fields.loads import PRELOADS
+    from ...fields.sums import PRELOADS
 
     low, high = PRELOADS
     part = 100.0 * (facts["force"] / facts["force_of_the_bolts"] - 1.0)

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ...drawing.reading import number, numbers
 from ...drawing.tables import threads
-from ...fields.clamped import Array, clamping
-from ...fields.contact import ContactField
+from ...fields.clamped import clamping
+from ...fields.nodal_result import ContactField
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
@@ -101,8 +102,7 @@ def assembly(
 
     Raises ValueError if places or sizes of the bolts are missing, or heads overlap or leave the plates.
     """
-    from ...fem.bolts import BoltList
-    from ...fem.geometry import Assembly, Plate
+    from ...fem.geometry import Assembly, BoltList, Plate
 
     if at is None:
         raise ValueError("--thickness without the places of the bolts: expected --bolts X,Y for each")

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu import plots
 from jointfmu.commands.common import Commands, command, tell
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
 from ...fem import installed
 from ...fields.clamped import clamping
+from .. import check_files
 from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
-        from ...fem.symmetry import unlike_holes
+        from ...fem.convergence import unlike_holes
     assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
@@ -102,10 +102,7 @@ def _check(args: argparse.Namespace) -> None:
         raise ValueError(f"--refinement = {args.refinement:g} is outside [{COARSEST:g}, 4]")
     if args.attached and not args.out:
         raise ValueError(f"--attached {args.attached} without --out: expected the file for the whole joint")
-    for path in filter(None, (args.out, args.field)):
-        check_writable(path)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.out, args.field, plot=args.plot)
 
 
 def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> list[str]:
@@ -123,7 +120,7 @@ def _write(args: argparse.Namespace, file: ParameterFile, solution: "JointSoluti
 
 def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointSolution") -> ParameterFile:
     """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
-    from ...fem.joint_file import with_solution
+    from ...fem.bolted_contact import with_solution
 
     made = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:

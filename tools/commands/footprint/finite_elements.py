@@ -9,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
-from ...drawing.proof import proof_load
+from ...drawing.vdi2230 import proof_load
 from ...fields.clamped import clamped
 from ...pressure import overload
 

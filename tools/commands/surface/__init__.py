@@ -4,17 +4,17 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu import plots
 from jointfmu.commands.common import IMPLIED, Commands, Parser, command, joint_name, written
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
-from ...surfaces.series import METHODS, SIDES
+from ...surfaces.spectrum import METHODS, SIDES
+from .. import check_files
 from . import synthesize
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _identify(args: argparse.Namespace) -> int:
     if args.out and file:
         write_text(args.out, dump(file))
     if args.plot:
-        from ...surfaces.figure import draw
+        from ...surfaces.results import draw
 
         draw(identified, args.plot)
     surface_results.show(identified, heights, file, args)
@@ -118,9 +118,7 @@ def _usual(identified: "Identification", force: bool) -> None:
 
 def _check(args: argparse.Namespace) -> None:
     """Refuse options before any file is read."""
-    for path, ready in ((args.out, check_writable), (args.plot, plots.check)):
-        if path:
-            ready(path)
+    check_files(args.out, plot=args.plot)
     if not 1.0 < args.gamma < float("inf"):
         raise ValueError(f"gamma = {args.gamma:g} is outside (1, inf)")
     if args.span and not 0.0 < args.span[0] < args.span[1] < float("inf"):

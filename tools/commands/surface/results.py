@@ -12,10 +12,10 @@ from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
 from ...pressure import judge_file
+from ...surfaces.form import ScanRoughness
 from ...surfaces.heights import Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
 from ...surfaces.results import Estimate, Identification, Result
-from ...surfaces.roughness import ScanRoughness
 from . import synthesize
 from .document import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
 

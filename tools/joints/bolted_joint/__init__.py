@@ -4,19 +4,9 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    (
-        "checks",
-        "export",
-        "field",
-        "figures",
-        "fit",
-        "frequencies",
-        "laboratory",
-        "modelica",
-        "new",
-        "pressure",
-        "reduced",
-        "report",
-        "ringing",
-    ),
+    ("export", "field", "fit", "laboratory", "modelica", "new", "reduced", "report", "ringing"),
+    checks="job",
+    figures="job",
+    frequencies="field",
+    pressure="field",
 )

@@ -1,19 +1,90 @@
-"""How a bolted joint carries its bolts' forces under a pressure that comes as a field."""
+"""How a bolted joint carries its bolts' forces: its layout, its pressures, under a field too."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
-from jointfmu.mechanics.footprint.shape import MergedShape, PressureShape
+from jointfmu.joints.bolted_joint.bodies import ElasticBodies
+from jointfmu.joints.bolted_joint.law import Bolted, bolt_pressures, pressures, shear_ratio
+from jointfmu.mechanics.footprint.bolts import BoltPattern, pressure_shape
+from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import MergedShape, NodalField, PressureShape
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
-from ...fields.clamped import Array, Clamping
-from .layout import PlaneLayout
+from ...drawing.vdi2230 import proof_load
+from ...fem.validation import MeasuredFrequencies
+from ...fields.clamped import Clamping
+from ...pressure import NominalPressure
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
+
+
+@dataclass(frozen=True)
+class PlaneLayout:
+    """What lies where in a joint's plane, from the centroid of its contact [m].
+
+    bolts   : (b, 2), none where the file does not say
+    outline : rectangles (lower corner, upper corner) of the contact, the outer one first; none of a field
+    extent  : (2, 2) lowest and highest places
+    hole, head : diameters, 0 where the file does not say
+    """
+
+    bolts: Array
+    outline: tuple[Array, ...]
+    extent: Array
+    hole: float
+    head: float
+
+    @classmethod
+    def of(cls, joint: Bolted) -> "PlaneLayout":
+        """Of a joint's parameters."""
+        pattern = joint.pattern
+        head = joint.bodies.head_diameter if isinstance(joint.bodies, ElasticBodies) else 0.0
+        if isinstance(pattern, NodalField):
+            shape = pressure_shape(pattern)
+            half = np.sqrt(joint.A_0 * shape.share / np.pi)[:, None]
+            extent = np.stack([np.min(shape.position - half, 0), np.max(shape.position + half, 0)])
+            bolts = np.zeros((0, 2))
+            if isinstance(joint.bodies, ElasticBodies):
+                bolts = np.column_stack([joint.bodies.bolt_x, joint.bodies.bolt_y])
+            return cls(bolts, (), extent, 0.0, head)
+        if isinstance(pattern, BoltedPlate):
+            half = 0.5 * np.array([[-pattern.length, -pattern.width], [pattern.length, pattern.width]])
+            outline = (half - pattern.centroid,)
+            return cls(pattern.bolts - pattern.centroid, outline, outline[0], pattern.hole_diameter, head)
+        return cls(pattern.bolts, frame := _frame(pattern), frame[0], pattern.hole_diameter, head)
+
+
+def _frame(pattern: BoltPattern) -> tuple[Array, Array]:
+    half = 0.5 * np.array([pattern.column_spacing, pattern.row_spacing])
+    signs = np.array([[-1.0], [1.0]])
+    return signs * (half + 0.5 * pattern.flange_width), signs * (half - 0.5 * pattern.flange_width)
+
+
+def _mean(joint: Bolted, preload: float) -> float:
+    return float(bolt_pressures(joint, preload, 0.0)[0])
+
+
+def _peak(joint: Bolted, preload: float) -> float:
+    return float(np.max(pressures(joint, pressure_shape(joint.pattern), preload, 0.0)))
+
+
+def _usual(joint: Bolted) -> float:
+    """A preload [N] that a bolt bears: that of an M16, or 70 % of the proof load of a smaller one."""
+    borne = _borne(joint)
+    return 30e3 if borne is None else min(30e3, 0.7 * borne[0])
+
+
+def _borne(joint: Bolted) -> tuple[float, str] | None:
+    pattern = joint.pattern
+    return None if isinstance(pattern, NodalField) else proof_load(pattern.hole_diameter)
+
+
+PRESSURE = NominalPressure(load="preload", usual=_usual, mean=_mean, peak=_peak, borne=_borne)
 
 
 def _pressures(
@@ -30,3 +101,6 @@ def _whole(file: ParameterFile, assembly: "Assembly", preload: float, attached: 
 
 
 FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole)
+
+
+FREQUENCIES = MeasuredFrequencies(points="zhao2018_modes", assembly="box_specimen_by_frequency")

@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.law import (
     Bolted,
@@ -16,8 +15,7 @@ from jointfmu.joints.bolted_joint.law import (
 )
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import ParameterFile
-
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 SHEAR = 0.05
 """Shear over the force of all bolts [1] at which `uncertainty` tells the loss factor: half of what the least

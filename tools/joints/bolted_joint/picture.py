@@ -4,17 +4,15 @@ from dataclasses import dataclass, field
 from html import escape
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import patches
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.shape import NodalField
+from jointfmu.quantity import Array
 
-from .layout import PlaneLayout
-
-Array = NDArray[np.float64]
+from .field import PlaneLayout
 
 WIDE, HIGH = 420.0, 330.0
 """Most that the plan takes of the picture [px]."""

@@ -12,7 +12,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from jointfmu.contact.laws import mindlin
@@ -21,15 +20,11 @@ from jointfmu.joints.bolted_joint.law import Bolted, interface_alone, node_press
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
-from jointfmu.quantity import flatten
+from jointfmu.quantity import Array, flatten
 
-from ...batch.approach import held, tabulate
-from ...batch.chebyshev import discrete_gauss
-from ...batch.samples import columns
+from ...batch.approach import columns, discrete_gauss, held, tabulate
 from ...uncertainty.reduced import Reduced
 from .loss import SHEAR, loss_factor, loss_factors, shear_at
-
-Array = NDArray[np.float64]
 
 EQUAL = 6
 """Gauss points of the distribution of the pressure over the nodes [1]."""

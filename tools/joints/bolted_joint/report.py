@@ -15,11 +15,10 @@ from jointfmu.joints.model import Model
 from jointfmu.mechanics.footprint.shape import NodalField
 from jointfmu.parameters import ParameterFile
 
-from ...report.beside import Beside
 from ...report.course import Course
-from ...report.figure import Figure
+from ...report.figure import Beside, Figure
 from ...shown import quantity
-from .layout import PlaneLayout
+from .field import PlaneLayout
 from .loss import friction_band
 from .picture import plan, section
 

@@ -1,7 +1,8 @@
 """A tooth contact from a drawing: two flanks of one width, their curvatures and their faces."""
 
 from ...drawing.faces import OPTIONS
-from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.part import Drawing, Given, NewJoint
+from ...joint_parts import Option
 
 
 def _flanks(given: Given) -> NewJoint:
@@ -11,8 +12,8 @@ def _flanks(given: Given) -> NewJoint:
 
     from ...drawing import faces
     from ...drawing.line_contact import patch
+    from ...drawing.part import Sheet
     from ...drawing.reading import number
-    from ...drawing.sheet import Sheet
 
     sheet = Sheet(KIND.name, "roughness")
     faces.put(sheet, given)
@@ -56,15 +57,15 @@ NEW = Drawing(
     text="the contact of two tooth flanks under a load",
     example="--width 20 --radii 12 30 --load 2000 --material 'hardened steel' --finish ground",
     options=(
-        Option(name="width", text="of the flanks along the line of contact [mm]", metavar="B", required=True),
+        Option("width", "of the flanks along the line of contact [mm]", "B", required=True),
         Option(
-            name="radii",
-            text="of curvature of the two flanks at the contact [mm]; negative where hollow, or flat",
-            metavar="R",
+            "radii",
+            "of curvature of the two flanks at the contact [mm]; negative where hollow, or flat",
+            "R",
             many=True,
             required=True,
         ),
-        Option(name="load", text="normal load, which decides the patch [N]", metavar="F", required=True),
+        Option("load", "normal load, which decides the patch [N]", "F", required=True),
         *OPTIONS,
     ),
     run=_flanks,

@@ -3,16 +3,13 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.gear_contact import KIND
 from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
+from jointfmu.quantity import Array
 
-from ...batch.approach import held, tabulate
-from ...batch.samples import columns
+from ...batch.approach import columns, held, tabulate
 from ...uncertainty.reduced import Reduced
-
-Array = NDArray[np.float64]
 
 
 def evaluate(

@@ -11,9 +11,9 @@ from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 from ...drawing import faces
 from ...drawing.faces import OPTIONS
 from ...drawing.line_contact import patch
-from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.part import Drawing, Given, NewJoint, Sheet
 from ...drawing.reading import number
-from ...drawing.sheet import Sheet
+from ...joint_parts import Option
 
 E_STEEL = 206e9
 """Modulus [Pa] to which the stiffness of ISO 6336-1 belongs."""
@@ -180,17 +180,13 @@ NEW = Drawing(
     text="the mesh of two external involute wheels without profile shift",
     example="--module 4 --teeth 29 45 --width 20 --torque 150 --material 'hardened steel' --Ra 0.4",
     options=(
-        Option(name="module", text="normal module [mm]", metavar="M", required=True),
-        Option(name="teeth", text="of wheel 1 and wheel 2", metavar="Z", many=True, required=True),
-        Option(name="width", text="common face width [mm]", metavar="B", required=True),
-        Option(name="torque", text="of wheel 1 at work [N.m]: decides the patch", metavar="T", required=True),
-        Option(name="pressure_angle", text="normal pressure angle [deg] (default: 20)", metavar="A"),
-        Option(name="helix_angle", text="at the reference circle [deg] (default: 0)", metavar="A"),
-        Option(
-            name="backlash",
-            text="along the line of action [um] (default: the least of ISO/TR 10064-2)",
-            metavar="J",
-        ),
+        Option("module", "normal module [mm]", "M", required=True),
+        Option("teeth", "of wheel 1 and wheel 2", "Z", many=True, required=True),
+        Option("width", "common face width [mm]", "B", required=True),
+        Option("torque", "of wheel 1 at work [N.m]: decides the patch", "T", required=True),
+        Option("pressure_angle", "normal pressure angle [deg] (default: 20)", "A"),
+        Option("helix_angle", "at the reference circle [deg] (default: 0)", "A"),
+        Option("backlash", "along the line of action [um] (default: the least of ISO/TR 10064-2)", "J"),
         *OPTIONS,
     ),
     run=mesh,

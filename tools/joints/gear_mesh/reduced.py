@@ -8,16 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, pairs, phase
+from jointfmu.quantity import Array
 
-from ...batch.approach import Rows, tabulate
-from ...batch.samples import columns
+from ...batch.approach import Rows, columns, tabulate
 from ...uncertainty.reduced import Reduced
-
-Array = NDArray[np.float64]
 
 RAMP_END = 0.05
 """Default end of the ramp: part of the angle at which the teeth alone carry the end of the table [1]."""

@@ -17,7 +17,7 @@ from typing import TypeAlias
 from jointfmu.quantity.units import factor
 
 from ...catalogue import Catalogue, Column, Item, Printed
-from .named_friction import known, with_friction
+from .friction import known, with_friction
 
 COLUMNS = (
     Column("ratio", "1", "speed ratio", "1"),

@@ -1,4 +1,4 @@
-"""What friction costs a drive, found by running it: efficiency, starting and back-driving torque."""
+"""What catalogues quote of a drive, found by running it: efficiency, torques without load, its loop."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -9,13 +9,14 @@ from typing import Any, Protocol
 
 from scipy.optimize import brentq
 
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
 from ...catalogue import Item
 from ...systems.master import Slave
 from .catalogue import items
-from .quoted_friction import friction
+from .friction import friction
 
 _MOTION = ("phi1", "w1", "phi2", "w2")
 _TORQUES = ("tau", "tau1")
@@ -146,3 +147,35 @@ def spring_bench(model: Model, file: ParameterFile) -> Bench:
     steady = file.with_values(_STEADY, "user", "steady")
     drive = PythonDrive(model, steady)
     return Bench(drive, steady.values.ratio, steady.values.presliding, drive.get()[2])
+
+
+LOST_MOTION = 0.04
+"""Torque over rated torque [1] between which catalogues state lost motion."""
+
+
+def hysteresis_loss(spring: HarmonicDriveSpring) -> float:
+    """Angle [rad] between the branches at zero torque, of the loop through rated torque."""
+    rated = float(spring.joint.rated_torque)
+    there, back = (_wind_up(spring, (rated, sign * rated, 0.0)) for sign in (1.0, -1.0))
+    return there - back
+
+
+def lost_motion(spring: HarmonicDriveSpring) -> float:
+    """Angle [rad] between LOST_MOTION times rated torque and its negative, midway between the branches of
+    the loop through rated torque.
+    """
+    rated = float(spring.joint.rated_torque)
+    ends = (
+        0.5 * sum(_wind_up(spring, (rated, side * rated, sign * LOST_MOTION * rated)) for side in (1.0, -1.0))
+        for sign in (1.0, -1.0)
+    )
+    there, back = ends
+    return there - back
+
+
+def _wind_up(spring: HarmonicDriveSpring, torques: tuple[float, ...]) -> float:
+    """Wind-up [rad] at the last of the torques [N.m] that follow one another from rest."""
+    memory = spring.rest()
+    for torque in torques:
+        out, memory = spring.loaded(torque, memory)
+    return float(out["phi_rel"])

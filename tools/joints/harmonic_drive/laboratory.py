@@ -25,11 +25,7 @@ _SPANS = {
     **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
     **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
 }
-_ARGUMENTS = {
-    "torque": "tau",
-    "deformation": "radial_deformation",
-    "eccentricity": "eccentricity",
-}
+_ARGUMENTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
 
 _TURN = Turn(
     driven="phi1",

@@ -8,12 +8,13 @@ from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ...catalogue import Printed
-from ...drawing.part import Drawing, Given, NewJoint, Option
+from ...drawing.part import Drawing, Given, NewJoint
 from ...drawing.reading import flag, number, temperature
-from .quoted_friction import QUOTED, SPEED, efficiency, friction, interval_text
+from ...joint_parts import Option
+from .friction import QUOTED, SPEED, efficiency, friction, interval_text
 
 if TYPE_CHECKING:
-    from .fit.row import Row
+    from .fit.drive import Row
 
 _ROW: Mapping[str, str] = {"K1": "N.m/rad", "K2": "N.m/rad", "K3": "N.m/rad", "T1": "N.m", "T2": "N.m"}
 _FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]: "1"}
@@ -158,8 +159,8 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     """The drive with the stiffness of the row itself."""
     from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 
-    from .fit import lines
-    from .quoted import LOST_MOTION, lost_motion
+    from .efficiency import LOST_MOTION, lost_motion
+    from .fit import catalogue
 
     _row(printed)  # refuses what cannot be
     rated, peak = printed["rated_torque"].value, printed.pop("peak_torque", None)
@@ -176,7 +177,7 @@ def _of_lines(printed: dict[str, Printed], brakes: Mapping[str, Printed], name: 
     text = f"not published; {DAMPING:g} s times K1, 2 % of critical at 60 Hz"
     printed["d"] = Printed(DAMPING * printed["K1"].value, "estimate", text)
     printed |= brakes
-    file = lines.made(name, printed)
+    file = catalogue.made(name, printed)
     spring = HarmonicDriveSpring.of(file.values)
     angle = float(spring.curve.inverse(rated))
     facts["wind_up"] = (angle, "rad", f"at the rated torque {rated:g} N.m, of the midline")
@@ -200,7 +201,7 @@ def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
-    found = catalogue.fit(_row(printed), None, None, kind, ratio, name)
+    found = catalogue.fit_pair(_row(printed), None, None, kind, ratio, name)
     file = replace(found.parameters, name=name)
     loss = printed.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
@@ -217,7 +218,7 @@ def _short(number: Printed) -> str:
 
 def _row(printed: Mapping[str, Printed]) -> "Row":
     """The row, checked."""
-    from .fit.row import Row
+    from .fit.drive import Row
 
     return Row(**{name: printed[name].value for name in _ROW}, rated=printed["rated_torque"].value)
 
@@ -226,66 +227,52 @@ NEW = Drawing(
     text="a harmonic drive by its name in the catalogue, or by the row that is printed there",
     example="--catalogue CSG-17-100",
     options=(
-        Option(name="catalogue", text="its name, see jointfmu catalogue", metavar="NAME"),
+        Option("catalogue", "its name, see jointfmu catalogue", "NAME"),
+        Option("ratio", "as catalogues print it [1], above 0; negative: with its sign", "R"),
         Option(
-            name="ratio", text="as catalogues print it [1], above 0; negative: with its sign", metavar="R"
-        ),
-        Option(
-            name="fixed",
-            text="what is held, which decides the sign of the ratio (circular-spline: it is negative)",
+            "fixed",
+            "what is held, which decides the sign of the ratio (circular-spline: it is negative)",
             choices=tuple(FIXED),
         ),
-        Option(name="K1", text="stiffness below T1 [N.m/rad]", metavar="K"),
-        Option(name="K2", text="stiffness between T1 and T2 [N.m/rad]", metavar="K"),
-        Option(name="K3", text="stiffness above T2 [N.m/rad]", metavar="K"),
-        Option(name="T1", text="torque at the first corner [N.m]", metavar="T"),
-        Option(name="T2", text="torque at the second corner [N.m]", metavar="T"),
+        Option("K1", "stiffness below T1 [N.m/rad]", "K"),
+        Option("K2", "stiffness between T1 and T2 [N.m/rad]", "K"),
+        Option("K3", "stiffness above T2 [N.m/rad]", "K"),
+        Option("T1", "torque at the first corner [N.m]", "T"),
+        Option("T2", "torque at the second corner [N.m]", "T"),
         Option(
-            name="stiffness_unit",
-            text="of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
-            metavar="UNIT",
+            "stiffness_unit",
+            "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+            "UNIT",
         ),
-        Option(name="rated_torque", text="rated torque [N.m] (default: the catalogue's, or T2)", metavar="T"),
+        Option("rated_torque", "rated torque [N.m] (default: the catalogue's, or T2)", "T"),
         Option(
-            name="hysteresis",
-            text="hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
-            metavar="H",
-        ),
-        Option(
-            name="starting_torque",
-            text="at the wave generator without load [N.m] (of a named drive: printed or scaled; else none)",
-            metavar="T",
+            "hysteresis",
+            "hysteresis loss, the angle between the branches at zero torque [arcmin] (none)",
+            "H",
         ),
         Option(
-            name="running_torque",
-            text="the same in motion, at 2000 rev/min [N.m] (as starting torque)",
-            metavar="T",
+            "starting_torque",
+            "at the wave generator without load [N.m] (of a named drive: printed or scaled; else none)",
+            "T",
+        ),
+        Option("running_torque", "the same in motion, at 2000 rev/min [N.m] (as starting torque)", "T"),
+        Option("back_driving_torque", "at the output, that turns the drive without motor [N.m]", "T"),
+        Option("efficiency", "at rated torque and 2000 rev/min [1]", "E"),
+        Option(
+            "motor_drag",
+            "dry friction of the motor's bearings and seals, beside the drive's [N.m] (none)",
+            "T",
+        ),
+        Option("temperature", "of the lubricant, at the start [degC, or with K behind it] (20)", "T"),
+        Option("source", "where the row is printed", "TEXT"),
+        Option(
+            "corner",
+            "half-width of the smooth corners at T1 and T2 over their wind-up [1], 0 for none (0.04)",
+            "C",
         ),
         Option(
-            name="back_driving_torque",
-            text="at the output, that turns the drive without motor [N.m]",
-            metavar="T",
-        ),
-        Option(name="efficiency", text="at rated torque and 2000 rev/min [1]", metavar="E"),
-        Option(
-            name="motor_drag",
-            text="dry friction of the motor's bearings and seals, beside the drive's [N.m] (none)",
-            metavar="T",
-        ),
-        Option(
-            name="temperature",
-            text="of the lubricant, at the start [degC, or with K behind it] (20)",
-            metavar="T",
-        ),
-        Option(name="source", text="where the row is printed", metavar="TEXT"),
-        Option(
-            name="corner",
-            text="half-width of the smooth corners at T1 and T2 over their wind-up [1], 0 for none (0.04)",
-            metavar="C",
-        ),
-        Option(
-            name="law",
-            text="catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",
+            "law",
+            "catalogue: the three lines (default); hu2023: that of the contact pair, fitted to them",
             choices=("catalogue", "hu2023"),
         ),
     ),

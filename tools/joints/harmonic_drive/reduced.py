@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.harmonic_drive import KIND
 from jointfmu.joints.harmonic_drive.drive import Drive
@@ -13,12 +12,11 @@ from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive, drive_stiffness
 from jointfmu.joints.harmonic_drive.lost_motion import play
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
+from jointfmu.quantity import Array
 
-from ...batch import chebyshev
-from ...batch.samples import columns
+from ...batch import approach
+from ...batch.approach import columns
 from ...uncertainty.reduced import Reduced
-
-Array = NDArray[np.float64]
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""
@@ -47,13 +45,13 @@ def _pair(drive: PairDrive, loads: Array, factor: Array) -> dict[str, Array]:
     """Of drives with a contact pair."""
     smoothing = float(np.median(drive.torque_smoothing))
     xi = np.arcsinh(loads / smoothing)
-    span = xi[-1] * chebyshev.nodes(RAMP)
+    span = xi[-1] * approach.nodes(RAMP)
     rate = smoothing * xi[-1] * np.cosh(span)
     K = drive_stiffness(drive, factor * smoothing * np.sinh(span))[0]
     K = np.broadcast_to(K, (factor.size, RAMP))
     angle, compliance, _ = play(drive, factor * loads)
-    tangent = K @ chebyshev.interpolation(RAMP, xi / xi[-1])
-    wound_up = factor * ((rate / K) @ chebyshev.integration(RAMP, xi / xi[-1]))
+    tangent = K @ approach.interpolation(RAMP, xi / xi[-1])
+    wound_up = factor * ((rate / K) @ approach.integration(RAMP, xi / xi[-1]))
     return {"K_WTS": tangent / (1.0 + tangent * compliance), "phi_rel": wound_up + angle}
 
 

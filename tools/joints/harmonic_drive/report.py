@@ -1,16 +1,22 @@
-"""What the page of a user's drive shows of its friction: efficiency, starting and back-driving torque."""
+"""What a drive's page shows: its friction, and what it does beside what catalogues publish of it."""
 
 import math
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from jointfmu.joints.harmonic_drive.friction import REFERENCE, Friction, limits, viscous
+from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 
+from ...catalogue import Item, Printed
 from ...report.course import Course
-from ...report.figure import Figure, Panel, Series
-from .beside import beside
-from .efficiency import spring_bench
+from ...report.figure import OWN, PREDICTED, SET, Beside, Figure, Panel, Series
+from .catalogue import find
+from .efficiency import Bench, hysteresis_loss, lost_motion, spring_bench
+from .fit.drive import Row
+from .friction import SET_BY, SPEED
 
 SPEEDS = (500, 2000, 3500)
 """Of the motor [rev/min]."""
@@ -67,6 +73,77 @@ def _over_speed(file: ParameterFile) -> Figure:
     )
     panel = Panel("Friction over speed", "speed of the motor [rev/min]", "torque [N m]", series)
     return Figure("Friction over speed and temperature", text, [panel])
+
+
+_LINES = ("K1", "K2", "K3", "T1", "T2")
+_LOOP = {"hysteresis_loss": (hysteresis_loss, OWN), "lost_motion": (lost_motion, PREDICTED)}
+_UNITS = {"starting_torque": "N.m", "running_torque": "N.m", "back_driving_torque": "N.m", "efficiency": "1"}
+"""Torque up to which back-driving is sought, over the published one [1]."""
+
+
+def beside(model: Model, file: ParameterFile) -> list[Beside]:
+    """All that the catalogue publishes of the drive that the file is of; nothing if it has no such drive.
+
+    A file is of the drive that it is named after, or that its ratio comes from. Estimates are left out,
+    upper limits are not.
+    """
+    item = _drive(file)
+    return [] if item is None else list(_rows(model, file, item))
+
+
+def _drive(file: ParameterFile) -> Item | None:
+    for name in (file.name, file.sources.get("ratio", "").partition(":")[0]):
+        try:
+            return find(name)
+        except ValueError:
+            continue
+    return None
+
+
+def _rows(model: Model, file: ParameterFile, item: Item) -> Iterator[Beside]:
+    printed, spring = item.numbers, HarmonicDriveSpring.of(file.values)
+    yield from _angles(spring, printed, SET if _stiffness_set(file, printed) else OWN)
+    for column, (measured, role) in _LOOP.items():
+        number = printed[column]
+        yield Beside(column, "rad", number.value, number.bound, measured(spring), role, number.source)
+    known = [column for column in _UNITS if column in printed and printed[column].kind != "estimate"]
+    bench = spring_bench(model, file) if known else None
+    for column in known:
+        assert bench is not None
+        number, (parameter, text) = printed[column], SET_BY[column]
+        own = file.sources.get(parameter, "").startswith(f"{number.source}; {text}")
+        role = SET if own else PREDICTED
+        value = _turned(bench, column, printed)
+        yield Beside(column, _UNITS[column], number.value, number.bound, value, role, number.source)
+
+
+def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: str) -> Iterator[Beside]:
+    """Wind-up at the corners, at rated and at peak torque: of the lines, and of the midline."""
+    lines = {name: printed[name].value for name in _LINES}
+    torques = {name: printed[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in printed}
+    row = Row(**lines, rated=torques.get("rated_torque", printed["T2"]).value)
+    for name, torque in torques.items():
+        angle, found = float(row.angle(torque.value)), float(spring.curve.inverse(torque.value))
+        label = f"wind-up at {name.replace('_', ' ')}, {torque.value:g} N m"
+        yield Beside(label, "rad", angle, False, found, role, printed["K1"].source)
+
+
+def _stiffness_set(file: ParameterFile, printed: Mapping[str, Printed]) -> bool:
+    """Whether the stiffness is that of the catalogue, as it stands or fitted."""
+    if "K1" in file.flat:
+        return file.sources.get("K1") == printed["K1"].source
+    return file.origins.get("K_FTS0") == "catalogue"
+
+
+def _turned(bench: Bench, column: str, printed: Mapping[str, Printed]) -> float:
+    """A torque [N.m] or the efficiency [1] of the drive on the bench."""
+    if column == "starting_torque":
+        return bench.starting_torque()
+    if column == "running_torque":
+        return bench.motor_torque(SPEED, 0.0)
+    if column == "efficiency":
+        return bench.efficiency(SPEED, printed["rated_torque"].value)
+    return bench.back_driving_torque(_MOST * printed[column].value)
 
 
 FIGURES = {"HarmonicDriveSpring": friction}

@@ -3,15 +3,14 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.quantity import Array
 
 from ...robots.transmission import Transmission
-
-Array = NDArray[np.float64]
 
 
 def TRANSMISSION(name: str, drive: Drive) -> Transmission:

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
 
     from ....export.mesh import Mesh
-    from ....export.placing import Placing
-    from ....export.springs import Springs
+    from ....export.placing import Placing, Springs
     from ....export.tables import LoadTable
 
 
@@ -55,7 +54,7 @@ def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
 
 
 def _pull(joint: Bolted, state: Tightening | None, error: float) -> "LoadTable":
-    from .pull import pull_table
+    from .springs import pull_table
 
     if state is None:
         raise ValueError("the curve of a bolted_joint needs a preload")

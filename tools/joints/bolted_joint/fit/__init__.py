@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from jointfmu.parameters import ParameterFile
 
-from ....fitting.procedure import DAMPING_RATIO, FitOption, Procedure
+from ....fitting.procedure import DAMPING_RATIO, Procedure
+from ....joint_parts import Option
 
 if TYPE_CHECKING:
     from ....fitting.outcome import FitResult
@@ -47,9 +48,10 @@ def _loop(
     )
 
 
-SERIES = FitOption(
-    name="series_stiffness",
-    text="of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
+SERIES = Option(
+    "series_stiffness",
+    "of the structure, in series with the joint [N/m]; to fit it, free series_stiffness",
+    number=True,
 )
 
 
@@ -59,14 +61,8 @@ FITS = (
         text="stiffness or frequency over preload to the bolted joint",
         file=True,
         options=(
-            FitOption(
-                name="direction",
-                text="of the motion",
-                word=True,
-                default="normal",
-                choices=("normal", "tangential"),
-            ),
-            FitOption(name="modal_mass", text="what vibrates on the joint [kg]"),
+            Option("direction", "of the motion", default="normal", choices=("normal", "tangential")),
+            Option("modal_mass", "what vibrates on the joint [kg]", number=True),
             SERIES,
         ),
         run=_preload,
@@ -77,8 +73,8 @@ FITS = (
         file=True,
         column="displacement",
         options=(
-            FitOption(name="preload", text="of each bolt in the test [N] (default: of the start's inputs)"),
-            FitOption(name="modal_mass", text="what vibrates on the joint [kg]; with decays and responses"),
+            Option("preload", "of each bolt in the test [N] (default: of the start's inputs)", number=True),
+            Option("modal_mass", "what vibrates on the joint [kg]; with decays and responses", number=True),
             DAMPING_RATIO,
             SERIES,
         ),

@@ -19,29 +19,22 @@ from scipy.interpolate import CubicHermiteSpline
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import sizes
 
-from ....fitting import memory, memory_pictures
-from ....fitting.exchange import Exchange
-from ....fitting.heads import Heads
+from ....fitting import memory
 from ....fitting.hysteresis import HysteresisLaw
-from ....fitting.least_squares import Array, Unknown
-from ....fitting.measurement import Measurement, measured
+from ....fitting.least_squares import Exchange, Unknown
+from ....fitting.measurement import Heads, Measurement, measured
 from ....fitting.outcome import FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
-FREE: Mapping[str, tuple[str, ...]] = {
-    "zhao2018": ("mu", "surface.G", "surface.D"),
-    "roughness": ("mu", "h"),
-}
+FREE: Mapping[str, tuple[str, ...]] = {"zhao2018": ("mu", "surface.G", "surface.D"), "roughness": ("mu", "h")}
 """What is fitted, of each law: friction, level and, where the law has one, exponent. Vibrations hardly see
 the exponent beside the level: without it."""
-STARTS: Mapping[str, Sequence[float]] = {
-    "mu": (0.05, 0.15, 0.4),
-    "surface.D": (1.2, 1.45),
-}
+STARTS: Mapping[str, Sequence[float]] = {"mu": (0.05, 0.15, 0.4), "surface.D": (1.2, 1.45)}
 """Where the fit looks for a start, beside the start file's; the level begins where the data have it."""
 BESIDE = (memory.DAMPING, SERIES)
 """Unknowns that are no parameters of the joint."""
@@ -176,7 +169,7 @@ def fit(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
     law, described = first_loading(result.values, force, beside(solution.values))
-    picture, second = memory_pictures.pictures(data, model, solution.values, scale)
+    picture, second = memory.pictures(data, model, solution.values, scale)
     return FitResult(
         result,
         solution,
@@ -190,9 +183,7 @@ def fit(
 
 
 def _level(
-    file: ParameterFile,
-    names: Sequence[str],
-    rest: Callable[[Mapping[str, float]], float],
+    file: ParameterFile, names: Sequence[str], rest: Callable[[Mapping[str, float]], float]
 ) -> Exchange | None:
     """The stiffness at rest, [N/m] of the values, and the parameter of its level, if that is fitted."""
     _, level, *_ = FREE[file.law]

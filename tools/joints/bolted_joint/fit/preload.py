@@ -26,9 +26,10 @@ from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
 from jointfmu.mechanics.footprint.shape import MergedShape
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, factor, sizes
 
-from ....fitting.least_squares import Array, Solution, Unknown, solve
+from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.outcome import FitResult, Picture, fitted, unknowns
 
 SERIES = "series_stiffness"

@@ -6,8 +6,15 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.sliders import SPREAD
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
-from ....modelica.text import identifier, matrix
+from ....modelica.records import (
+    ModelicaComponent,
+    ModelicaRecord,
+    WorkingPoint,
+    computed,
+    given,
+    identifier,
+    matrix,
+)
 from .tight import ABOVE, BELOW, DAMPING_TOLERANCE, STRONGEST, tightened
 
 TIGHTENED = ((9e3, 0.0), (15e3, 0.0), (15e3, 4500.0))

@@ -9,8 +9,9 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
 from jointfmu.mechanics.footprint.reproducible import NOTHING
 from jointfmu.mechanics.sliders import Foundation
+from jointfmu.quantity import Array
 
-from ....modelica.tables import Array, InterpolationTable, thinned
+from ....modelica.records import InterpolationTable, thinned
 
 DAMPING_TOLERANCE = 1e-3
 """Largest relative error of a dissipation factor [1], which is interpolated linearly."""

@@ -2,13 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
-from jointfmu.joints.bolted_joint.compliances import Compliances
+from jointfmu.joints.bolted_joint.compliances import PARTS, Compliances
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
@@ -16,7 +15,7 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
-from jointfmu.quantity import flatten
+from jointfmu.quantity import Array, flatten
 
 from ....drawing.vdi2230 import ClampedPart
 from ....fem import installed
@@ -25,8 +24,6 @@ from . import ATTACHED
 if TYPE_CHECKING:
     from ....fem.geometry import Assembly
     from ....fem.whole_joint import WholeJoint
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +42,7 @@ class Plates:
 
     def assembly(self, file: ParameterFile) -> "Assembly":
         """The bodies. Raises ValueError for heads that overlap or leave the plate."""
-        from ....fem.bolts import BoltList
-        from ....fem.geometry import Assembly, Plate, TappedPlate
+        from ....fem.geometry import Assembly, BoltList, Plate, TappedPlate
 
         sides = [
             Plate(
@@ -73,8 +69,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     """
 
     with installed("--field computed"):
-        from ....fem.bolted_contact import BoltedContact
-        from ....fem.joint_file import with_solution
+        from ....fem.bolted_contact import BoltedContact, with_solution
 
         step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
@@ -162,3 +157,78 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
     here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
     ratio = float(shear_ratio(values))
     return np.stack([ratio * here, ratio * here, here], axis=1)
+
+
+Facts = dict[str, tuple[float, str, str]]
+
+
+class WholeFacts(NamedTuple):
+    """Parameters of a joint, what is told of the whole, and warnings."""
+
+    file: ParameterFile
+    facts: Facts
+    warnings: list[str]
+
+
+def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> WholeFacts:
+    """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
+    cannot be computed.
+
+    sides : rigid or elastic as stated; None: elastic if the packages are there
+
+    Raises ValueError if it was asked for and cannot be computed.
+    """
+    try:
+        found = whole_joint(file, plates, attached)
+    except ValueError as error:
+        if sides == "elastic":
+            raise
+        return WholeFacts(
+            file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
+        )
+    parts = found.compliances
+    rows = _stiffnesses(parts, attached) | _load(parts, plates.tension, attached)
+    rows |= _share(parts, sides == "rigid")
+    return WholeFacts(file if sides == "rigid" else found.file, rows, [])
+
+
+def _stiffnesses(found: Compliances, attached: str) -> Facts:
+    """Of the whole joint, then of its members, in all directions."""
+    rows, members = {}, {}
+    for name, unit, (whole, interface, alone, _), parts in found.rows():
+        shares = ", ".join(f"{share:.0%} {part}" for share, part in zip(parts, PARTS, strict=True))
+        rows[f"whole_{name}"] = (
+            whole,
+            unit,
+            f"of the whole joint between {ATTACHED[attached]}; of its energy {shares}; the interface alone "
+            f"is {interface / whole:.3g} times as stiff",
+        )
+        members[f"members_{name}"] = (alone, unit, "of its members, as a spring in series with the rest")
+    return rows | members
+
+
+def _share(found: Compliances, alone: bool) -> Facts:
+    """Whether the interface matters for the whole; `alone`: it is all that the FMU has."""
+    share = found.shares[0]
+    rest = max(part for i, part in enumerate(share) if i != 2)
+    text = f"part of the interface in the whole's compliance along z, at most {rest:.3g} in others; " + (
+        "the FMU is the interface alone (--sides rigid)"
+        if alone
+        else "the FMU is the whole (sides = elastic)"
+    )
+    return {"interface_share": (float(share[2]), "1", text)}
+
+
+def _load(found: Compliances, tension: float, attached: str) -> Facts:
+    """What an outer force along the axis does, without an eccentric one's bending."""
+    where = f"a force along z at {ATTACHED[attached]}"
+    opens = found.opening_load(tension)
+    return {
+        "whole_load_factor": (found.load_factor, "1", f"n Phi_K: part that the bolts take of {where}"),
+        "whole_bolt_share": (
+            float(found.bolt_force[:, 2].max()),
+            "1",
+            f"part that one bolt takes at most of {where}",
+        ),
+        "opening_load": (opens, "N", f"{where} that takes all pressure from the interface, linear"),
+    }

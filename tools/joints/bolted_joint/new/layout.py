@@ -4,13 +4,13 @@ import re
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from jointfmu.quantity import Array
 
 from ....drawing.part import Given
 from ....drawing.reading import number, numbers
 from ....drawing.tables import Thread, threads
 
-Array = NDArray[np.float64]
 _BOLTS = re.compile(r"(?:(\d+)\s*x\s*)?(M\d+)", re.IGNORECASE)
 _GRID = re.compile(r"(\d+)x(\d+)")
 

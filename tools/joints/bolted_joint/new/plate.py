@@ -3,24 +3,22 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint.plate import BoltedPlate
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ....drawing import faces, vdi2230
-from ....drawing.part import Given, NewJoint
+from ....drawing.part import Given, NewJoint, Sheet
 from ....drawing.reading import number, numbers
-from ....drawing.sheet import Sheet
 from ....drawing.tables import Thread, classes, thread_source
 from ....pressure import overload
 from ..loss import friction_band
-from . import layout, whole
+from . import computed, layout
 from .computed import Plates, with_computed_field
 
-Array = NDArray[np.float64]
 REST = (0.0, 0.0, 0.0)
 SAME = 1e-6
 """How far the thicknesses may be from the grip [1]."""
@@ -107,7 +105,7 @@ def joint(given: Given) -> NewJoint:
     facts = _facts(file, one, heights, preload)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
-    found = whole.facts(file, plates, given["attached"] or "faces", given["sides"])
+    found = computed.facts(file, plates, given["attached"] or "faces", given["sides"])
     return NewJoint(found.file, facts | found.facts, [*warnings, *found.warnings])
 
 
@@ -291,11 +289,7 @@ def _facts(
         "K_zz": (K, "N/m", "normal stiffness of the interface at this preload, bolts apart"),
         "K_xx": (float(state["K_xx"]), "N/m", "tangential stiffness of the interface"),
         "bolt_stiffness": (one.bolt, "N/m", "of one bolt, 1/delta_S of VDI 2230"),
-        "member_stiffness": (
-            one.members,
-            "N/m",
-            "of the parts that one bolt clamps, 1/delta_P of VDI 2230",
-        ),
+        "member_stiffness": (one.members, "N/m", "of the parts that one bolt clamps, 1/delta_P of VDI 2230"),
         "load_factor": (
             one.bolt / (one.bolt + one.members),
             "1",

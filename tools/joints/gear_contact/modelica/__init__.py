@@ -7,9 +7,14 @@ import numpy as np
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint
-from ....modelica.tables import InterpolationTable, thinned
-from ....modelica.text import identifier
+from ....modelica.records import (
+    InterpolationTable,
+    ModelicaComponent,
+    ModelicaRecord,
+    WorkingPoint,
+    identifier,
+    thinned,
+)
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:

@@ -5,9 +5,18 @@ from collections.abc import Sequence
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh
 from jointfmu.parameters import ParameterFile
 
-from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
-from ....modelica.tables import curve_of, thinned
-from ....modelica.text import COMPUTED, identifier, number
+from ....modelica.records import (
+    COMPUTED,
+    ModelicaComponent,
+    ModelicaRecord,
+    WorkingPoint,
+    computed,
+    curve_of,
+    given,
+    identifier,
+    number,
+    thinned,
+)
 
 
 def _records(file: ParameterFile, points: Sequence[WorkingPoint]) -> list[ModelicaRecord]:
@@ -29,8 +38,5 @@ def _wheels(mesh: Mesh) -> dict[str, float]:
 
 
 COMPONENT = ModelicaComponent(
-    name="GearMesh",
-    base="GearMesh",
-    records=_records,
-    texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"},
+    name="GearMesh", base="GearMesh", records=_records, texts=lambda mesh: {"end": f"{mesh.end / 1e3:g} kN"}
 )

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.parameters import ParameterFile
 
-from ....fitting.procedure import FitOption, Procedure
+from ....fitting.procedure import Procedure
+from ....joint_parts import Option
 
 if TYPE_CHECKING:
     from ....fitting.outcome import FitResult
@@ -17,13 +18,13 @@ Names = Sequence[str] | None
 def _torque_angle(
     path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
 ) -> "FitResult":
-    from . import table, torque_angle
+    from . import torque_angle
 
     if law is None:
         return torque_angle.fit(path, start, free, rated_torque)
     if free:
         raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
-    return table.fit(path, start, rated_torque)
+    return torque_angle.fit_table(path, start, rated_torque)
 
 
 def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "FitResult":
@@ -55,11 +56,11 @@ def _catalogue(
     law: str,
     **row: float,
 ) -> "FitResult":
-    from . import catalogue, lines
-    from .row import Row
+    from . import catalogue
+    from .drive import Row
 
     rated, origin = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    fit = lines.fit if law == "catalogue" else catalogue.fit
+    fit = catalogue.fit_lines if law == "catalogue" else catalogue.fit_pair
     return fit(Row(**row, rated=rated), start, free, origin, ratio, source)
 
 
@@ -77,11 +78,10 @@ FITS = (
         text="a torque-angle curve to the harmonic drive",
         file=True,
         options=(
-            FitOption(name="rated_torque", text="of the drive [N.m]; scales max_torque with it", unit="N.m"),
-            FitOption(
-                name="law",
-                text="table: the mid-line itself (default: the law of the start, fitted)",
-                word=True,
+            Option("rated_torque", "of the drive [N.m]; scales max_torque with it", unit="N.m"),
+            Option(
+                "law",
+                "table: the mid-line itself (default: the law of the start, fitted)",
                 choices=("table",),
             ),
         ),
@@ -93,7 +93,7 @@ FITS = (
         file=True,
         column="angle",
         options=(
-            FitOption(name="inertia", text="what vibrates on the drive [kg.m2]; with decays and responses"),
+            Option("inertia", "what vibrates on the drive [kg.m2]; with decays and responses", number=True),
         ),
         run=_loop,
     ),
@@ -103,16 +103,16 @@ FITS = (
         file=True,
         many=True,
         options=(
-            FitOption(
-                name="columns",
-                text="headings of time, q, dq, i, tau, gravity, temperature with other names: q=HEADING "
+            Option(
+                "columns",
+                "headings of time, q, dq, i, tau, gravity, temperature with other names: q=HEADING "
                 "or 'q=HEADING [UNIT]'",
-                word=True,
+                "TEXT",
                 many=True,
             ),
-            FitOption(name="torque_constant", text="torque of the motor over its current [N.m/A]"),
-            FitOption(name="ratio", text="speed ratio (default: that of the start)"),
-            FitOption(name="motor_inertia", text="of the rotor [kg.m2], which the teeth do not carry (0)"),
+            Option("torque_constant", "torque of the motor over its current [N.m/A]", number=True),
+            Option("ratio", "speed ratio (default: that of the start)", number=True),
+            Option("motor_inertia", "of the rotor [kg.m2], which the teeth do not carry (0)", number=True),
         ),
         run=_log,
     ),
@@ -121,21 +121,20 @@ FITS = (
         text="a catalogue row to the harmonic drive",
         file=False,
         options=(
-            *(FitOption(name=name, text=text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
-            FitOption(name="T1", text="torque at the first corner [N.m]", required=True, unit="N.m"),
-            FitOption(name="T2", text="torque at the second corner [N.m]", required=True, unit="N.m"),
-            FitOption(
-                name="stiffness_unit",
-                text="of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
-                word=True,
+            *(Option(name, text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
+            Option("T1", "torque at the first corner [N.m]", required=True, unit="N.m"),
+            Option("T2", "torque at the second corner [N.m]", required=True, unit="N.m"),
+            Option(
+                "stiffness_unit",
+                "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
+                "TEXT",
             ),
-            FitOption(name="rated_torque", text="rated torque [N.m] (default: T2)", unit="N.m"),
-            FitOption(name="source", text="where the row is printed", word=True, default="catalogue"),
-            FitOption(name="ratio", text="speed ratio (default: that of the start)"),
-            FitOption(
-                name="law",
-                text="catalogue: the three lines; hu2023: that of the contact pair, fitted to them",
-                word=True,
+            Option("rated_torque", "rated torque [N.m] (default: T2)", unit="N.m"),
+            Option("source", "where the row is printed", "TEXT", default="catalogue"),
+            Option("ratio", "speed ratio (default: that of the start)", number=True),
+            Option(
+                "law",
+                "catalogue: the three lines; hu2023: that of the contact pair, fitted to them",
                 default="catalogue",
                 choices=("catalogue", "hu2023"),
             ),

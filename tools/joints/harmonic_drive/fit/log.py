@@ -1,26 +1,26 @@
-"""A robot's log to the friction of its drive: steady speeds, or motion with time.
+"""A robot's log to the friction of its drive: steady speeds, or motion with time; facts and pictures.
 
 The last 30 % of each log, or every third row of a table, are predicted by a fit to the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from scipy import stats
 from scipy.linalg import block_diag
 
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import KELVIN_AT_ZERO
 
-from ....fitting.identifiability import undetermined
 from ....fitting.least_squares import Solution
-from ....fitting.outcome import FitResult, Picture, fitted
-from . import log_link, log_pictures
-from .log_facts import facts
-from .log_friction import FittedLog, fitted_to, wanted_of, with_rotor
-from .log_reading import named, read
-from .log_samples import ONE_SPEED, Samples, joined
+from ....fitting.outcome import FitResult, Picture, fitted, undetermined
+from . import hysteresis
+from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor
+from .log_reading import ONE_SPEED, Samples, joined, named, read
 
 LEVEL = 0.95
 
@@ -54,11 +54,11 @@ def fit(
     samples = joined([log.part(log.built) for log in logs])
     label = ", ".join(path.name for path in paths)
     turned = [log for log in logs if np.all(np.isfinite(log.motor + log.q))]
-    if not turned and (alone := [name for name in free or () if name in log_link.OWN]):
+    if not turned and (alone := [name for name in free or () if name in hysteresis.OWN]):
         raise ValueError(f"{label}: {alone[0]} needs the columns q and q_motor beside the time")
     _speeds(label, samples)
     rotor = motor_inertia or 0.0
-    own = [name for name in free or () if name not in log_link.OWN]
+    own = [name for name in free or () if name not in hysteresis.OWN]
     wanted, left = wanted_of(samples, file.values, own, rotor)
     whole = fitted_to(file, samples, wanted, rotor)
     if samples.dynamic.any() and motor_inertia is None:
@@ -69,13 +69,13 @@ def fit(
                 "without --motor-inertia all inertia counts as the arm's: what hangs on the load, load_loss "
                 "and stiffness, is off by the rotor's share"
             )
-    found, pictures = whole.solution, [*log_pictures.pictures(samples, whole)]
+    found, drawn = whole.solution, [*pictures(samples, whole)]
     intervals = _intervals(whole.solution)
     if turned:
         more, why = _link(file, turned[0], whole, free)
         left += why
         if more is not None:
-            found, pictures = _both(found, more[0]), [*pictures, more[1]]
+            found, drawn = _both(found, more[0]), [*drawn, more[1]]
             intervals |= _intervals(more[0])
     result = fitted(file, found.values, "calibration", label, _span(samples))
     for name, (low, high) in intervals.items():
@@ -85,9 +85,9 @@ def fit(
         result,
         found,
         facts(file, samples, whole, wanted),
-        pictures[0],
+        drawn[0],
         notes=left,
-        more_pictures=pictures[1:],
+        more_pictures=drawn[1:],
         intervals=intervals,
     )
 
@@ -97,23 +97,25 @@ def _rotor(file: ParameterFile, log: Samples, whole: FittedLog) -> tuple[float, 
     if file.law != "catalogue":
         return None
     square = whole.drive.ratio**2
-    (load, spread), phi = whole.load(log), log_link.wind_up(log, abs(whole.drive.ratio))
-    return log_link.rotor(file, phi, -load, -spread, square * log.ddq, whole.inertia / square)
+    (load, spread), phi = whole.load(log), hysteresis.wind_up(log, abs(whole.drive.ratio))
+    return hysteresis.rotor(file, phi, -load, -spread, square * log.ddq, whole.inertia / square)
 
 
 def _link(
     file: ParameterFile, log: Samples, whole: FittedLog, free: Sequence[str] | None
 ) -> tuple[tuple[Solution, Picture] | None, list[str]]:
     """Stiffness and hysteresis of a log with the motor's angle, or why they are not found."""
-    if free and not any(name in log_link.OWN for name in free):
+    if free and not any(name in hysteresis.OWN for name in free):
         return None, []
-    names = [name for name in log_link.OWN if name in file.flat and (not free or name in free)]
+    names = [name for name in hysteresis.OWN if name in file.flat and (not free or name in free)]
     if file.law != "catalogue" or not names:
         return None, ["stiffness and hysteresis are found with a start of the law catalogue"]
     load, spread = log.sensed, np.zeros((0, log.q.size))
     if not np.all(np.isfinite(load)):
         load, spread = whole.load(log)
-    return log_link.fit(file, names, log_link.wind_up(log, abs(whole.drive.ratio)), -load, -spread), []
+    return hysteresis.fit_log(
+        file, names, hysteresis.wind_up(log, abs(whole.drive.ratio)), -load, -spread
+    ), []
 
 
 def _both(one: Solution, other: Solution) -> Solution:
@@ -172,3 +174,103 @@ def _span(samples: Samples) -> str:
     text = f"speeds of the joint {speed.min():.3g} to {speed.max():.3g} rad/s"
     known = samples.temperature[np.isfinite(samples.temperature)]
     return text + (f", {known.min():.5g} to {known.max():.5g} K" if known.size else "")
+
+
+Facts = dict[str, tuple[float, str, str]]
+
+
+def facts(
+    file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]
+) -> dict[str, tuple[float, str, str]]:
+    """Residual, what was found beside, and the held-out part beside a constant."""
+    ratio = abs(whole.drive.ratio)
+    beside = Linear.of(samples, ratio)
+    units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
+    texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
+    facts = {
+        name: (float(value), units[name], texts.get(name, f"{name[8:]}(q) part of gravity at the joint"))
+        for name, value in zip(beside.names, whole.linear, strict=True)
+    }
+    if whole.rotor_deviation:
+        text = f"of the rotor, from the wind-up; standard deviation {whole.rotor_deviation:.2g}"
+        facts["motor_inertia"] = whole.rotor, "kg.m2", text
+    facts["residual"] = (
+        _rms(samples.torque - whole.torque(samples)[1]),
+        "N.m",
+        "root mean square, at the motor",
+    )
+    early, late = samples.part(~samples.later), samples.part(samples.later)
+    if late.dq.size and early.dq.size > len(wanted) + len(beside.names):
+        part = fitted_to(file, early, wanted, whole.rotor)
+        miss = _rms(late.torque - part.torque(late)[1])
+        facts["held_out"] = (
+            miss,
+            "N.m",
+            f"the same of {late.dq.size} samples that a fit to the rest predicts",
+        )
+        guess = _rms(late.torque - _constant(early, late, ratio))
+        facts["held_out_constant"] = (guess, "N.m", "the same of a constant in the place of friction")
+    return facts
+
+
+def _constant(early: Samples, late: Samples, ratio: float) -> Array:
+    """Torque (n) [N.m] at later samples by what is linear and a constant, fitted to earlier ones."""
+    matrices = []
+    for samples in (early, late):
+        beside = Linear.of(samples, ratio)
+        matrices.append(
+            (np.concatenate([np.ones((samples.dq.size, 1)), beside.matrix], axis=1), beside.known)
+        )
+    (first, known), (then, more) = matrices
+    return np.asarray(then @ np.linalg.lstsq(first, early.torque - known)[0] + more)
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+MILLI = 1e3
+_FRICTION, _MISFIT = "friction at the motor [mN m]", "log - law [mN m]"
+_UNLOADED, _WARMTH = "friction without load [mN m]", "temperature [degrees C]"
+
+
+class FrictionLaw(Protocol):
+    """A fit: friction and torque at samples, friction without load at speeds and a temperature."""
+
+    def torque(self, samples: Samples) -> tuple[Array, Array]: ...
+
+    def unloaded(self, dq: Array, temperature: float) -> Array: ...
+
+
+def pictures(samples: Samples, law: FrictionLaw) -> Iterator[Picture]:
+    """Over the speed of the joint, the time, the temperature, as far as the log has them."""
+    braked, torque = law.torque(samples)
+    misfit = samples.torque - torque
+    measured = braked + misfit
+    yield _over_speed(samples, law, misfit)
+    if samples.dynamic.any():
+        rows = np.flatnonzero(samples.dynamic)
+        time = samples.time[rows]
+        yield _picture(time, measured[rows], misfit[rows], (time, braked[rows]), "time [s]")
+    if (known := np.flatnonzero(np.isfinite(samples.temperature))).size:
+        warmth = samples.temperature[known] - KELVIN_AT_ZERO
+        ends = np.array([warmth.min(), warmth.max()])
+        over, rest = measured[known] / braked[known], MILLI * misfit[known]
+        yield Picture(warmth, over, rest, (ends, np.ones(2)), (_WARMTH, "friction, log over law", _MISFIT))
+
+
+def _over_speed(samples: Samples, law: FrictionLaw, misfit: Array) -> Picture:
+    """Without load, at the median of the temperatures; held-out rows of a table are marked."""
+    fastest = float(np.max(np.abs(samples.dq)))
+    speed = np.linspace(-fastest, fastest, 400)
+    known = samples.temperature[np.isfinite(samples.temperature)]
+    usual = float(np.median(known)) if known.size else np.nan
+    y, line = law.unloaded(samples.dq, usual) + misfit, (speed, law.unloaded(speed, usual))
+    picture = _picture(samples.dq, y, misfit, line, "speed of the joint [rad/s]")
+    marks = None if samples.dynamic.any() else samples.later
+    return replace(picture, labels=(picture.labels[0], _UNLOADED, _MISFIT), marks=marks)
+
+
+def _picture(x: Array, y: Array, misfit: Array, line: tuple[Array, Array], label: str) -> Picture:
+    """Torques in mN m; a line through many samples in their order."""
+    return Picture(x, MILLI * y, MILLI * misfit, (line[0], MILLI * line[1]), (label, _FRICTION, _MISFIT))

@@ -1,26 +1,23 @@
-"""A measured torque-angle curve to the harmonic drive's parameters.
-
-The curve fixes its level at small torque, its level at large torque and how fast it goes from one to
-the other: `drive_scale` (K_TS), `K_FTS0` and `zero_torque_pressure` (how little the pair is pressed
-before the torque counts). The surface and the mean over the peak pressure do the same as `drive_scale`;
-they stay as they are unless asked for.
-"""
+"""A measured torque-angle curve to a law of the drive, or to the table of its mid-line."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from jointfmu.files import columns
+from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import Array, build, flat_fields
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, sizes
 
 from ....fitting import loop
-from ....fitting.least_squares import Array, Solution, solve
-from ....fitting.outcome import FitResult, Picture, fitted, model, unknowns
+from ....fitting.least_squares import NOTHING, Solution, solve
+from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -33,8 +30,6 @@ LEAST = 10
 ARCMIN = COLUMNS["angle"]["arcmin"]
 CREATED = 0.01
 """Energy that a loop may create, as noise and drift do, over that of its box [1]."""
-ALIKE = 0.5
-"""Correlation of neighbouring residuals [1] above which the law itself misses the curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +74,7 @@ def fit(
 
     angles = model(file, lambda joint: drive.windup(joint, line.torque))
     solution = solve(
-        unknowns(file, names, drive.bounds(file)),
-        lambda values: miss(angles(values)),
-        nuisances=1,
+        unknowns(file, names, drive.bounds(file)), lambda values: miss(angles(values)), nuisances=1
     )
     result = fitted(file, solution.values, "calibration", record.path.name, span(line))
     return outcome(record, result, solution, offset(angles(solution.values)), solution.noise * size)
@@ -192,10 +185,61 @@ def _notes(line: loop.Backbone, rest: Array) -> list[str]:
         notes.append("one direction of loading only: loop area, backlash and drift cannot be told")
     elif line.drift is None:
         notes.append("a single loop that is not closed: a drift cannot be told from the loop")
-    alike = float(np.sum(rest[1:] * rest[:-1]) / np.sum(rest**2)) if np.any(rest) else 0.0
-    if alike > ALIKE:
-        notes.append(
-            f"neighbouring residuals are alike (correlation {alike:.2f}): the law misses the curve "
-            "systematically, the standard deviations are too small"
-        )
-    return notes
+    return notes + systematic(rest, "curve")
+
+
+MOST, FEWEST = 24, 4
+"""Points of a table [1]: fewer where the curve would not rise from one to the next for its noise."""
+CROWDING = 1.5
+"""Power by which the points crowd towards zero torque [1], where the stiffness changes most."""
+
+
+def fit_table(
+    path: str | Path, start: ParameterFile | None = None, rated_torque: float | None = None
+) -> FitResult:
+    """The table of a file with the columns torque and angle, as `torque_angle.fit` reads it.
+
+    Both directions of the torque are folded upon each other, the law is odd.
+
+    Raises ValueError as `torque_angle.fit`, and for a curve that does not pass zero torque or does not rise.
+    """
+    record = read(path, start, rated_torque)
+    line, begun = record.line, record.start
+    try:
+        torque, angle, shift = points(line)
+    except ValueError as error:
+        raise ValueError(f"{record.path}: {error}") from None
+    shared = [name for name, _ in flat_fields(Drive) if name in begun.flat]
+    values = {name: begun.flat[name] for name in shared}
+    values |= {"table.torque": tuple(torque.tolist()), "table.angle": tuple(angle.tolist())}
+    origins = {name: text for name, text in begun.origins.items() if name in shared}
+    sources = {name: text for name, text in begun.sources.items() if name in shared}
+    file = ParameterFile(begun.joint, record.path.name, build(TableDrive, values), origins, sources)
+    columns = {name: values[name] for name in ("table.torque", "table.angle")}
+    file = fitted(file, columns, "calibration", record.path.name, span(line))
+    file = replace(file, name=record.path.name)
+    rest = line.angle - shift - drive.windup(file.values, line.torque)
+    noise = float(np.sqrt(np.average(line.count * rest**2)))
+    return outcome(record, file, NOTHING, shift, noise)
+
+
+def points(line: loop.Backbone) -> tuple[Array, Array, float]:
+    """Torques and angles (n) of a table, and the angle at zero torque that is taken off.
+
+    Raises ValueError if the mid-line does not pass zero torque or does not rise.
+    """
+    low, high = line.torque[0], line.torque[-1]
+    if low * high > 0.0 and min(abs(low), abs(high)) > 0.05 * (high - low):
+        raise ValueError(f"the torque goes from {low:.4g} to {high:.4g} N.m; a table needs it to pass zero")
+    both = np.linspace(0.0, max(min(-low, high), 0.0), 41)
+    shift = float(np.mean([np.interp(sign * both, line.torque, line.angle) for sign in (-1.0, 1.0)]))
+    size, angle = np.abs(line.torque), np.sign(line.torque) * (line.angle - shift)
+    for count in range(MOST, FEWEST - 1, -1):
+        edges = size.max() * np.linspace(0.0, 1.0, count + 1) ** CROWDING
+        place = np.clip(np.searchsorted(edges, size, side="left") - 1, 0, count - 1)
+        weight = np.bincount(place, line.count, count)
+        some = weight > 0.0
+        means = [np.bincount(place, line.count * x, count)[some] / weight[some] for x in (size, angle)]
+        if all(x[0] > 0.0 and np.all(np.diff(x) > 0.0) for x in means):
+            return means[0], means[1], shift
+    raise ValueError(f"the mid-line does not rise from one of {FEWEST} points to the next")

@@ -12,9 +12,17 @@ from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
 
-from ....modelica.records import ModelicaComponent, ModelicaRecord, WorkingPoint, computed, given
-from ....modelica.tables import thinned
-from ....modelica.text import identifier, matrix, number
+from ....modelica.records import (
+    ModelicaComponent,
+    ModelicaRecord,
+    WorkingPoint,
+    computed,
+    given,
+    identifier,
+    matrix,
+    number,
+    thinned,
+)
 
 _SPRING = ("hysteresis_loss", "hysteresis_stiffness", "lost_motion", "inertia1", "inertia2")
 """Parameters of the drive that are in the record's sliders and table, or of what only the FMU gives."""
