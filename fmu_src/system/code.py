@@ -7,13 +7,13 @@ from pathlib import Path
 from ..joint_parts.c_text import array, string
 from ..native.data import block, split
 from ..native.elementary import tables
-from ..native.generate import COMMON, RUNTIME, code, native_part
+from ..native.generate import RUNTIME, code, native_part, runtime
 from ..native.variables_c import variables_c
 from .assembly import Assembly, Component
 
-_SHARED = ("text", "elementary", "elementary_tables")
-"""Files that components have in common with the system."""
-_LAYERS = (*COMMON, "fmi2", "fmi3", *_SHARED)
+_COMMON = runtime(("elementary",))
+_LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
+"""Files of which components have none of their own."""
 _FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
 _DEFINITION = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
@@ -34,9 +34,7 @@ def sources(assembly: Assembly) -> dict[str, str]:
         parts.setdefault(prefixes[part.name], own)
     files = {
         path.name: path.read_text(encoding="utf-8")
-        for path in (*RUNTIME.iterdir(), *Path(__file__).parent.iterdir())
-        if path.suffix in (".c", ".h")
-        and (path.parent != RUNTIME or path.stem in (*_LAYERS, "joint", "variables"))
+        for path in (*_COMMON, *Path(__file__).parent.glob("*.[ch]"))
     }
     files |= {"elementary_tables.h": tables(), "variables.c": variables_c(model)}
     files |= {"model.h": _header(assembly), "components.c": _components(assembly, prefixes)}
@@ -138,7 +136,7 @@ def _components(assembly: Assembly, prefixes: Mapping[str, str]) -> str:
 
 
 def _declared(prefix: str) -> list[str]:
-    text = (RUNTIME / "joint.h").read_text(encoding="utf-8")
+    text = (RUNTIME / "instance" / "joint.h").read_text(encoding="utf-8")
     found = []
     for name in _FUNCTIONS:
         match = re.search(rf"^\w+ (joint_{name})\([^;]*;\n", text, re.M)

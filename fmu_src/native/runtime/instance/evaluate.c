@@ -1,9 +1,7 @@
-#include "evaluate.h"
-
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "instance.h"
 
 /* Refusals: the line says which value is wrong and what is allowed. */
 
@@ -20,24 +18,10 @@ static bool inside(const Variable *v, double value)
     return isfinite(value) && ((value == v->low && !v->low_open) || (value == v->high && !v->high_open));
 }
 
-static void add_value(Text *text, const Variable *v, double value, int digits)
-{
-    text_add(text, v->name);
-    text_add(text, " = ");
-    text_number(text, value, digits);
-    if (v->unit[0]) {
-        text_add(text, " ");
-        text_add(text, v->unit);
-    }
-}
-
 static void add_outside(Text *text, const Variable *v, double value, int digits)
 {
-    add_value(text, v, value, digits);
-    text_add(text, " is outside ");
-    text_add(text, v->interval);
-    text_add(text, ": ");
-    text_add(text, v->doc);
+    text_quantity(text, v->name, value, digits, v->unit);
+    text_print(text, " is outside %s: %s", v->interval, v->doc);
 }
 
 /* Parameters and tables */
@@ -50,7 +34,7 @@ static void check_parameter(Text *why, const Variable *v, double value)
     if (why->length)
         text_add(why, "; ");
     if (in) {
-        add_value(why, v, value, 6);
+        text_quantity(why, v->name, value, 6, v->unit);
         text_add(why, " is no whole number, allowed are 1, 2, 3, ...");
     } else {
         add_outside(why, v, value, 10);
@@ -69,16 +53,11 @@ static bool tabulate(Instance *m)
     text_clear(&why);
     for (size_t i = 0; i < N_PARAMETERS; i++)
         check_parameter(&why, &variables[FIRST_PARAMETER + i], parameters[i]);
-    if (why.length) {
-        refuse(m, &why);
-        return false;
-    }
-    const bool again = m->tables_right;
-    m->tables_right = joint_tabulate(m->joint, parameters, &why);
-    if (!m->tables_right) {
-        refuse(m, &why);
-        return false;
-    }
+    const bool again = m->tables_right, allowed = why.length == 0;
+    if (allowed)
+        m->tables_right = joint_tabulate(m->joint, parameters, &why);
+    if (!allowed || !m->tables_right)
+        return refuse(m, &why) == OK;
     memcpy(m->tabulated, parameters, sizeof m->tabulated);
     m->parameters_changed = false;
     if (again)
@@ -107,12 +86,10 @@ static Status refuse_outputs(const Instance *m)
     for (size_t i = FIRST_INPUT; i < FIRST_OUTPUT; i++)
         if (m->now.values[i] != 0.0) {
             text_add(&why, between);
-            add_value(&why, &variables[i], m->now.values[i], 6);
+            text_quantity(&why, variables[i].name, m->now.values[i], 6, variables[i].unit);
             between = ", ";
         }
-    text_add(&why, ": too large, ");
-    text_add(&why, variables[FIRST_OUTPUT + bad].name);
-    text_add(&why, " is not finite");
+    text_print(&why, ": too large, %s is not finite", variables[FIRST_OUTPUT + bad].name);
     return refuse(m, &why);
 }
 
@@ -154,4 +131,15 @@ Status instance_evaluate(Instance *m)
         warn(m, outside);
     m->dirty = false;
     return OK;
+}
+
+void memory_accept(Instance *m)
+{
+    Path *path = &m->now.path;
+    if (!N_MEMORY || memory_of(m) != path->memory[path->last])
+        return; /* they are accepted already */
+    path->last = 1u - path->last;
+    memcpy(path->memory[path->last], m->tried, sizeof m->tried);
+    memcpy(path->knowns, m->now.values + FIRST_KNOWN, sizeof path->knowns);
+    path->accepted = 1;
 }

@@ -10,21 +10,9 @@ size_t joint_size(void)
     return sizeof(Joint);
 }
 
-static void text_unit(Text *text, const char *unit)
-{
-    if (unit[0] != 0) {
-        text_add(text, " ");
-        text_add(text, unit);
-    }
-}
-
 static void text_interval(Text *text, double low, double high, bool low_open, bool high_open)
 {
-    text_add(text, low_open ? "(" : "[");
-    text_number(text, low, 6);
-    text_add(text, ", ");
-    text_number(text, high, 6);
-    text_add(text, high_open ? ")" : "]");
+    text_print(text, "%s%g, %g%s", low_open ? "(" : "[", low, high, high_open ? ")" : "]");
 }
 
 /* Whether the ends are NaN, crossed, or differ by less than the digits that a message shows. */
@@ -48,18 +36,14 @@ static bool check_limits(const Joint *joint, Text *why)
         if (above && below)
             continue;
         const Variable *variable = &variables[FIRST_PARAMETER + limit->parameter];
-        text_add(why, variable->name);
-        text_add(why, " = ");
-        text_number(why, value, 6);
-        text_unit(why, variable->unit);
+        text_quantity(why, variable->name, value, 6, variable->unit);
         if (empty(low, high, limit->low_open || limit->high_open)) {
             text_add(why, ": the other parameters leave no value for it");
         } else {
             text_add(why, " is outside ");
             text_interval(why, low, high, limit->low_open, limit->high_open);
         }
-        text_add(why, ": ");
-        text_add(why, limit->doc);
+        text_print(why, ": %s", limit->doc);
         return false;
     }
     return true;
@@ -77,23 +61,18 @@ bool refined(Joint *joint, Tabulate tabulate, int steps, Text *why)
 {
     for (int factor = 1; factor <= FINEST; factor *= 2) {
         if (!tabulate(joint, steps * factor, why)) {
-            if (why->length > 0)
-                return false;
-            text_add(why, "the table needs more than ");
-            text_number(why, CURVE_NODES, 6);
-            text_add(why, " nodes: the law is not smooth enough with these parameters");
+            if (why->length == 0)
+                text_print(why, "the table needs more than %g nodes: the law is not smooth enough with these parameters",
+                           (double)CURVE_NODES);
             return false;
         }
         if (joint->curve.error <= MAX_ERROR)
             return true;
     }
-    text_add(why, "the table of ");
-    text_number(why, joint->curve.n, 6);
-    text_add(why, " nodes has an interpolation error of ");
-    text_number(why, joint->curve.error, 2);
-    text_add(why, ", allowed is ");
-    text_number(why, MAX_ERROR, 6);
-    text_add(why, ": the law is not smooth enough with these parameters");
+    text_print(why,
+               "the table of %g nodes has an interpolation error of %.2g, allowed is %g: "
+               "the law is not smooth enough with these parameters",
+               (double)joint->curve.n, joint->curve.error, MAX_ERROR);
     return false;
 }
 
@@ -134,13 +113,8 @@ void joint_warning(Joint *joint, const double *inputs, const double *outputs, un
     outside(joint, inputs, ends);
     const Variable *variable = &variables[FIRST_INPUT + warnings[i].variable];
     const double low = ends[2 * i], high = ends[2 * i + 1];
-    text_add(text, variable->name);
-    text_add(text, " = ");
-    text_number(text, watched(&warnings[i], inputs, outputs), 6);
-    text_unit(text, variable->unit);
+    text_quantity(text, variable->name, watched(&warnings[i], inputs, outputs), 6, variable->unit);
     text_add(text, " is outside ");
     text_interval(text, low, high, isinf(low), isinf(high));
-    text_unit(text, variable->unit);
-    text_add(text, ": ");
-    text_add(text, warnings[i].doc);
+    text_print(text, variable->unit[0] ? " %s: %s" : "%s: %s", variable->unit, warnings[i].doc);
 }

@@ -60,11 +60,11 @@ bool spots_begin(Spots *spots, const double *c, Text *why)
             spots->least = log_load[0];
         spots->most = log_load[0];
     }
-    if (!good) {
-        text_add(why, "the parameters give a reference area of ");
-        text_number(why, spots->reference, 6);
-        text_add(why, " m2 or a load that is not representable; is D close to the end of its interval, or G, h or another one extreme?");
-    }
+    if (!good)
+        text_print(why,
+                   "the parameters give a reference area of %g m2 or a load that is not representable; "
+                   "is D close to the end of its interval, or G, h or another one extreme?",
+                   spots->reference);
     return good;
 }
 
@@ -72,15 +72,11 @@ bool spots_solve(const Spots *spots, const double *c, double pressure, double *u
 {
     const double target = same_log(pressure * spots->area);
     if (!(target >= spots->least && target <= spots->most)) {
-        text_add(why, "pressure = ");
-        text_number(why, pressure, 6);
-        text_add(why, " Pa is outside [");
-        text_number(why, same_exp(spots->least) / spots->area, 3);
-        text_add(why, ", ");
-        text_number(why, same_exp(spots->most) / spots->area, 3);
-        text_add(why, "]: its largest spot is not representable beside the critical area ");
-        text_number(why, spots->reference, 3);
-        text_add(why, " m2 of this surface");
+        text_print(why,
+                   "pressure = %g Pa is outside [%.3g, %.3g]: its largest spot is not representable "
+                   "beside the critical area %.3g m2 of this surface",
+                   pressure, same_exp(spots->least) / spots->area, same_exp(spots->most) / spots->area,
+                   spots->reference);
         return false;
     }
     double x = *u, low = -INFINITY, high = INFINITY, y[2] = {0.0, 1.0};
@@ -99,8 +95,6 @@ bool spots_solve(const Spots *spots, const double *c, double pressure, double *u
             return true;
         }
     }
-    text_add(why, "the inversion of the pressure ");
-    text_number(why, pressure, 6);
-    text_add(why, " Pa did not converge");
+    text_print(why, "the inversion of the pressure %g Pa did not converge", pressure);
     return false;
 }

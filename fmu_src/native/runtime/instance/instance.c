@@ -29,18 +29,15 @@ void instance_report(const Instance *m, Status status, unsigned category, const 
     m->reporter.deliver(&m->reporter, m->name, status, categories_known[i], line);
 }
 
-static void explain(Text *text, const char *function, const char *what)
-{
-    text_clear(text);
-    text_add(text, function);
-    text_add(text, ": ");
-    text_add(text, what);
-}
-
-Status instance_refuse(const Instance *m, const char *function, const char *what)
+Status instance_refuse(const Instance *m, const char *function, const char *format, ...)
 {
     Text text;
-    explain(&text, function, what);
+    text_clear(&text);
+    text_print(&text, "%s: ", function);
+    va_list values;
+    va_start(values, format);
+    text_print_list(&text, format, values);
+    va_end(values);
     instance_report(m, ERROR, LOG_ERRORS, text.line);
     return ERROR;
 }
@@ -48,7 +45,8 @@ Status instance_refuse(const Instance *m, const char *function, const char *what
 void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what)
 {
     Text text;
-    explain(&text, function, what);
+    text_clear(&text);
+    text_print(&text, "%s: %s", function, what);
     reporter.deliver(&reporter, name ? name : "", ERROR, categories_known[0], text.line);
 }
 
@@ -71,14 +69,10 @@ Status instance_select_logs(Instance *m, const char *function, bool on, size_t n
         return ERROR;
     unsigned logs = 0;
     for (size_t i = 0; i < n; i++)
-        if (!add_category(&logs, categories[i])) {
-            Text text;
-            text_clear(&text);
-            text_add(&text, "category ");
-            text_quote(&text, categories[i]);
-            text_add(&text, " is unknown; expected logStatusError, logStatusWarning, logEvents");
-            return instance_refuse(m, function, text.line);
-        }
+        if (!add_category(&logs, categories[i]))
+            return instance_refuse(m, function,
+                                   "category %q is unknown; expected logStatusError, logStatusWarning, logEvents",
+                                   categories[i]);
     if (!on)
         logs = LOG_ERRORS | LOG_WARNINGS;
     else if (n == 0)
@@ -104,74 +98,35 @@ bool instance_forbids(const Instance *m, const char *function, unsigned where)
 {
     if (!m)
         return false;
-    Text text;
-    text_clear(&text);
     const bool exchange = m->now.kind == MODEL_EXCHANGE;
-    if (m->now.kind & where) {
-        text_add(&text, "called in ");
-        add_modes(&text, m->now.mode);
-        text_add(&text, "; expected ");
-        const unsigned modes = where & (exchange ? modes_of_model_exchange : modes_of_co_simulation);
-        if (modes)
-            add_modes(&text, modes);
-        else
-            text_add(&text, "no such call: this FMU has no event mode in co-simulation");
-    } else {
-        text_add(&text, exchange ? "called for model exchange" : "called for co-simulation");
-        text_add(&text, exchange ? "; expected co-simulation" : "; expected model exchange");
-    }
-    instance_refuse(m, function, text.line);
-    return false;
-}
-
-bool instance_lacks(const Instance *m, const char *function, const char *what)
-{
+    if (!(m->now.kind & where))
+        return instance_refuse(m, function, "called for %s; expected %s", exchange ? "model exchange" : "co-simulation",
+                               exchange ? "co-simulation" : "model exchange") == OK;
     Text text;
     text_clear(&text);
-    text_add(&text, what);
-    text_add(&text, " is NULL; expected a pointer");
-    instance_refuse(m, function, text.line);
-    return false;
-}
-
-bool instance_counts(const Instance *m, const char *function, const char *what, size_t given, size_t expected)
-{
-    if (given == expected)
-        return true;
-    Text text;
-    text_clear(&text);
-    text_count(&text, given);
-    text_add(&text, " ");
-    text_add(&text, what);
+    text_add(&text, "called in ");
+    add_modes(&text, m->now.mode);
     text_add(&text, "; expected ");
-    text_count(&text, expected);
-    instance_refuse(m, function, text.line);
-    return false;
+    const unsigned modes = where & (exchange ? modes_of_model_exchange : modes_of_co_simulation);
+    if (modes)
+        add_modes(&text, modes);
+    else
+        text_add(&text, "no such call: this FMU has no event mode in co-simulation");
+    return instance_refuse(m, function, "%s", text.line) == OK;
 }
 
 /* Life */
-
-static bool refused_name_or_token(Text *text, const char *name, const char *token)
-{
-    text_clear(text);
-    if (!name || !name[0])
-        text_add(text, "the instance name is empty; expected a name");
-    else if (!token || strcmp(token, data.token) != 0) {
-        text_add(text, "the token is ");
-        text_quote(text, token);
-        text_add(text, "; expected '");
-        text_add(text, data.token);
-        text_add(text, "', that of ");
-        text_add(text, data.name);
-    }
-    return text->length > 0;
-}
 
 Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
                        const char *token, bool logging_on, Reporter reporter)
 {
     Text text;
-    if (refused_name_or_token(&text, name, token)) {
+    text_clear(&text);
+    if (!name || !name[0])
+        text_add(&text, "the instance name is empty; expected a name");
+    else if (!token || strcmp(token, data.token) != 0)
+        text_print(&text, "the token is %q; expected '%s', that of %s", token, data.token, data.name);
+    if (text.length > 0) {
         instance_not_made(function, name, reporter, text.line);
         return NULL;
     }
@@ -204,19 +159,23 @@ void instance_free(Instance *m)
 void instance_reset(Instance *m)
 {
     State *now = &m->now;
-    for (size_t i = 0; i < N_VALUES; i++)
-        now->values[i] = data.start[i];
-    memset(now->slopes, 0, sizeof now->slopes);
-    memset(now->last_inputs, 0, sizeof now->last_inputs);
-    now->last_rate = now->last_size = 0.0;
-    now->values[0] = now->start = 0.0;
+    const unsigned kind = now->kind;
+    memset(now, 0, sizeof *now);
+    now->kind = kind;
+    memcpy(now->values, data.start, sizeof now->values);
+    now->values[0] = 0.0;
     now->stop = INFINITY;
-    now->warned = 0;
     now->logs = LOG_ERRORS | LOG_WARNINGS | (m->logging_on ? LOG_EVENTS : 0u);
-    now->last_step = OK;
-    memset(&now->path, 0, sizeof now->path);
     m->dirty = m->parameters_changed = true;
     instance_enter(m, INSTANTIATED);
+}
+
+Status instance_restart(Instance *m, const char *function)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE))
+        return ERROR;
+    instance_reset(m);
+    return OK;
 }
 
 void instance_enter(Instance *m, unsigned mode)
@@ -237,14 +196,11 @@ Status instance_set_experiment(Instance *m, const char *function, double toleran
     if (!isfinite(start) || (stop_defined && !(stop >= start))) {
         Text text;
         text_clear(&text);
-        text_add(&text, "start time ");
-        text_number(&text, start, 16);
-        if (stop_defined) {
-            text_add(&text, " and stop time ");
-            text_number(&text, stop, 16);
-        }
-        text_add(&text, "; expected a finite start and a stop that is not before it");
-        return instance_refuse(m, function, text.line);
+        text_print(&text, "start time %.16g", start);
+        if (stop_defined)
+            text_print(&text, " and stop time %.16g", stop);
+        return instance_refuse(m, function, "%s; expected a finite start and a stop that is not before it",
+                               text.line);
     }
     m->now.values[0] = m->now.start = start;
     m->dirty = true;

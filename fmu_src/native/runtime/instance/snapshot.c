@@ -1,8 +1,7 @@
-#include "snapshot.h"
-
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "instance.h"
 
 /* A state in the hands of the host, and its bytes: little endian, the same on every platform.
  *
@@ -143,39 +142,22 @@ static bool is_saved(const Instance *m, const char *function, const SavedState *
         return false;
     if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version)
         return true;
-    Text text;
-    text_clear(&text);
-    text_add(&text, "this is no FMU state of ");
-    text_add(&text, data.name);
-    text_add(&text, "; expected one that it gave");
-    instance_refuse(m, function, text.line);
-    return false;
+    return instance_refuse(m, function, "this is no FMU state of %s; expected one that it gave", data.name) == OK;
 }
 
 static Status refuse_bytes(const Instance *m, const char *function, const char *what)
 {
-    Text text;
-    text_clear(&text);
-    text_add(&text, "the bytes are ");
-    text_add(&text, what);
-    text_add(&text, "; expected a state that ");
-    text_add(&text, data.name);
-    text_add(&text, " with the token ");
-    text_add(&text, data.token);
-    text_add(&text, " serialized");
-    return instance_refuse(m, function, text.line);
+    return instance_refuse(m, function, "the bytes are %s; expected a state that %s with the token %s serialized",
+                           what, data.name, data.token);
 }
 
 /* A state of the same kind of instance. */
 static bool fits(const Instance *m, const char *function, const State *s)
 {
-    if (s->kind == m->now.kind)
-        return true;
-    instance_refuse(m, function,
-                    m->now.kind == MODEL_EXCHANGE
-                        ? "the state is one of co-simulation; expected one of model exchange"
-                        : "the state is one of model exchange; expected one of co-simulation");
-    return false;
+    const char *own = m->now.kind == MODEL_EXCHANGE ? "model exchange" : "co-simulation";
+    const char *other = m->now.kind == MODEL_EXCHANGE ? "co-simulation" : "model exchange";
+    return s->kind == m->now.kind ||
+           instance_refuse(m, function, "the state is one of %s; expected one of %s", other, own) == OK;
 }
 
 static SavedState *new_state(const Instance *m, const char *function)

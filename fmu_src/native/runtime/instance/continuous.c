@@ -1,8 +1,6 @@
-#include "continuous.h"
-
 #include <string.h>
 
-#include "memory.h"
+#include "instance.h"
 
 /* Continuous states: positions and speeds of bodies, whose rates are outputs. Joints have none. */
 

@@ -1,8 +1,7 @@
-#include "values.h"
-
 #include <math.h>
+#include <string.h>
 
-#include "memory.h"
+#include "instance.h"
 
 /* Every check below comes in two parts: a short loop for what hosts do in each step (inputs to set, outputs
  * to read), and a long way that takes everything else and finds the words for what is wrong. */
@@ -35,38 +34,24 @@ static bool is_parameter(uint32_t ref)
     return ref >= FIRST_PARAMETER && ref < N_VALUES;
 }
 
+/* Say what is wrong with a variable. */
 static bool refused(const Instance *m, const char *function, uint32_t ref, const char *what)
 {
-    Text text;
-    text_clear(&text);
-    text_add(&text, variables[ref].name);
-    text_add(&text, what);
-    instance_refuse(m, function, text.line);
-    return false;
+    return instance_refuse(m, function, "%s%s", variables[ref].name, what) == OK;
 }
 
 static bool known(const Instance *m, const char *function, uint32_t ref)
 {
     const uint32_t first = m->version == 2 ? FIRST_INPUT : 0; /* FMI 2 lists no time */
-    if (ref >= first && ref < N_VALUES)
-        return true;
-    Text text;
-    text_clear(&text);
-    text_add(&text, "value reference ");
-    text_count(&text, ref);
-    text_add(&text, " is unknown; expected ");
-    text_count(&text, first);
-    text_add(&text, " to ");
-    text_count(&text, N_VALUES - 1);
-    instance_refuse(m, function, text.line);
-    return false;
+    return (ref >= first && ref < N_VALUES) ||
+           instance_refuse(m, function, "value reference %zu is unknown; expected %zu to %zu", (size_t)ref,
+                           (size_t)first, (size_t)N_VALUES - 1) == OK;
 }
 
 static bool of_type(const Instance *m, const char *function, uint32_t ref, bool boolean)
 {
-    if ((variables[ref].boolean != 0) == boolean)
-        return true;
-    return refused(m, function, ref,
+    return (variables[ref].boolean != 0) == boolean ||
+           refused(m, function, ref,
                    boolean ? " is a number; expected a Boolean" : " is a Boolean; expected a number");
 }
 
@@ -129,13 +114,15 @@ Status instance_set(Instance *m, const char *function, const uint32_t refs[], si
     return OK;
 }
 
-bool instance_can_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                               const void *values)
+Status instance_set_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
+                             const void *values)
 {
     if (!can_set(m, function, refs, n, values, true))
-        return false;
+        return ERROR;
+    for (size_t i = 0; i < n; i++)
+        instance_put(m, refs[i], m->version == 2 ? ((const int *)values)[i] != 0 : ((const bool *)values)[i]);
     m->dirty = true;
-    return true;
+    return OK;
 }
 
 Status instance_set_slopes(Instance *m, const char *function, const uint32_t refs[], size_t n,
@@ -148,16 +135,13 @@ Status instance_set_slopes(Instance *m, const char *function, const uint32_t ref
     for (size_t i = 0; i < n; i++) {
         if (!known(m, function, refs[i]))
             return ERROR;
-        if (!is_input(refs[i])) {
-            refused(m, function, refs[i], " is no input; expected one");
-            return ERROR;
-        }
-        if (orders[i] != 1) {
-            refused(m, function, refs[i], " is given a derivative of another order; expected order 1");
-            return ERROR;
-        }
-        if (!isfinite(values[i])) {
-            refused(m, function, refs[i], " is given a derivative that is not finite; expected a finite one");
+        const char *wrong = !is_input(refs[i]) ? " is no input; expected one"
+                            : orders[i] != 1   ? " is given a derivative of another order; expected order 1"
+                            : !isfinite(values[i])
+                                ? " is given a derivative that is not finite; expected a finite one"
+                                : NULL;
+        if (wrong) {
+            refused(m, function, refs[i], wrong);
             return ERROR;
         }
     }
@@ -193,39 +177,101 @@ Status instance_get(Instance *m, const char *function, const uint32_t refs[], si
     return OK;
 }
 
-bool instance_can_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n,
-                               const void *values)
+Status instance_get_booleans(Instance *m, const char *function, const uint32_t refs[], size_t n, void *values)
 {
-    return can_get(m, function, refs, n, values, true);
-}
-
-/* Others */
-
-Status instance_no_variables(const Instance *m, const char *function, unsigned where, size_t n)
-{
-    if (!instance_allows(m, function, where))
+    if (!can_get(m, function, refs, n, values, true))
         return ERROR;
-    return instance_counts(m, function, "variables of a type that this FMU does not have", n, 0) ? OK : ERROR;
+    for (size_t i = 0; i < n; i++)
+        if (m->version == 2)
+            ((int *)values)[i] = m->now.values[refs[i]] != 0.0;
+        else
+            ((bool *)values)[i] = m->now.values[refs[i]] != 0.0;
+    return OK;
 }
 
-bool instance_can_differentiate(Instance *m, const char *function, const uint32_t unknowns[],
-                                size_t n_unknowns, const uint32_t knowns[], size_t n_knowns)
+Status instance_none(const Instance *m, const char *function, unsigned where, const char *what, size_t n)
+{
+    return instance_allows(m, function, where) && instance_counts(m, function, what, n, 0) ? OK : ERROR;
+}
+
+/* Derivatives */
+
+/* Whether unknowns are outputs and knowns inputs, and the outputs right. */
+static bool can_differentiate(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                              const uint32_t knowns[], size_t n_knowns, const double seed[], const double result[])
 {
     if (!instance_allows(m, function, BOTH | READABLE) ||
         (n_unknowns && !instance_has(m, function, "the array of unknowns", unknowns)) ||
         (n_knowns && !instance_has(m, function, "the array of knowns", knowns)))
         return false;
-    for (size_t i = 0; i < n_unknowns; i++) {
-        if (!known(m, function, unknowns[i]))
+    for (size_t i = 0; i < n_unknowns; i++)
+        if (!known(m, function, unknowns[i]) ||
+            !(is_output(unknowns[i]) ||
+              refused(m, function, unknowns[i], " is among the unknowns; expected outputs")))
             return false;
-        if (!is_output(unknowns[i]))
-            return refused(m, function, unknowns[i], " is among the unknowns; expected outputs");
-    }
+    for (size_t i = 0; i < n_knowns; i++)
+        if (!known(m, function, knowns[i]) ||
+            !(is_input(knowns[i]) || is_state(knowns[i]) ||
+              refused(m, function, knowns[i], " is among the knowns; expected inputs")))
+            return false;
+    return instance_evaluate(m) == OK && instance_has(m, function, "the seed", seed) &&
+           instance_has(m, function, "the array of sensitivities", result);
+}
+
+/* Change of the outputs along m->seed. */
+static void differentiate(Instance *m)
+{
+    joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), memory_after(m), m->seed, m->change);
+}
+
+static bool is_finite(const Instance *m, const char *function, uint32_t ref, double value)
+{
+    return isfinite(value) || instance_refuse(m, function,
+                                              "the derivative of %s is not finite; expected a finite seed, not too large",
+                                              variables[ref].name) == OK;
+}
+
+Status instance_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                           const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
+{
+    const double nothing = 0.0;
+    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, n_knowns ? seed : &nothing,
+                           n_unknowns ? result : &nothing))
+        return ERROR;
+    memset(m->seed, 0, sizeof m->seed);
     for (size_t i = 0; i < n_knowns; i++) {
-        if (!known(m, function, knowns[i]))
-            return false;
-        if (!is_input(knowns[i]) && !is_state(knowns[i]))
-            return refused(m, function, knowns[i], " is among the knowns; expected inputs");
+        if (!is_finite(m, function, knowns[i], seed[i]))
+            return ERROR;
+        m->seed[knowns[i] - FIRST_INPUT] += seed[i];
     }
-    return instance_evaluate(m) == OK;
+    differentiate(m);
+    for (size_t i = 0; i < n_unknowns; i++) {
+        result[i] = m->change[unknowns[i] - FIRST_OUTPUT];
+        if (!is_finite(m, function, unknowns[i], result[i]))
+            return ERROR;
+    }
+    return OK;
+}
+
+Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
+                        const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
+{
+    const double nothing = 0.0;
+    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, n_unknowns ? seed : &nothing,
+                           n_knowns ? result : &nothing))
+        return ERROR;
+    for (size_t i = 0; i < n_unknowns; i++)
+        if (!is_finite(m, function, unknowns[i], seed[i]))
+            return ERROR;
+    for (size_t j = 0; j < n_knowns; j++) {
+        memset(m->seed, 0, sizeof m->seed);
+        m->seed[knowns[j] - FIRST_INPUT] = 1.0;
+        differentiate(m);
+        result[j] = 0.0;
+        for (size_t i = 0; i < n_unknowns; i++)
+            result[j] += seed[i] * m->change[unknowns[i] - FIRST_OUTPUT];
+        if (!is_finite(m, function, knowns[j], result[j]))
+            return ERROR;
+    }
+    return OK;
 }

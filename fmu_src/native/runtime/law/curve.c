@@ -170,3 +170,10 @@ double curve_inverse_safe(const Curve *curve, double load)
     }
     return curve->x[i] + t * (curve->x[i + 1] - curve->x[i]);
 }
+
+void energy_tabulate(Energy *energy, const Curve *curve)
+{
+    energy->at[0] = 0.0;
+    for (int i = 0; i + 1 < curve->n; i++)
+        energy->at[i + 1] = energy_inside(energy, curve, i, 1.0);
+}

@@ -1,9 +1,7 @@
-#include "step.h"
-
 #include <math.h>
 #include <string.h>
 
-#include "memory.h"
+#include "instance.h"
 
 Status instance_accept(Instance *m)
 {
@@ -50,83 +48,34 @@ static bool has_slopes(const State *now)
     return any;
 }
 
-/* Evaluate at the end of a step, to which inputs with a derivative move; a refusal changes nothing. */
-static Status evaluate_moved(Instance *m, double size)
+/* To the end of a step: inputs with a derivative move, along a path from where they are where there is a memory;
+ * states move over it. */
+static Status move(Instance *m, double size, double end, bool sloping)
 {
     State *now = &m->now;
-    double before[N_INPUTS], *inputs = now->values + FIRST_INPUT;
-    for (size_t i = 0; i < N_INPUTS; i++) {
-        before[i] = inputs[i];
-        inputs[i] += now->slopes[i] * size;
-    }
-    m->dirty = true;
-    if (instance_evaluate(m) != OK) {
-        memcpy(inputs, before, sizeof before);
+    if ((MOVES || (N_MEMORY && sloping)) && instance_accept(m) != OK)
         return ERROR;
+    if (MOVES) {
+        if (instance_advance(m, size) != OK)
+            return ERROR;
+        now->values[0] = end;
     }
-    memset(now->slopes, 0, sizeof now->slopes);
+    for (size_t i = 0; i < N_INPUTS && sloping; i++)
+        now->values[FIRST_INPUT + i] += now->slopes[i] * size;
+    m->dirty |= MOVES || sloping;
+    if (instance_evaluate(m) != OK)
+        return ERROR;
+    if (sloping)
+        memset(now->slopes, 0, sizeof now->slopes);
+    now->values[0] = end;
     return OK;
 }
 
 static Status refuse_step(const Instance *m, const char *function, const char *what, double time, double size,
                           const char *expected, double limit)
 {
-    Text text;
-    text_clear(&text);
-    text_add(&text, what);
-    text_add(&text, " at ");
-    text_number(&text, time, 16);
-    text_add(&text, " s with step ");
-    text_number(&text, size, 16);
-    text_add(&text, " s; expected ");
-    text_add(&text, expected);
-    text_number(&text, limit, 16);
-    text_add(&text, " s");
-    return instance_refuse(m, function, text.line);
-}
-
-/* A step over which states move; a refusal changes nothing. */
-static Status step_moving(Instance *m, double size, double end)
-{
-    State *now = &m->now;
-    m->kept = *now;
-    if (instance_accept(m) != OK)
-        return ERROR;
-    if (instance_advance(m, size) != OK) {
-        *now = m->kept;
-        m->dirty = true;
-        return ERROR;
-    }
-    now->values[0] = end;
-    m->dirty = true;
-    const bool sloping = has_slopes(now);
-    if ((sloping ? evaluate_moved(m, size) : instance_evaluate(m)) != OK) {
-        *now = m->kept;
-        m->dirty = true;
-        return ERROR;
-    }
-    return OK;
-}
-
-/* A step of a joint with memory whose inputs move: from where they are to where their derivatives lead; a
- * refusal changes nothing. */
-static Status step_along(Instance *m, double size)
-{
-    m->kept = m->now;
-    if (instance_accept(m) == OK && evaluate_moved(m, size) == OK)
-        return OK;
-    m->now = m->kept;
-    m->dirty = true;
-    return ERROR;
-}
-
-static Status step_resting(Instance *m, double size, double end)
-{
-    const bool sloping = has_slopes(&m->now);
-    if ((!sloping ? instance_evaluate(m) : N_MEMORY ? step_along(m, size) : evaluate_moved(m, size)) != OK)
-        return ERROR;
-    m->now.values[0] = end;
-    return OK;
+    return instance_refuse(m, function, "%s at %.16g s with step %.16g s; expected %s%.16g s", what, time, size,
+                           expected, limit);
 }
 
 Status instance_step(Instance *m, const char *function, double time, double size)
@@ -145,8 +94,16 @@ Status instance_step(Instance *m, const char *function, double time, double size
     if (end > now->stop + slack)
         return refuse_step(m, function, "the step ends after the stop time", time, size, "an end until ",
                            now->stop);
-    if ((MOVES ? step_moving(m, size, end) : step_resting(m, size, end)) != OK)
+    const bool sloping = has_slopes(now), changes = MOVES || sloping;
+    if (changes)
+        m->kept = *now;
+    if (move(m, size, end, sloping) != OK) {
+        if (changes) {
+            *now = m->kept; /* a refusal changes nothing */
+            m->dirty = true;
+        }
         return ERROR;
+    }
     memory_accept(m);
     return now->last_step = OK;
 }

@@ -109,11 +109,10 @@ bool approach_tabulate(Approach *approach, Curve *curve, const Spots *spots, con
         return false;
     if (!(last > first)) {
         spots_table(spots, c, first, y);
-        text_add(why, "the law has no stiffness below ");
-        text_number(why, y[0] / spots->area, 3);
-        text_add(why, " Pa, above the hardness ");
-        text_number(why, spots->hardness, 3);
-        text_add(why, " Pa: the surface (D, G) leaves only plastic spots");
+        text_print(why,
+                   "the law has no stiffness below %.3g Pa, above the hardness %.3g Pa: the surface (D, G) "
+                   "leaves only plastic spots",
+                   y[0] / spots->area, spots->hardness);
         return false;
     }
     approach->first = first;
