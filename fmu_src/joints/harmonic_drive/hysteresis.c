@@ -1,5 +1,5 @@
 /* Repeats `Hysteresis` of the package; what a slider is follows from the law and is generated. */
-#include "hysteresis.h"
+#include "harmonic_drive.h"
 
 #include <math.h>
 
