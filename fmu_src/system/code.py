@@ -9,7 +9,7 @@ from ..native.data import block, split
 from ..native.elementary import tables
 from ..native.generate import RUNTIME, code, native_part, runtime
 from ..native.variables_c import variables_c
-from .assembly import Assembly, Component
+from .assembly import SystemComponent, SystemModel
 
 _COMMON = runtime(("elementary",))
 _LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
@@ -22,7 +22,7 @@ _WARNINGS = 32
 """Bits of what a host was warned of."""
 
 
-def sources(assembly: Assembly) -> dict[str, str]:
+def sources(assembly: SystemModel) -> dict[str, str]:
     """{file name: text} of all C but the data."""
     model = assembly.model()
     parts: dict[str, dict[str, str]] = {}  # by prefix
@@ -43,7 +43,7 @@ def sources(assembly: Assembly) -> dict[str, str]:
     return dict(sorted(files.items()))
 
 
-def _part(part: Component) -> dict[str, str]:
+def _part(part: SystemComponent) -> dict[str, str]:
     """The C of a component without the layers of FMI, which the system has."""
     given = split(part.model, part.parameters)
     count = 1 + len(part.model.inputs) + len(part.model.outputs) + len(given.exposed)
@@ -70,7 +70,7 @@ def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     return found
 
 
-def _header(assembly: Assembly) -> str:
+def _header(assembly: SystemModel) -> str:
     memory = sum(native_part(p.model).memory.size for p in assembly.components)
     events = sum(_events(p) for p in assembly.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in assembly.components)
@@ -89,11 +89,11 @@ def _header(assembly: Assembly) -> str:
     return f"#ifndef JOINTFMU_MODEL_H\n#define JOINTFMU_MODEL_H\n\n{macros}\nenum {{ {listed} }};\n\n#endif\n"
 
 
-def _events(part: Component) -> int:
+def _events(part: SystemComponent) -> int:
     return len(part.model.events(part.parameters.values)) if part.model.events else 0
 
 
-def _components(assembly: Assembly, prefixes: Mapping[str, str]) -> str:
+def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
     """components.c."""
     first = 1 + len(assembly.inputs)
     reference = {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(assembly.inputs, start=1)}

@@ -15,13 +15,13 @@ from ..native.data import Data, block
 from ..native.description import build_description, fmi2_xml, fmi3_xml
 from ..native.licence import licence
 from ..native.page import plain_page
-from .assembly import Assembly
+from .assembly import SystemModel
 from .code import sources
 from .proof import proof
 
 
 def build_system(
-    assembly: Assembly,
+    assembly: SystemModel,
     out: Path,
     versions: Sequence[str] = ("2", "3"),
     platforms: Sequence[str] = tuple(TARGETS),

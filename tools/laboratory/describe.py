@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from jointfmu_fmu_src.joint_parts.page import RampPanel
+from jointfmu_fmu_src.joint_parts import RampPanel
 from jointfmu_fmu_src.native.page import panels
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
