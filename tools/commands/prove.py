@@ -9,9 +9,10 @@ from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
-from jointfmu.proof import listing, report
-from jointfmu.proof.importers import IMPORTERS
-from jointfmu.proof.run import Expected, prove
+
+from ..proof import listing, report
+from ..proof.importers import IMPORTERS
+from ..proof.run import Expected, prove
 
 
 def add(commands: Commands) -> None:

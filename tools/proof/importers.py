@@ -4,13 +4,12 @@ In co-simulation a step holds the inputs of its begin; outputs are read at its e
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from ..fmi.host import description, opened
-from . import exchange
-from .manifest import CO_SIMULATION, MODEL_EXCHANGE
-from .task import Execute, Rows, Task, reader
+from jointfmu.fmi.host import description, opened
+from jointfmu.proof import exchange
+from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
+from jointfmu.proof.task import Execute, Rows, Task, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
@@ -131,11 +130,4 @@ VERSIONS = {"fmpy": "23", "ecos": "23", "libcosim": "2"}
 
 def interfaces(importer: str) -> list[str]:
     """Interfaces in which an importer runs FMUs here: fmpy has its solver not for every platform."""
-    found = list(IMPORTERS[importer])
-    if MODEL_EXCHANGE in found:
-        from fmpy import __file__ as package
-        from fmpy import platform_tuple
-
-        if not (Path(package).parent / "sundials" / platform_tuple).is_dir():
-            found.remove(MODEL_EXCHANGE)
-    return found
+    return [name for name in IMPORTERS[importer] if name != MODEL_EXCHANGE or exchange.available()]

@@ -10,10 +10,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..fmi.host import unpacked
-from ..progress import track
+from jointfmu.fmi.host import unpacked
+from jointfmu.progress import track
+from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
+
 from .importers import PACKAGES, VERSIONS, interfaces
-from .manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
 from .outcome import Proof
 from .plan import ExperimentPlan, task
 from .values import has_start, start

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .manifest import MODEL_EXCHANGE, Experiment
+from jointfmu.proof.manifest import MODEL_EXCHANGE, Experiment
+from jointfmu.proof.task import FLOOR, SOLVER
+
 from .outcome import Outcome, WorstPoint
-from .task import FLOOR
 from .values import course, kind, setting
 
 if TYPE_CHECKING:
@@ -20,9 +21,6 @@ Array = NDArray[np.float64]
 
 TOLERANCE = 1e-3
 """Where an experiment states no tolerance [1]."""
-SOLVER = 1e-3
-"""Relative tolerance of a solver over that of the experiment [1]: its errors add up along the way, and
-what was large may be small after an event."""
 MEETING = 1e-6
 """Part of a step [1] below which two times are one."""
 STEPS, MOST_STEPS = 500, 10_000_000

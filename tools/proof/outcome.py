@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .manifest import Experiment
+from jointfmu.proof.manifest import Experiment
 
 
 @dataclass(frozen=True, slots=True)

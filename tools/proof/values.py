@@ -5,16 +5,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .manifest import Setting
-from .series import TimeSeries
+from jointfmu.proof.manifest import Setting
+from jointfmu.proof.series import TimeSeries
+from jointfmu.proof.task import REAL
 
 if TYPE_CHECKING:
     from fmpy.model_description import ScalarVariable
 
 Array = NDArray[np.float64]
 
-REAL = ("Real", "Float64")
-"""Types of real numbers."""
 KINDS = {
     **dict.fromkeys(REAL, "real"),
     "Boolean": "boolean",

@@ -9,12 +9,13 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..files.writing import made_folder, write_bytes
-from ..fmi import host
-from .manifest import CO_SIMULATION, FOLDER, Experiment
+from jointfmu.files.writing import made_folder, write_bytes
+from jointfmu.fmi import host
+from jointfmu.proof.manifest import CO_SIMULATION, FOLDER, Experiment
+from jointfmu.proof.series import TimeSeries, text
+
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
-from .series import TimeSeries, text
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription

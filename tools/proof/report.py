@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from .manifest import PURPOSES
+from jointfmu.proof.manifest import PURPOSES
+
 from .outcome import Outcome, Proof, WorstPoint
 
 _NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
