@@ -108,8 +108,8 @@ def trajectories(name: str) -> dict[str, np.ndarray]:
 def pass_through(name: str) -> dict[str, str]:
     """C sources of an FMU that passes its inputs on."""
     inputs, outputs = PASS_THROUGH[name]
-    shared = (*generate.COMMON, "joint", "variables", *NATIVE)
-    files = {p.name: p.read_text(encoding="utf-8") for p in generate.RUNTIME.iterdir() if p.stem in shared}
+    paths = [p for p in generate.runtime() if p.parent.name != "fmi" or p.stem in NATIVE]
+    files = {p.name: p.read_text(encoding="utf-8") for p in paths}
     rows = [
         "time",
         *(f"u{i}" for i in range(inputs)),

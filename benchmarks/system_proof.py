@@ -19,6 +19,7 @@ import fmpy
 import numpy as np
 from jointfmu_fmu_src.system.fmu import build_system
 from jointfmu_tools.interface import drive, load
+from jointfmu_tools.proof.run import prove
 from jointfmu_tools.robots import axes_system, elastic
 from jointfmu_tools.robots.transmission import transmission
 from jointfmu_tools.systems.assembly import assembly
@@ -27,7 +28,6 @@ from scipy.interpolate import CubicSpline
 
 from jointfmu.parameters import dump
 from jointfmu.proof.manifest import Related
-from jointfmu.proof.run import prove
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")

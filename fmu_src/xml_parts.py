@@ -1,7 +1,7 @@
 """What the model descriptions of all flavours say alike: variables, units, dependencies."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -105,7 +105,7 @@ def unit_definitions(variables: Sequence[Listed]) -> Element:
     return definitions
 
 
-def unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
+def _unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
     """All outputs with their dependencies; `variability` is that of the parameters."""
     outputs = [v.name for v in model.outputs]
     names = [*(v.name for v in model.inputs), *outputs, *model.parameter_fields()]
@@ -124,26 +124,20 @@ def unknowns(model: Model, variability: str) -> list[ModelStructureUnknown]:
     return rows
 
 
-def dependencies(knowns: Mapping[int, str]) -> dict[str, str]:
-    """Attributes of an unknown, the same in FMI 2.0 and 3.0."""
-    return {"dependencies": " ".join(map(str, knowns)), "dependenciesKind": " ".join(knowns.values())}
-
-
-def fmi2_structure(model: Model, variability: str) -> Element:
-    """The element ModelStructure of FMI 2.0; a variable's index is its value reference."""
-    structure = Element("ModelStructure")
-    entries = unknowns(model, variability)
-    groups = (
-        ("Outputs", [(u, u.knowns) for u in entries]),
-        ("Derivatives", [(u, u.knowns) for u in entries if u.rate]),
-        ("InitialUnknowns", [(u, u.initial) for u in entries if not u.state]),
-    )
-    for tag, rows in groups:
-        if rows:
-            group = SubElement(structure, tag)
-            for unknown, knowns in rows:
-                SubElement(group, "Unknown", {"index": str(unknown.reference)} | dependencies(knowns))
-    return structure
+def model_structure(model: Model, variability: str, version: str = "2") -> Element:
+    """The element ModelStructure of a version of FMI; in 2.0 a variable's index is its value reference."""
+    root, entries = Element("ModelStructure"), _unknowns(model, variability)
+    for fmi2, fmi3, rows in (
+        ("Outputs", "Output", [(u.reference, u.knowns) for u in entries]),
+        ("Derivatives", "ContinuousStateDerivative", [(u.reference, u.knowns) for u in entries if u.rate]),
+        ("InitialUnknowns", "InitialUnknown", [(u.reference, u.initial) for u in entries if not u.state]),
+    ):
+        group = SubElement(root, fmi2) if rows and version == "2" else root
+        tag, key = ("Unknown", "index") if version == "2" else (fmi3, "valueReference")
+        for reference, knowns in rows:
+            own = {"dependencies": " ".join(map(str, knowns)), "dependenciesKind": " ".join(knowns.values())}
+            SubElement(group, tag, {key: str(reference)} | own)
+    return root
 
 
 def serialized(root: Element) -> bytes:

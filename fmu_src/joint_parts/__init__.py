@@ -7,11 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from . import chart
 from .data import DataPart
-from .page import RampPanel
 from .terminals import Terminal
 
 if TYPE_CHECKING:
@@ -19,6 +18,13 @@ if TYPE_CHECKING:
 
 Drawing = Callable[..., Sequence[chart.Panel]]
 """(spring, end of the ramp) -> panels side by side."""
+
+
+class RampPanel(NamedTuple):
+    """One chart of the page's ramp: quantities of one unit over an input or output."""
+
+    over: str
+    quantities: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

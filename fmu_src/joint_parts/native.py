@@ -21,8 +21,6 @@ TABLES = (*CURVE, "spots")
 """The same of a joint that inverts its interface law."""
 APPROACH = (*TABLES, "approach")
 """The same with the curve of pressure over approach."""
-ENERGY = (*APPROACH, "energy")
-"""The same with the energy of the joint's curve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +86,7 @@ class NativePart:
     """How a joint becomes C.
 
     functions   : adds the functions that its C calls to a graph
-    shared      : files of `runtime/` that it uses, beside those of every FMU
+    shared      : files of `runtime/law/` that it uses, beside those of every FMU
     definitions : its constants
     memory      : what it remembers, with room for the most that parameters can ask for; `AT_NAME` in C
     """

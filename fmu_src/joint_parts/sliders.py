@@ -1,4 +1,4 @@
-"""The rule of one slider as functions for C, which `runtime/sliders.c` calls in its loops."""
+"""The rule of one slider as functions for C, which `law/sliders.c` calls in its loops."""
 
 from jointfmu.mechanics.jenkins import direction, reaches, slide, slide_in_plane, trial
 from jointfmu.quantity import where

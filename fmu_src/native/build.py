@@ -59,32 +59,44 @@ def _members(model: Model, parameters: ParameterFile, version: str, variability:
     given = split(model, parameters)
     part = part_of(model, parameters, given)
     data, before = data_of(model, parameters, given, part.sources), placeholder(model, given)
-    both = part.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
-    units = exported(sorted(both), version)
-    own = {path: text for path, text in both.items() if path in units or path.endswith(".h")}
+    files = part.sources | {"data.c": data.source(f" from the parameters {parameters.name!r}")}
     built = {
         platform: finished(library, before, data, model.title)
         for platform, library in part.libraries[version].items()
     }
     icons = terminals_and_icons(model)
-    if version == "2":
-        top = {
-            "modelDescription.xml": fmi2_xml(model, parameters, data.token, units, variability),
-            "model.png": icons["icon.png"],
-        }
-    else:
-        top = {
-            "modelDescription.xml": fmi3_xml(model, parameters, data.token, variability),
-            "sources/buildDescription.xml": build_description(model, units),
-        }
     return (
-        top
-        | binaries(model.title, built, version)
-        | _below("sources", {path: text.encode() for path, text in own.items()})
+        core(model, parameters, version, files, data.token, built, variability)
+        | ({"model.png": icons["icon.png"]} if version == "2" else {})
         | _below("documentation", documentation(model, parameters))
         | _below("terminalsAndIcons", icons)
         | proof(model, parameters)
     )
+
+
+def core(
+    model: Model,
+    parameters: ParameterFile,
+    version: str,
+    files: Mapping[str, str],
+    token: str,
+    built: Mapping[str, bytes],
+    variability: str = VARIABILITIES[0],
+) -> dict[str, bytes]:
+    """{path: content} of what every native FMU has: description, sources, binaries.
+
+    files : {name: text} of all C
+    built : {platform of FMI 3.0: library}
+    """
+    units = exported(sorted(files), version)
+    own = {path: text.encode() for path, text in files.items() if path in units or path.endswith(".h")}
+    members = binaries(model.title, built, version) | _below("sources", own)
+    if version == "2":
+        return members | {"modelDescription.xml": fmi2_xml(model, parameters, token, units, variability)}
+    return members | {
+        "modelDescription.xml": fmi3_xml(model, parameters, token, variability),
+        "sources/buildDescription.xml": build_description(model, units),
+    }
 
 
 _FMI2 = {"x86_64-windows": "win64", "x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux"}

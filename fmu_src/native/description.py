@@ -12,18 +12,7 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity.units import CELSIUS, UNITS
 
-from ..xml_parts import (
-    Listed,
-    dependencies,
-    fmi2_structure,
-    listed,
-    serialized,
-    stop_time,
-    text,
-    unit_definitions,
-    units,
-    unknowns,
-)
+from ..xml_parts import Listed, listed, model_structure, serialized, stop_time, text, unit_definitions, units
 from .licence import copyright_line
 
 LOG_CATEGORIES = {
@@ -99,7 +88,7 @@ def fmi2_xml(
     for reference, v in enumerate(variables, start=1):
         node = SubElement(nodes, "ScalarVariable", _heading(v, reference, variability))
         SubElement(node, "Boolean" if v.boolean else "Real", _value(v))
-    root.append(fmi2_structure(model, variability))
+    root.append(model_structure(model, variability))
     return serialized(root)
 
 
@@ -121,15 +110,7 @@ def fmi3_xml(model: Model, parameters: ParameterFile, token: str, variability: s
         SubElement(
             nodes, "Boolean" if v.boolean else "Float64", _heading(v, reference, variability) | _value(v)
         )
-    structure = SubElement(root, "ModelStructure")
-    outputs = unknowns(model, variability)
-    for tag, rows in (
-        ("Output", [(u, u.knowns) for u in outputs]),
-        ("ContinuousStateDerivative", [(u, u.knowns) for u in outputs if u.rate]),
-        ("InitialUnknown", [(u, u.initial) for u in outputs if not u.state]),
-    ):
-        for unknown, knowns in rows:
-            SubElement(structure, tag, {"valueReference": str(unknown.reference)} | dependencies(knowns))
+    root.append(model_structure(model, variability, "3"))
     return serialized(root)
 
 

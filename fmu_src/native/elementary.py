@@ -1,4 +1,4 @@
-"""Tables of `runtime/elementary.c`, in decimal arithmetic of more digits than a double holds."""
+"""Tables of `law/elementary.c`, in decimal arithmetic of more digits than a double holds."""
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal, localcontext

@@ -1,6 +1,6 @@
 """CasADi expressions as plain C: one static function of (x, c) -> y per function.
 
-What the laws take of the elementary functions gives the same bits everywhere, by `runtime/elementary.c`.
+What the laws take of the elementary functions gives the same bits everywhere, by `law/elementary.c`.
 """
 
 import re
@@ -75,7 +75,7 @@ static inline double root_of_squares(double a, double b)
     return sqrt(x * x + y * y) / scale;
 }
 """
-"""What the functions call besides libm and `runtime/elementary.c`."""
+"""What the functions call besides libm and `law/elementary.c`."""
 
 
 def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], derivative: bool = False) -> str:

@@ -1,6 +1,6 @@
 """All C sources of an FMU: the hand-written runtime and what is generated from the one list and the laws."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from jointfmu import __version__
@@ -19,9 +19,12 @@ from .law_c import law_c
 from .variables_c import variables_c
 
 RUNTIME = Path(__file__).parent / "runtime"
-COMMON = ("text", "instance", "evaluate", "values", "continuous", "step", "derivative", "memory", "snapshot")
-
 _GENERATED = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
+
+
+def runtime(law: Sequence[str] = ()) -> list[Path]:
+    """The hand-written C of every FMU, and the files of `runtime/law/` with these stems."""
+    return sorted(p for p in RUNTIME.rglob("*.[ch]") if p.parent.name != "law" or p.stem in law)
 
 
 def sources(name: str, parameters: ParameterFile) -> dict[str, str]:
@@ -74,8 +77,7 @@ def native_part(model: Model) -> NativePart:
 
 def _handwritten(model: Model, native: NativePart) -> dict[str, str]:
     """The C that is not generated: that of every FMU, what the joint shares, its own."""
-    stems = (*COMMON, *native.shared, "joint", "variables", "elementary", "fmi2", "fmi3")
-    paths = [path for path in RUNTIME.iterdir() if path.stem in stems]
+    paths = runtime((*native.shared, "elementary"))
     own = [path for path in own_folder(model).iterdir() if path.suffix in (".c", ".h")]
     header = [path.name for path in own if path.suffix == ".h"]
     files = {"kind.h": "".join(f'#include "{name}"\n' for name in header)} if header else {}

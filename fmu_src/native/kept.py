@@ -6,10 +6,12 @@ Wheels carry parts beside this file; what is compiled here is kept in the user's
 
 import io
 import lzma
+import signal
 import tarfile
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
@@ -27,7 +29,6 @@ from ..joint_parts.data import Split
 from .cache import parts
 from .compiler import exported, libraries
 from .data import PLACEHOLDER, placeholder
-from .interrupt import interrupt_after
 
 SHIPPED = Path(__file__).with_name("parts")
 """Where wheels have theirs."""
@@ -81,12 +82,28 @@ def keeping(what: str, model: Model, make: Callable[[], bytes]) -> bytes:
     return made
 
 
+@contextmanager
+def _interrupt_after() -> Iterator[None]:
+    """Ctrl-C during the body, a second or two, raises KeyboardInterrupt at its end: CasADi swallows it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    heard: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: heard.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if heard:
+        raise KeyboardInterrupt
+
+
 def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
     """The same, compiled now."""
     step(f"compile {model.name}")
     from .generate import code
 
-    with interrupt_after():
+    with _interrupt_after():
         sources = code(model, parameters, given)
     every = sources | {"data.c": placeholder(model, given).source()}
     built = {v: libraries(model.name, every, exported(every, v), stem=PLACEHOLDER) for v in VERSIONS}

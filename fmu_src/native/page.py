@@ -16,8 +16,7 @@ from jointfmu.quantity import flat_fields, problem
 from jointfmu.quantity.units import UNITS, display_unit
 
 from ..folders import asset, parts_of
-from ..joint_parts import chart
-from ..joint_parts.page import RampPanel
+from ..joint_parts import RampPanel, chart
 from ..joint_parts.terminals import Terminal
 from ..templates import law_terms, template
 from ..xml_parts import listed

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity import Number, check, quantity, smooth_step, smooth_step_slopes
+from jointfmu.quantity import Checked, Number, quantity, smooth_step, smooth_step_slopes
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2]."""
@@ -20,7 +20,7 @@ def _lag(flange: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RotationalInertia:
+class RotationalInertia(Checked):
     """An inertia under two torques, and under its weight."""
 
     inertia: ClassVar[str] = "J"
@@ -30,9 +30,6 @@ class RotationalInertia:
     lag_a: float = _lag("a")
     lag_b: float = _lag("b")
 
-    def __post_init__(self) -> None:
-        check(self)
-
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Angle [rad] from hanging down, speed [rad/s], acceleration [rad/s2]."""
         weight = self.m * GRAVITY * self.l * np.sin(v["phi"])
@@ -40,7 +37,7 @@ class RotationalInertia:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TranslationalMass:
+class TranslationalMass(Checked):
     """A mass under two forces."""
 
     inertia: ClassVar[str] = "m"
@@ -48,16 +45,13 @@ class TranslationalMass:
     lag_a: float = _lag("a")
     lag_b: float = _lag("b")
 
-    def __post_init__(self) -> None:
-        check(self)
-
     def outputs(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Position [m], speed [m/s], acceleration [m/s2]."""
         return {"s": v["s"], "v": v["v"], "a": (v["f_a"] + v["f_b"]) / self.m}
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Load:
+class _Load(Checked):
     """A ramp that stays and a pulse, over time; subclasses give both heights a unit."""
 
     ramp_start: float = quantity("s", "begin of the ramp")
@@ -65,9 +59,6 @@ class _Load:
     pulse_start: float = quantity("s", "begin of the pulse")
     pulse_rise: float = quantity("s", "rise time of the pulse, and of its fall", gt=0.0)
     pulse_hold: float = quantity("s", "time at the pulse's height", ge=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def corners(self) -> tuple[Number, ...]:
         """Times [s] at which an edge of ramp or pulse begins or ends."""
@@ -107,15 +98,12 @@ class ForceProfile(_Load):
 
 
 @dataclass(frozen=True, kw_only=True)
-class AngleProfile:
+class AngleProfile(Checked):
     """A turn from rest to rest, as a motor makes it that follows its command exactly."""
 
     start: float = quantity("s", "begin of the turn")
     duration: float = quantity("s", "from its begin to its end", gt=0.0)
     height: float = quantity("rad", "angle of the turn")
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def corners(self) -> tuple[Number, ...]:
         """Times [s] at which the turn begins and ends."""
@@ -139,14 +127,11 @@ _NAMES = [f"p{k + 1}" for k in range(POINTS)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Bernstein:
+class _Bernstein(Checked):
     """A torque over time as a Bernstein polynomial, held before and after it."""
 
     start: float = quantity("s", "begin of the curve")
     duration: float = quantity("s", "from its begin to its end", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @staticmethod
     def shares(x: Number) -> list[Number]:

@@ -10,9 +10,8 @@ from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
 from jointfmu.proof import manifest
-from jointfmu.proof.plan import SOLVER
 from jointfmu.proof.series import text
-from jointfmu.proof.task import FLOOR
+from jointfmu.proof.task import FLOOR, SOLVER
 from jointfmu.quantity import flatten
 
 from ..ssv import Value, parameter_set

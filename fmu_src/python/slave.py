@@ -11,7 +11,7 @@ from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
 import numpy as np
-from jointfmu_fmu_src.xml_parts import Listed, fmi2_structure, listed, stop_time, text, unit_definitions
+from jointfmu_fmu_src.xml_parts import Listed, listed, model_structure, stop_time, text, unit_definitions
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 from pythonfmu.enums import Fmi2Initial, Fmi2Status
 
@@ -242,5 +242,5 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
                     node[0].set("start", text(item.start))
         structure = root.find("ModelStructure")
         assert structure is not None
-        structure[:] = fmi2_structure(self.model, self.variability)
+        structure[:] = model_structure(self.model, self.variability)
         return root

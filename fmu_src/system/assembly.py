@@ -23,7 +23,7 @@ class Feed(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Component:
+class SystemComponent:
     """A load, joint or body.
 
     model : of a body without LAGS
@@ -49,7 +49,7 @@ class Component:
 
 
 @dataclass(frozen=True, slots=True)
-class Assembly:
+class SystemModel:
     """A system.
 
     components : loads, then joints, then bodies: each takes from those before it, and the states of bodies
@@ -59,23 +59,23 @@ class Assembly:
 
     name: str
     doc: str
-    components: Sequence[Component]
+    components: Sequence[SystemComponent]
     stop: float
     interval: float
     own_interval: float
 
     @property
-    def bodies(self) -> list[Component]:
+    def bodies(self) -> list[SystemComponent]:
         """Components with states."""
         return [part for part in self.components if part.model.states]
 
     @property
-    def inputs(self) -> list[tuple[Component, Variable]]:
+    def inputs(self) -> list[tuple[SystemComponent, Variable]]:
         """Inputs of the system, by component."""
         return [(part, v) for part in self.components for v in part.free]
 
     @property
-    def outputs(self) -> list[tuple[Component, Variable]]:
+    def outputs(self) -> list[tuple[SystemComponent, Variable]]:
         """Outputs: places, speeds, accelerations of all bodies; then those of loads and joints."""
         bodies = self.bodies
         moving = [(part, part.model.outputs[k]) for k in range(3) for part in bodies]
@@ -145,7 +145,7 @@ class Assembly:
         return {name: [*reached] for name, reached in found.items()}
 
 
-def named(part: Component, v: Variable) -> Variable:
+def named(part: SystemComponent, v: Variable) -> Variable:
     """A variable of a component with the component's name before its own."""
     return replace(v, name=f"{part.name}.{v.name}", doc=f"{v.doc} ({part.name})")
 

@@ -7,13 +7,13 @@ from pathlib import Path
 from ..joint_parts.c_text import array, string
 from ..native.data import block, split
 from ..native.elementary import tables
-from ..native.generate import COMMON, RUNTIME, code, native_part
+from ..native.generate import RUNTIME, code, native_part, runtime
 from ..native.variables_c import variables_c
-from .assembly import Assembly, Component
+from .assembly import SystemComponent, SystemModel
 
-_SHARED = ("text", "elementary", "elementary_tables")
-"""Files that components have in common with the system."""
-_LAYERS = (*COMMON, "fmi2", "fmi3", *_SHARED)
+_COMMON = runtime(("elementary",))
+_LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}
+"""Files of which components have none of their own."""
 _FUNCTIONS = ("size", "tabulate", "evaluate", "derivative", "outside", "warning")
 _DEFINITION = re.compile(
     r"^(?!static|typedef|extern|enum|return|else)[A-Za-z_][\w *]*?\b(\w+)(?:\[.*)?(?:\(| = \{)", re.M
@@ -22,7 +22,7 @@ _WARNINGS = 32
 """Bits of what a host was warned of."""
 
 
-def sources(assembly: Assembly) -> dict[str, str]:
+def sources(assembly: SystemModel) -> dict[str, str]:
     """{file name: text} of all C but the data."""
     model = assembly.model()
     parts: dict[str, dict[str, str]] = {}  # by prefix
@@ -34,9 +34,7 @@ def sources(assembly: Assembly) -> dict[str, str]:
         parts.setdefault(prefixes[part.name], own)
     files = {
         path.name: path.read_text(encoding="utf-8")
-        for path in (*RUNTIME.iterdir(), *Path(__file__).parent.iterdir())
-        if path.suffix in (".c", ".h")
-        and (path.parent != RUNTIME or path.stem in (*_LAYERS, "joint", "variables"))
+        for path in (*_COMMON, *Path(__file__).parent.glob("*.[ch]"))
     }
     files |= {"elementary_tables.h": tables(), "variables.c": variables_c(model)}
     files |= {"model.h": _header(assembly), "components.c": _components(assembly, prefixes)}
@@ -45,7 +43,7 @@ def sources(assembly: Assembly) -> dict[str, str]:
     return dict(sorted(files.items()))
 
 
-def _part(part: Component) -> dict[str, str]:
+def _part(part: SystemComponent) -> dict[str, str]:
     """The C of a component without the layers of FMI, which the system has."""
     given = split(part.model, part.parameters)
     count = 1 + len(part.model.inputs) + len(part.model.outputs) + len(given.exposed)
@@ -72,7 +70,7 @@ def _prefixed(prefix: str, files: Mapping[str, str]) -> dict[str, str]:
     return found
 
 
-def _header(assembly: Assembly) -> str:
+def _header(assembly: SystemModel) -> str:
     memory = sum(native_part(p.model).memory.size for p in assembly.components)
     events = sum(_events(p) for p in assembly.components)
     wires = sum(len(p.model.inputs) + len(p.model.outputs) for p in assembly.components)
@@ -91,11 +89,11 @@ def _header(assembly: Assembly) -> str:
     return f"#ifndef JOINTFMU_MODEL_H\n#define JOINTFMU_MODEL_H\n\n{macros}\nenum {{ {listed} }};\n\n#endif\n"
 
 
-def _events(part: Component) -> int:
+def _events(part: SystemComponent) -> int:
     return len(part.model.events(part.parameters.values)) if part.model.events else 0
 
 
-def _components(assembly: Assembly, prefixes: Mapping[str, str]) -> str:
+def _components(assembly: SystemModel, prefixes: Mapping[str, str]) -> str:
     """components.c."""
     first = 1 + len(assembly.inputs)
     reference = {f"{p.name}.{v.name}": k for k, (p, v) in enumerate(assembly.inputs, start=1)}
@@ -138,7 +136,7 @@ def _components(assembly: Assembly, prefixes: Mapping[str, str]) -> str:
 
 
 def _declared(prefix: str) -> list[str]:
-    text = (RUNTIME / "joint.h").read_text(encoding="utf-8")
+    text = (RUNTIME / "instance" / "joint.h").read_text(encoding="utf-8")
     found = []
     for name in _FUNCTIONS:
         match = re.search(rf"^\w+ (joint_{name})\([^;]*;\n", text, re.M)

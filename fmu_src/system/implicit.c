@@ -6,9 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "continuous.h"
 #include "elementary.h"
-#include "memory.h"
+#include "instance.h"
 #include "system.h"
 
 #define TOLERANCE 1e-5 /* of the speeds in a step, of the largest in it; a host may state less, down to: */
@@ -61,8 +60,7 @@ static bool evaluate(Instance *m, const Step *s, int stage, double *after)
         return false;
     for (size_t i = 0; i < N_BODIES; i++)
         if (!(fabs(at[A + i]) < INFINITY)) {
-            text_add(&w->why, variables[A + i].name);
-            text_add(&w->why, " is not finite");
+            text_print(&w->why, "%s is not finite", variables[A + i].name);
             return false;
         }
     return true;
@@ -236,21 +234,15 @@ static Status refuse(const Instance *m, double time, double size)
     const Work *w = &m->joint->work;
     Text text;
     text_clear(&text);
-    text_add(&text, "the motion cannot be followed at ");
-    text_number(&text, time, 10);
-    text_add(&text, " s with steps of ");
-    text_number(&text, size, 3);
-    text_add(&text, " s: ");
-    if (w->why.length) {
+    if (w->why.length)
         text_add(&text, w->why.line);
-    } else {
-        text_add(&text, "Newton's method still changes ");
-        text_add(&text, variables[A + w->worst % N_BODIES].name);
-        text_add(&text, " by ");
-        text_number(&text, w->rest[w->worst], 3);
-    }
-    text_add(&text, "; expected inputs and parameters with which a motion is possible");
-    return instance_refuse(m, "the step", text.line);
+    else
+        text_print(&text, "Newton's method still changes %s by %.3g", variables[A + w->worst % N_BODIES].name,
+                   w->rest[w->worst]);
+    return instance_refuse(m, "the step",
+                           "the motion cannot be followed at %.10g s with steps of %.3g s: %s; expected inputs and "
+                           "parameters with which a motion is possible",
+                           time, size, text.line);
 }
 
 /* What is remembered just before the end of a way: a motion that has turned on it goes on from there in its own
@@ -286,9 +278,7 @@ Status instance_advance(Instance *m, double size)
         const bool cut = last || h < next;
         if (tried == MOST_STEPS) {
             text_clear(&w->why);
-            text_add(&w->why, "more than ");
-            text_number(&w->why, MOST_STEPS, 6);
-            text_add(&w->why, " of them are needed");
+            text_print(&w->why, "more than %g of them are needed", (double)MOST_STEPS);
             return refuse(m, time, h);
         }
         for (size_t i = 0; i < N_BODIES; i++) {

@@ -14,7 +14,6 @@ from jointfmu import __version__
 from jointfmu.fmi.host import unpacked
 from jointfmu.joints.model import Model
 from jointfmu.proof import exchange, manifest
-from jointfmu.proof.importers import interfaces
 from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.proof.series import TimeSeries, text
 from jointfmu.proof.task import Task
@@ -115,7 +114,7 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
 def _exchanged(model: Model, fmu: Path, times: np.ndarray) -> TimeSeries:
     """All outputs at the times, by model exchange; raises whatever prevents it."""
     names, said = [v.name for v in model.outputs], list[str]()
-    if MODEL_EXCHANGE not in interfaces("fmpy"):
+    if not exchange.available():
         raise RuntimeError("fmpy has no solver for model exchange")
     with unpacked(fmu, exchange=True) as (folder, _):
         task = Task(

@@ -20,9 +20,7 @@ size_t joint_size(void)
 /* A reason with the component's name before it. */
 static void name_it(const Component *c, const Text *inner, Text *why)
 {
-    text_add(why, c->name);
-    text_add(why, ": ");
-    text_add(why, inner->line);
+    text_print(why, "%s: %s", c->name, inner->line);
 }
 
 bool joint_tabulate(Joint *joint, const double *parameters, Text *why)

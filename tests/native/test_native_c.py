@@ -21,7 +21,7 @@ import pytest
 from conftest import RELEASED
 from joint_cases import JOINTS
 from jointfmu_fmu_src.native.compiler import TARGETS
-from jointfmu_fmu_src.native.generate import COMMON, RUNTIME, sources, token
+from jointfmu_fmu_src.native.generate import RUNTIME, runtime, sources, token
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from natives import SAID
@@ -47,7 +47,6 @@ FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
 """One with states and one that follows time: the others have the same C but for their equations."""
 ALONE = {"dummy": (2, 3, 4), "passthrough": (2, 2, 1), "slider": (2, 3, 2)}
 """{joint of tests/native: numbers of inputs, outputs, parameters}."""
-RUNTIME_ALONE = (*COMMON, "joint", "variables", "fmi2", "fmi3")
 C_LIBRARY = {
     "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
     "sqrt", "fabs", "fmin", "fmax", "floor", "ceil", "copysign",
@@ -87,8 +86,7 @@ def c_of(name: str) -> Sources:
     if model := (MODELS | PARTNERS).get(name):
         files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
-    own = [p for p in RUNTIME.iterdir() if p.stem in RUNTIME_ALONE and p.suffix in (".c", ".h")]
-    files = {p.name: p.read_text() for p in [*own, *(HOSTS / name).iterdir()]}
+    files = {p.name: p.read_text() for p in [*runtime(), *(HOSTS / name).iterdir()]}
     return Sources(files, *ALONE[name])
 
 
@@ -191,7 +189,7 @@ def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
 def test_files_use_each_other_in_one_direction() -> None:
     """A .c file with its header is one; kind.h only names the joint's header, for the size of a joint."""
     uses: dict[str, set[str]] = {}
-    for path in RUNTIME.glob("*.[ch]"):
+    for path in RUNTIME.rglob("*.[ch]"):
         found = set(re.findall(r'#include "(\w+)\.h"', path.read_text(encoding="utf-8")))
         uses.setdefault(path.stem, set()).update(found - {path.stem, "kind"})
     assert uses["fmi3"]

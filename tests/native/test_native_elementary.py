@@ -32,7 +32,7 @@ def functions(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Callable[..
         lines.append(
             f"{visible} double shown_{name}({given});\ndouble shown_{name}({given}) {{ return {call}; }}"
         )
-    files = {path.name: path.read_text() for path in RUNTIME.glob("elementary.*")}
+    files = {path.name: path.read_text() for path in RUNTIME.rglob("elementary.*")}
     files |= {"elementary_tables.h": tables(), "shown.c": "\n".join(lines) + "\n"}
     path = folder / file_name("Elementary", here)
     path.write_bytes(libraries("Elementary", files, ["elementary.c", "shown.c"], [here])[here])

@@ -54,7 +54,7 @@ def test_c_follows_the_numbers(monkeypatch: pytest.MonkeyPatch, name: str) -> No
 def test_runtime_types_none_of_them_again() -> None:
     names = {constant for pairs in EVERY.values() for _, constant in pairs} | {"CURVE_NODES"}
     folders = [RUNTIME, *(parts.folder for parts in joints.PARTS.values())]
-    for path in (path for folder in folders for path in folder.glob("*.[ch]")):
+    for path in (path for folder in folders for path in folder.rglob("*.[ch]")):
         typed = re.findall(r"\b(\w+) = [-0-9]|#define (\w+)", path.read_text(encoding="utf-8"))
         assert names.isdisjoint(name for pair in typed for name in pair), path.name
 

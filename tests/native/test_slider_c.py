@@ -55,8 +55,8 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
         function(f.name, f.doc, ca.vertcat(*f.x), none, f.y, f.name.endswith("_seed")) for f in g.functions
     ]
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
-    files = {name: (RUNTIME / name).read_text(encoding="utf-8") for name in ("sliders.c", "sliders.h")}
-    files |= {name: (RUNTIME / name).read_text(encoding="utf-8") for name in ("elementary.c", "elementary.h")}
+    names = ("sliders.c", "sliders.h", "elementary.c", "elementary.h")
+    files = {name: (RUNTIME / "law" / name).read_text(encoding="utf-8") for name in names}
     files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{HELPERS}\n{law}'}
     files |= {"elementary_tables.h": elementary.tables()}
     visible = "#pragma GCC visibility push(default)\n"

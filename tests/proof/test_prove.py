@@ -20,12 +20,12 @@ from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.files import TOLERANCE
 from jointfmu_tools import cli
+from jointfmu_tools.proof.importers import VERSIONS as KNOWN
 from natives import VERSIONS
 from proofs import BOTH, MEASURED, copy, needs, other_manifest, proved, replaced
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default
-from jointfmu.proof.importers import VERSIONS as KNOWN
 from jointfmu.proof.manifest import FOLDER
 
 pytestmark = pytest.mark.slow
@@ -266,7 +266,7 @@ def test_what_cannot_be_proved_is_refused_in_one_line(
     if find_spec("libcosimpy"):
         line = refused_line(capsys, "prove", native / "fmi3" / f"{NAME}.fmu", "--in", "libcosim")
         assert "is of FMI 3.0, libcosim takes 2.0" in line
-    monkeypatch.setattr("jointfmu.proof.run.find_spec", lambda name: None)
+    monkeypatch.setattr("jointfmu_tools.proof.run.find_spec", lambda name: None)
     line = refused_line(capsys, "prove", native / "fmi2" / f"{NAME}.fmu", "--in", "ecos")
     assert "the package ecospy is missing" in line
 

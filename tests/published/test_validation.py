@@ -13,10 +13,10 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.published import published
 from jointfmu.parameters import default
 from jointfmu.published import calibration
+from jointfmu.published import validation as comparison
 from jointfmu.published.calibration import calibrate
 from jointfmu.published.reference import CALIBRATION_TOLERANCE, GUESSED, ROLES, Guess, Point, guesses, points
 from jointfmu.published.validation import compare, counts, missed, summary, table, validate
-from jointfmu.published.validation import rows as comparison
 from jointfmu.quantity import flat_fields, flatten
 
 REPRODUCED = 1e-6

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.system.fmu import build_system
+from jointfmu_tools.proof.run import prove
 from jointfmu_tools.systems.assembly import assembly
 from jointfmu_tools.systems.system import read, system, systems
 from proofs import copy, replaced
@@ -18,7 +19,6 @@ from scipy.interpolate import CubicSpline
 import jointfmu
 from jointfmu.fmi.host import opened, unpacked
 from jointfmu.proof.manifest import FOLDER, Related
-from jointfmu.proof.run import prove
 
 pytestmark = pytest.mark.slow  # builds FMUs
 

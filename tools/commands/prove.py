@@ -10,13 +10,13 @@ from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
-from jointfmu.proof import listing, report
-from jointfmu.proof.importers import IMPORTERS
-from jointfmu.proof.run import Expected, prove
 from jointfmu.published import validation
 
 from ..fem import installed
 from ..fem.validation import natural_frequencies
+from ..proof import listing, report
+from ..proof.importers import IMPORTERS
+from ..proof.run import Expected, prove
 
 
 def add(commands: Commands) -> None:

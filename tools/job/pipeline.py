@@ -11,12 +11,12 @@ from jointfmu.files.writing import write_text
 from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 from jointfmu.progress import processes, track
-from jointfmu.proof.outcome import Proof
-from jointfmu.proof.run import prove
 from jointfmu.published import validation
 from jointfmu.quantity import Array
 
 from ..laboratory.assemble import write_laboratory
+from ..proof.outcome import Proof
+from ..proof.run import prove
 from ..report.figure import Figure
 from ..report.page import drawn, write_report
 from ..systems import cosimulation, decays

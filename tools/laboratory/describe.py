@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from jointfmu_fmu_src.joint_parts.page import RampPanel
+from jointfmu_fmu_src.joint_parts import RampPanel
 from jointfmu_fmu_src.native.compiler import webassembly
 from jointfmu_fmu_src.native.kept import keeping
 from jointfmu_fmu_src.native.page import panels

@@ -1,7 +1,6 @@
 /* What the laboratory's page calls, over the functions that stand behind FMI 2 and 3 alike. Variables have the
  * value references of the FMU; results other than numbers are 0 where all went well. */
-#include "derivative.h"
-#include "step.h"
+#include "instance.h"
 #include "token.h" /* generated: that of the FMU */
 
 #define SHOWN __attribute__((visibility("default")))
@@ -41,10 +40,8 @@ SHOWN int lab_set(Instance *m, uint32_t ref, double value)
 {
     if (ref >= N_VALUES || !variables[ref].boolean)
         return instance_set(m, "lab_set", &ref, 1, &value);
-    if (!instance_can_set_booleans(m, "lab_set", &ref, 1, &value))
-        return ERROR;
-    instance_put(m, ref, value);
-    return OK;
+    const bool boolean = value != 0.0;
+    return instance_set_booleans(m, "lab_set", &ref, 1, &boolean);
 }
 
 /* Check parameters and inputs; from here on steps are allowed. */

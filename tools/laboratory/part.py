@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from jointfmu_fmu_src.joint_parts.page import RampPanel
+from jointfmu_fmu_src.joint_parts import RampPanel
 
 
 class Shown(NamedTuple):

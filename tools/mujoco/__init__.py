@@ -56,7 +56,7 @@ def _sources(fmu: Path) -> tuple[str, dict[str, str]]:
             f"{fmu}: has the inputs {', '.join(names['input']) or 'none'}; expected a joint with "
             f"{', '.join(INPUTS)} and the outputs {', '.join(TORQUES)}"
         )
-    if "memory.c" not in sources:
+    if "instance.h" not in sources:
         raise ValueError(f"{fmu}: has no C sources of jointfmu; expected an FMU of flavour fmi2 or fmi3")
     return description.modelName, sources
 

@@ -9,9 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "memory.h"
-#include "step.h"
-#include "values.h"
+#include "instance.h"
 
 enum { PHI1, W1, PHI2, W2 };
 enum { PATH = N_MEMORY ? 2 * N_MEMORY + N_PATH + 1 : 0 }; /* at most */

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from jointfmu_fmu_src.partners import parameters as partner_parameters
-from jointfmu_fmu_src.system.assembly import LAGS, Assembly, Component, Feed
+from jointfmu_fmu_src.system.assembly import LAGS, Feed, SystemComponent, SystemModel
 
 from .system import System
 from .wiring import ends, model_of, wires
@@ -12,7 +12,7 @@ LEAST_INTERVAL = 1e-3
 """Communication step [s] of the default experiment, where the system's own is shorter: it need not be."""
 
 
-def assembly(system: System) -> Assembly:
+def assembly(system: System) -> SystemModel:
     """Components in the order of their evaluation, with what feeds them.
 
     Raises ValueError as `wiring.ends`, and for a system without a body.
@@ -30,11 +30,11 @@ def assembly(system: System) -> Assembly:
             model = replace(model, hidden=LAGS)
         file = part.file or partner_parameters(part.model).with_values(part.parameters, "user", system.name)
         start = {v.name: file.start(v.name) for v in model.inputs} | part.state
-        parts.append(Component(name, model, file, feeds[name], start))
+        parts.append(SystemComponent(name, model, file, feeds[name], start))
     if not any(part.model.states for part in parts):
         raise ValueError(
             f"{system.name}: no component is a body; allowed in one FMU are systems with one or more"
         )
     parts.sort(key=lambda part: (part.model.states > 0, not part.model.moves))
     interval = max(system.interval, LEAST_INTERVAL)
-    return Assembly(system.name, system.description, parts, system.stop_time, interval, system.interval)
+    return SystemModel(system.name, system.description, parts, system.stop_time, interval, system.interval)

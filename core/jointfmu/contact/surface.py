@@ -4,23 +4,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..quantity import Number, check, quantity
+from ..quantity import Checked, Number, quantity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProfileSurface:
-    """Self-affine surface described by its profile (Zhao 2018, Yu 2022)."""
+class FlankSurface(Checked):
+    """Fractal parameters of one flank or of one direction of texture (Yu 2022)."""
 
     D: float = quantity("1", "fractal dimension of the profile", gt=1.0, lt=2.0)
     G: float = quantity("m", "fractal roughness", gt=0.0)
-    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArealSurface:
+class ProfileSurface(FlankSurface):
+    """Self-affine surface described by its profile (Zhao 2018, Yu 2022)."""
+
+    gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArealSurface(Checked):
     """Self-affine surface described by its area (Hu 2023); D = 1 + D of the profile."""
 
     D: float = quantity("1", "fractal dimension of the surface", gt=2.0, lt=3.0)
@@ -29,52 +32,27 @@ class ArealSurface:
     r_m: float = quantity("m", "base radius of an asperity", gt=0.0)
     s_min: float = quantity("m2", "area of the smallest spot", gt=0.0)
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FlankSurface:
-    """Fractal parameters of one flank or of one direction of texture (Yu 2022)."""
-
-    D: float = quantity("1", "fractal dimension of the profile", gt=1.0, lt=2.0)
-    G: float = quantity("m", "fractal roughness", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Spectrum:
+class Spectrum(Checked):
     """What both flanks share of the Weierstrass-Mandelbrot function."""
 
     gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Elastic:
+class Elastic(Checked):
     """Isotropic linear elasticity of one body."""
 
     E: float = quantity("Pa", "Young's modulus", gt=0.0)
     nu: float = quantity("1", "Poisson ratio", gt=-1.0, le=0.5)
 
-    def __post_init__(self) -> None:
-        check(self)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ElasticPlastic:
+class ElasticPlastic(Elastic):
     """Isotropic elasticity and yield strength of one body."""
 
-    E: float = quantity("Pa", "Young's modulus", gt=0.0)
-    nu: float = quantity("1", "Poisson ratio", gt=-1.0, le=0.5)
     sigma_y: float = quantity("Pa", "yield strength", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 def contact_modulus(side1: Elastic, side2: Elastic) -> Number:

@@ -1,1 +1,1 @@
-"""FMUs that carry their own proof: the experiments of FMI-LS-REF inside an FMU, read and executed."""
+"""The proof that an FMU carries: files of FMI-LS-REF, and model exchange as their reference."""

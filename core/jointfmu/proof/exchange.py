@@ -6,6 +6,7 @@ the FMU announces, where an indicator changes its sign, and where a completed st
 
 import ctypes
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,14 @@ MOST_STEPS = 100_000
 """Of the solver between two communication points."""
 NEAR = 1e-9
 """Part of an interval [1] by which an event may differ from a communication point that it meets."""
+
+
+def available() -> bool:
+    """Whether fmpy has its solver for this platform."""
+    from fmpy import __file__ as package
+    from fmpy import platform_tuple
+
+    return Path(package).parent.joinpath("sundials", platform_tuple).is_dir()
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:

@@ -4,10 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..fmi.host import Instance
-from .values import REAL
 
+REAL = ("Real", "Float64")
+"""Types of real numbers."""
 FLOOR = 1e-6
 """Part of an output's nominal value [1] below which its round-off counts, not its own size."""
+SOLVER = 1e-3
+"""Relative tolerance of a solver over that of the experiment [1]: its errors add up along the way, and
+what was large may be small after an event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +25,7 @@ class Task:
     inputs   : {variable: (n) values}, where one jumps the later
     before   : the same, where one jumps the earlier
     outputs  : variables that are read
-    kinds    : {variable: its kind} of inputs and outputs, see values.KINDS
+    kinds    : {variable: its kind} of inputs and outputs, see `jointfmu_tools.proof.values`
     tolerance : relative, of a solver [1]
     """
 

@@ -124,3 +124,12 @@ def check(obj: Any) -> None:
     )
     if texts := [text for text in problems if text]:
         raise ValueError("; ".join(texts))
+
+
+class Checked:
+    """A parameter set, or a group of one, whose numbers are checked when it is made."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        check(self)

@@ -6,7 +6,6 @@
 #include "approach.h"
 #include "data.h"
 #include "dense.h"
-#include "energy.h"
 #include "friction.h"
 
 /* Arguments of `outputs`. */

@@ -3,7 +3,6 @@
 #define JOINTFMU_FRICTION_H
 
 #include "curve.h"
-#include "energy.h"
 #include "sliders.h"
 
 enum {

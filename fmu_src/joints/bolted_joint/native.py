@@ -8,7 +8,7 @@ from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
-from ...joint_parts.native import ENERGY, Definitions, NativePart
+from ...joint_parts.native import APPROACH, Definitions, NativePart
 from ...joint_parts.sliders import SLIDERS, add_sliders
 
 
@@ -145,4 +145,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return Definitions(counts, numbers)
 
 
-PART = NativePart(_functions, (*ENERGY, *SLIDERS), _definitions, memory.memory_of(PATCHES))
+PART = NativePart(_functions, (*APPROACH, *SLIDERS), _definitions, memory.memory_of(PATCHES))

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from jointfmu.joints.bolted_joint.contact import loop_sums
 
-from ...joint_parts import chart
-from ...joint_parts.page import RampPanel
+from ...joint_parts import RampPanel, chart
 
 PANELS = {"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))}
 

@@ -3,7 +3,6 @@
 #define JOINTFMU_MESH_H
 
 #include "approach.h"
-#include "energy.h"
 
 typedef struct {
     Spots spots;

@@ -7,7 +7,7 @@ from jointfmu.joints.gear_mesh import spring
 from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
-from ...joint_parts.native import ENERGY, Definitions, NativePart
+from ...joint_parts.native import APPROACH, Definitions, NativePart
 
 
 def _functions(g: Graph, model: Model) -> None:
@@ -31,4 +31,4 @@ def _definitions(g: Graph, model: Model) -> Definitions:
     return Definitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS})
 
 
-PART = NativePart(_functions, ENERGY, _definitions)
+PART = NativePart(_functions, APPROACH, _definitions)

@@ -1,5 +1,5 @@
 /* Repeats `Friction` of the package; the limits of the friction are generated. */
-#include "friction.h"
+#include "harmonic_drive.h"
 
 _Static_assert(BRAKES % 4 == 0, "as sliders_line needs them");
 

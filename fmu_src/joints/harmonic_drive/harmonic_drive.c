@@ -48,21 +48,6 @@ static bool midline_of(Joint *joint, Text *why)
 enum { SMOOTHING, MAX_TORQUE, K_FTS0, N_HEAD }; /* of the pair's numbers */
 _Static_assert(CURVE_NODES > DRIVE_STEPS, "one curve at least");
 
-static void no_stiffness(const double *head, double K, Text *why)
-{
-    text_add(why, "K_FTS0 = ");
-    text_number(why, head[K_FTS0], 6);
-    text_add(why, " N.m/rad and the contact pair give K_WTS = ");
-    text_number(why, K, 6);
-    text_add(why, " N.m/rad, allowed is (");
-    text_number(why, SOFTEST, 6);
-    text_add(why, ", ");
-    text_number(why, head[K_FTS0], 6);
-    text_add(why, ") N.m/rad with K_TS at most ");
-    text_number(why, 1.0 / STIFFEST, 6);
-    text_add(why, " times K_FTS0");
-}
-
 static bool windup(Joint *joint, int steps, Text *why)
 {
     double head[N_HEAD], phi = 0.0, K[2];
@@ -75,7 +60,10 @@ static bool windup(Joint *joint, int steps, Text *why)
         stiffness(&torque, joint->c, K);
         if (!(K[0] > SOFTEST && K[0] < (1.0 - STIFFEST) * head[K_FTS0])) {
             stiffness(&head[MAX_TORQUE], joint->c, K);
-            no_stiffness(head, K[0], why);
+            text_print(why,
+                       "K_FTS0 = %g N.m/rad and the contact pair give K_WTS = %g N.m/rad, allowed is (%g, %g) "
+                       "N.m/rad with K_TS at most %g times K_FTS0",
+                       head[K_FTS0], K[0], SOFTEST, head[K_FTS0], 1.0 / STIFFEST);
             return false;
         }
         const Node node = {.x = phi, .y = torque, .s = K[0], .bend = K[0] * K[1]};

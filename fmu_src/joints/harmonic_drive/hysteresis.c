@@ -1,5 +1,5 @@
 /* Repeats `Hysteresis` of the package; what a slider is follows from the law and is generated. */
-#include "hysteresis.h"
+#include "harmonic_drive.h"
 
 #include <math.h>
 
@@ -87,24 +87,6 @@ static double extra_stiffness(const double *head, const Curve *curve, double lea
     return fmax(curve->first.s, 2.0 * REVERSAL * least / back);
 }
 
-static void refuse_loss(const double *head, const Curve *curve, Text *why)
-{
-    text_add(why, "hysteresis_loss = ");
-    text_number(why, head[LOSS], 6);
-    text_add(why, " rad is outside [0, ");
-    text_number(why, 2.0 * curve_inverse_safe(curve, 0.5 * head[RATED]), 6);
-    text_add(why, ") rad: friction would hold half of the rated torque");
-}
-
-static void refuse_stiffness(const double *head, Text *why)
-{
-    text_add(why, "hysteresis_stiffness = ");
-    text_number(why, head[STIFFNESS], 6);
-    text_add(why, " N.m/rad is too small for a loop through rated torque that opens by ");
-    text_number(why, head[LOSS], 6);
-    text_add(why, " rad; allowed are 0 and larger ones");
-}
-
 static void set_limit(Hysteresis *hysteresis, const double *share, double limit, double stiffness)
 {
     hysteresis->acts = limit > 0.0;
@@ -121,7 +103,8 @@ bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *sha
     curve_at(curve, 0.5 * head[LOSS], 1, y);
     const double least = y[0];
     if (!(least < 0.5 * head[RATED])) {
-        refuse_loss(head, curve, why);
+        text_print(why, "hysteresis_loss = %g rad is outside [0, %g) rad: friction would hold half of the rated torque",
+                   head[LOSS], 2.0 * curve_inverse_safe(curve, 0.5 * head[RATED]));
         return false;
     }
     const double stiffness = extra_stiffness(head, curve, least);
@@ -141,6 +124,9 @@ bool hysteresis_of(Hysteresis *hysteresis, const double *head, const double *sha
         if (fabs(limit - before) <= SETTLED * limit)
             return true;
     }
-    refuse_stiffness(head, why);
+    text_print(why,
+               "hysteresis_stiffness = %g N.m/rad is too small for a loop through rated torque that opens by %g rad; "
+               "allowed are 0 and larger ones",
+               head[STIFFNESS], head[LOSS]);
     return false;
 }

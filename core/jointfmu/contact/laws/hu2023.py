@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...quantity import Number, check, choice, group, quantity
+from ...quantity import Checked, Number, choice, group, quantity
 from ..powerlaw import Power, Slip, Spots, Term
 from ..surface import (
     ArealSurface,
@@ -28,7 +28,7 @@ from .kogut_etsion import FIRST, PLASTIC_AREA, SECOND, SECOND_AREA, by_area
 
 
 @dataclass(frozen=True, kw_only=True)
-class Hu2023:
+class Hu2023(Checked):
     """Parameters of the interface law of Hu 2023; `side1` is the softer body."""
 
     surface: ArealSurface = group("equivalent rough surface")
@@ -46,9 +46,6 @@ class Hu2023:
     reading: str = choice(
         "corrected", "printed", doc="pressure of Eq. 28: load over nominal area, or over real area as printed"
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def hardness(self) -> Number:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Number, check, group, quantity
+from ...quantity import Checked, Number, group, quantity
 from ..powerlaw import Power, Spots
 from ..roughness import ROUGHEST
 from ..surface import Elastic, contact_modulus, contact_shear_modulus
@@ -47,7 +47,7 @@ class RoughSurfaces:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Roughness(RoughSurfaces):
+class Roughness(RoughSurfaces, Checked):
     """Parameters of the interface law `roughness`."""
 
     side1: Elastic = group("first body")
@@ -56,9 +56,6 @@ class Roughness(RoughSurfaces):
     mu: float = quantity("1", "coefficient of static friction", gt=0.0)
     traction_ratio: float = quantity("1", "shear over friction limit, x = T/(mu P)", ge=0.0, lt=1.0)
     A_0: float = quantity("m2", "nominal contact area", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def hardness(self) -> Number:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...quantity import Number, check, choice, group, quantity, where
+from ...quantity import Checked, Number, choice, group, quantity, where
 from ..powerlaw import Power, Smooth, Spots
 from ..surface import (
     Elastic,
@@ -24,7 +24,7 @@ from .kogut_etsion import FIRST, PLASTIC_AREA, PLASTIC_ONSET, SECOND, SECOND_ARE
 
 
 @dataclass(frozen=True, kw_only=True)
-class Yu2022:
+class Yu2022(Checked):
     """Parameters of the interface law of Yu 2022."""
 
     surface1: FlankSurface = group("fractal parameters along the major axis")
@@ -48,9 +48,6 @@ class Yu2022:
         "kogut_etsion",
         doc="how the area of an elastic-plastic spot gives its deformation",
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def hardness(self) -> Number:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...quantity import Number, check, choice, group, quantity
+from ...quantity import Checked, Number, choice, group, quantity
 from ..powerlaw import Power, Spots
 from ..surface import (
     Elastic,
@@ -22,7 +22,7 @@ from . import mindlin
 
 
 @dataclass(frozen=True, kw_only=True)
-class Zhao2018:
+class Zhao2018(Checked):
     """Parameters of the interface law of Zhao 2018."""
 
     surface: ProfileSurface = group("equivalent rough surface")
@@ -39,9 +39,6 @@ class Zhao2018:
     spot_stiffness: str = choice(
         "hertz", "family", doc="stiffness of an elastic spot: Hertz, or along the size family (Eq. 13)"
     )
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def hardness(self) -> Number:

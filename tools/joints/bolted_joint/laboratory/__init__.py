@@ -6,7 +6,7 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from jointfmu_fmu_src.joint_parts.page import RampPanel
+from jointfmu_fmu_src.joint_parts import RampPanel
 
 from jointfmu.joints.bolted_joint.law import bolt_pattern
 

@@ -1,7 +1,7 @@
 /* The contact pressure for the page: of each node its place x, y [m], its share of the area and its pressure [Pa]
  * at the present inputs. */
+#include "instance.h"
 #include "tabulated.h"
-#include "values.h"
 
 enum { ROOM = sizeof ((Kind *)0)->weight / sizeof *((Kind *)0)->weight };
 

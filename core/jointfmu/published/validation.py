@@ -1,0 +1,203 @@
+"""Every published number beside the computed one: compared, counted, as text."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Any
+
+from ..joints import KINDS
+from ..joints.published import published
+from ..parameters import ParameterFile, default
+from .reference import PROVES_NOTHING, ROLES, Point, guesses, points
+
+_HEAD = (
+    *("paper", "point", "unit", "published", "computed", "error", "tolerance"),
+    *("guess", "its error", "nearer", "number", "role", "verdict"),
+)
+_ROUNDING = 1e-6
+"""An error below this share of the tolerance is shown as zero [1]: calibrated points are met to rounding."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValidatedPoint:
+    """A published point, the computed value, and the verdict.
+
+    error : relative to the published value, or in its unit where the tolerance is absolute; 0 or 1
+        for a claim
+    guess, guess_error : the trivial guess, from calibration points alone, and its error; None where
+        there is none
+    """
+
+    point: Point
+    computed: float | bool
+    error: float
+    passed: bool
+    guess: float | None = None
+    guess_error: float | None = None
+
+    @property
+    def nearer(self) -> str:
+        """`law` or `guess`, which is nearer to the published value; empty without a guess."""
+        if self.guess_error is None:
+            return ""
+        return "law" if abs(self.error) < abs(self.guess_error) else "guess"
+
+    def as_dict(self) -> dict[str, Any]:
+        """JSON-ready, with the verdict as a word."""
+        p = self.point
+        return asdict(p) | {
+            "where": dict(p.where),
+            "computed": self.computed if isfinite(self.computed) else None,
+            "error": self.error if isfinite(self.error) else None,
+            "guess": self.guess,
+            "guess_error": self.guess_error,
+            "guess_rule": str(p.guess) if p.guess else None,
+            "nearer": self.nearer or None,
+            "verdict": "pass" if self.passed else "miss",
+        }
+
+
+def compare(point: Point, computed: float | bool, guess: float | None = None) -> ValidatedPoint:
+    """Judge one computed value, and the trivial guess beside it."""
+    if isinstance(point.value, bool):
+        error = float(computed is not point.value)
+        return ValidatedPoint(point, computed, error, error == 0.0)
+    error = _error(point, computed)
+    guessed = None if guess is None else _error(point, guess)
+    return ValidatedPoint(point, computed, error, abs(error) <= point.tolerance, guess, guessed)
+
+
+def _error(point: Point, value: float) -> float:
+    return (value - point.value) / (1.0 if point.absolute else abs(point.value))
+
+
+def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedPoint]:
+    """Compute every published point with the default parameter sets, or those given by joint."""
+    given, rows = sets or {}, []
+    for kind in KINDS.values():
+        for paper in kind.papers:
+            values = (given.get(kind.name) or default(kind.name)).values
+            observables = published(kind).observables
+            known = points(paper)
+            guessed = guesses(known)
+            rows += [compare(p, observables[p.quantity](values, **p.where), guessed.get(p.id)) for p in known]
+    return rows
+
+
+def missed(rows: Sequence[ValidatedPoint]) -> list[ValidatedPoint]:
+    """Rows that miss, but for those whose value proves nothing: calibrated and circular ones."""
+    return [row for row in rows if row.point.role not in PROVES_NOTHING and not row.passed]
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """What a comparison consists of; the command, the README, the report and the pages say these numbers.
+
+    numbers, printed, derived : numbers; those that the papers print, those computed from printed ones
+    roles, met : points and points met of every role; claims are no numbers
+    guessed, nearer : points of every role with a trivial guess, and those that the law is nearer to
+    contradictions : ids of claims whose text contradicts its own equations
+    missed : ids of the points that miss, calibrated and circular ones left out
+    """
+
+    numbers: int
+    printed: int
+    derived: int
+    roles: dict[str, int]
+    met: dict[str, int]
+    guessed: dict[str, int]
+    nearer: dict[str, int]
+    contradictions: list[str]
+    missed: list[str]
+
+
+def counts(rows: Sequence[ValidatedPoint]) -> Counts:
+    """Count a comparison."""
+    numbers = [row.point for row in rows if row.point.role != "claim"]
+    printed = sum(point.printed for point in numbers)
+    guessed = [row for row in rows if row.nearer]
+
+    def by_role(some: Sequence[ValidatedPoint]) -> dict[str, int]:
+        found = Counter(row.point.role for row in some)
+        return {role: found[role] for role in ROLES}
+
+    return Counts(
+        numbers=len(numbers),
+        printed=printed,
+        derived=len(numbers) - printed,
+        roles=by_role(rows),
+        met=by_role([row for row in rows if row.passed]),
+        guessed=by_role(guessed),
+        nearer=by_role([row for row in guessed if row.nearer == "law"]),
+        contradictions=[row.point.id for row in rows if row.point.text is not None],
+        missed=[row.point.id for row in missed(rows)],
+    )
+
+
+def table(rows: Sequence[ValidatedPoint]) -> str:
+    """The comparison as text."""
+    lines = [_HEAD, *(_cells(row) for row in rows)]
+    widths = [max(len(line[i]) for line in lines) for i in range(len(_HEAD))]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    )
+
+
+def _cells(row: ValidatedPoint) -> tuple[str, ...]:
+    p = row.point
+    if isinstance(p.value, bool):
+        shown = (shown_claim(row), str(row.computed).lower(), "-", "-")
+        source = "text"
+    else:
+        shown = (f"{p.value:.6g}", f"{row.computed:.6g}", shown_error(p, row.error), shown_tolerance(p))
+        source = "printed" if p.printed else "derived"
+    guess = ("-", "-", "-")
+    if row.guess is not None and row.guess_error is not None:
+        guess = (f"{row.guess:.6g}", shown_error(p, row.guess_error), row.nearer)
+    return (p.paper, p.id, p.unit, *shown, *guess, source, p.role, "pass" if row.passed else "MISS")
+
+
+def shown_error(point: Point, error: float) -> str:
+    """An error as text: in per cent, or in the point's unit where that is how it is judged."""
+    scale, unit = _scale(point)
+    small = abs(error) <= _ROUNDING * point.tolerance
+    return ("0" if small else f"{scale * error:+.3g}") + unit
+
+
+def shown_tolerance(point: Point) -> str:
+    """A tolerance as text, as `shown_error`."""
+    scale, unit = _scale(point)
+    return f"{scale * point.tolerance:.3g}{unit}"
+
+
+def _scale(point: Point) -> tuple[float, str]:
+    """Factor and unit of errors; a change given in per cent is off by percentage points."""
+    if not point.absolute:
+        return 100.0, " %"
+    return 1.0, {"%": " points", "1": ""}.get(point.unit, f" {point.unit}")
+
+
+def shown_claim(row: ValidatedPoint) -> str:
+    """A claim as text, with the text's own where its equations give the opposite."""
+    p = row.point
+    return str(p.value).lower() + ("" if p.text is None else f" (text: {str(p.text).lower()})")
+
+
+def summary(rows: Sequence[ValidatedPoint]) -> str:
+    """One line: what was compared, by role; how often the law beats a trivial guess; what missed."""
+    found = counts(rows)
+    roles = ", ".join(
+        f"{n} {role}" + ("" if found.met[role] == n else f" ({found.met[role]} met)")
+        for role, n in found.roles.items()
+        if role != "claim"
+    )
+    nearer = ", ".join(f"{found.nearer[role]} of {n} ({role})" for role, n in found.guessed.items() if n)
+    return (
+        f"{found.numbers} numbers, {found.printed} printed in the papers and {found.derived} computed from "
+        f"printed ones: {roles}; {found.roles['claim']} claims; "
+        f"nearer than the trivial guess: {nearer or 'none'}; "
+        f"text against its own equations: {', '.join(found.contradictions) or 'none'}; "
+        f"missed: {', '.join(found.missed) or 'none'}"
+    )

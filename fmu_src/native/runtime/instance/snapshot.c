@@ -1,0 +1,281 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "instance.h"
+
+/* A state in the hands of the host, and its bytes: little endian, the same on every platform.
+ *
+ *   16  "jointfmu state 1"
+ *    4  FMI version
+ *    4  length of the token, then the token: states of another FMU or of other contents are refused
+ *   ..  the members of State as `pass` lists them
+ *    8  checksum (FNV-1a, 64 bits) of all before */
+
+static const char magic[16 + 1] = "jointfmu state 1";
+
+typedef struct {
+    char magic[sizeof magic]; /* tells a state from another pointer */
+    unsigned version;
+    State state;
+} SavedState;
+
+/* Bytes */
+
+typedef struct {
+    unsigned char *bytes;      /* to write; NULL to count or to read */
+    const unsigned char *from; /* to read; NULL to count or to write */
+    size_t at;
+} Cursor;
+
+/* Write, read or count the lowest `n` bytes of a number. */
+static void pass_bytes(Cursor *c, uint64_t *number, unsigned n)
+{
+    uint64_t word = 0;
+    for (unsigned i = 0; i < n; i++) {
+        if (c->bytes)
+            c->bytes[c->at + i] = (unsigned char)(*number >> 8 * i & 0xFF);
+        if (c->from)
+            word |= (uint64_t)c->from[c->at + i] << 8 * i;
+    }
+    if (c->from)
+        *number = word;
+    c->at += n;
+}
+
+static void pass_word(Cursor *c, unsigned *value)
+{
+    uint64_t number = *value;
+    pass_bytes(c, &number, 4);
+    *value = (unsigned)number;
+}
+
+static void pass_doubles(Cursor *c, double values[], size_t n)
+{
+    if (!c->bytes && !c->from) {
+        c->at += 8 * n;
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        uint64_t number;
+        memcpy(&number, &values[i], sizeof number);
+        pass_bytes(c, &number, 8);
+        memcpy(&values[i], &number, sizeof number);
+    }
+}
+
+static void pass_text(Cursor *c, char text[], size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        uint64_t number = (unsigned char)text[i];
+        pass_bytes(c, &number, 1);
+        text[i] = (char)number;
+    }
+}
+
+/* What stands before a state; false if it was read and is not ours. */
+static bool pass_head(Cursor *c, unsigned version)
+{
+    char first[sizeof magic] = {0}, owner[sizeof data.token] = {0};
+    const unsigned size = (unsigned)strlen(data.token);
+    unsigned stated = version, length = size;
+    memcpy(first, magic, sizeof magic);
+    memcpy(owner, data.token, sizeof data.token);
+    pass_text(c, first, sizeof magic - 1);
+    pass_word(c, &stated);
+    pass_word(c, &length);
+    pass_text(c, owner, size);
+    return strcmp(first, magic) == 0 && stated == version && length == size &&
+           strcmp(owner, data.token) == 0;
+}
+
+static void pass(Cursor *c, State *s)
+{
+    unsigned last_step = s->last_step;
+    pass_word(c, &s->kind);
+    pass_word(c, &s->mode);
+    pass_word(c, &s->warned);
+    pass_word(c, &s->logs);
+    pass_word(c, &last_step);
+    pass_doubles(c, &s->start, 1);
+    pass_doubles(c, &s->stop, 1);
+    pass_doubles(c, s->slopes, N_INPUTS);
+    pass_doubles(c, s->values, FIRST_OUTPUT + N_STATES);
+    pass_doubles(c, s->values + FIRST_PARAMETER, N_PARAMETERS);
+    if (N_STATES) {
+        pass_doubles(c, s->last_inputs, N_INPUTS);
+        pass_doubles(c, &s->last_rate, 1);
+        pass_doubles(c, &s->last_size, 1);
+        pass_doubles(c, &s->tolerance, 1);
+    }
+    if (N_MEMORY) {
+        pass_doubles(c, s->path.memory[0], N_MEMORY);
+        pass_doubles(c, s->path.memory[1], N_MEMORY);
+        pass_doubles(c, s->path.knowns, N_PATH);
+        pass_word(c, &s->path.last);
+        pass_word(c, &s->path.accepted);
+    }
+    s->last_step = (Status)last_step;
+}
+
+/* Bytes of a state; which one does not matter. */
+static size_t full_size(const State *any)
+{
+    Cursor count = {NULL, NULL, 0};
+    pass_head(&count, 0);
+    pass(&count, (State *)any); /* nothing is written when bytes are counted */
+    return count.at + 8;
+}
+
+static uint64_t checksum(const unsigned char bytes[], size_t n)
+{
+    uint64_t sum = 0xCBF29CE484222325u;
+    for (size_t i = 0; i < n; i++)
+        sum = (sum ^ bytes[i]) * 0x100000001B3u;
+    return sum;
+}
+
+/* Checks */
+
+static bool is_saved(const Instance *m, const char *function, const SavedState *saved)
+{
+    if (!instance_has(m, function, "the FMU state", saved))
+        return false;
+    if (memcmp(saved->magic, magic, sizeof magic) == 0 && saved->version == m->version)
+        return true;
+    return instance_refuse(m, function, "this is no FMU state of %s; expected one that it gave", data.name) == OK;
+}
+
+static Status refuse_bytes(const Instance *m, const char *function, const char *what)
+{
+    return instance_refuse(m, function, "the bytes are %s; expected a state that %s with the token %s serialized",
+                           what, data.name, data.token);
+}
+
+/* A state of the same kind of instance. */
+static bool fits(const Instance *m, const char *function, const State *s)
+{
+    const char *own = m->now.kind == MODEL_EXCHANGE ? "model exchange" : "co-simulation";
+    const char *other = m->now.kind == MODEL_EXCHANGE ? "co-simulation" : "model exchange";
+    return s->kind == m->now.kind ||
+           instance_refuse(m, function, "the state is one of %s; expected one of %s", other, own) == OK;
+}
+
+static SavedState *new_state(const Instance *m, const char *function)
+{
+    SavedState *made = calloc(1, sizeof *made);
+    if (!made) {
+        instance_refuse(m, function, "no memory is left; expected some for a state");
+        return NULL;
+    }
+    memcpy(made->magic, magic, sizeof magic);
+    made->version = m->version;
+    return made;
+}
+
+/* Give a state to the host: in its own, if it gives one back. */
+static Status hand_over(const Instance *m, const char *function, SavedState *made, void **saved)
+{
+    if (*saved && !is_saved(m, function, *saved)) {
+        free(made);
+        return ERROR;
+    }
+    if (*saved) {
+        ((SavedState *)*saved)->state = made->state;
+        free(made);
+    } else {
+        *saved = made;
+    }
+    return OK;
+}
+
+/* Entry points */
+
+Status state_save(const Instance *m, const char *function, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) ||
+        !instance_has(m, function, "the pointer to the FMU state", saved) ||
+        (*saved && !is_saved(m, function, *saved)))
+        return ERROR;
+    SavedState *to = *saved ? *saved : new_state(m, function);
+    if (!to)
+        return ERROR;
+    to->state = m->now;
+    *saved = to;
+    return OK;
+}
+
+Status state_restore(Instance *m, const char *function, const void *saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved))
+        return ERROR;
+    const SavedState *from = saved;
+    if (!fits(m, function, &from->state))
+        return ERROR;
+    m->now = from->state;
+    m->dirty = m->parameters_changed = true;
+    instance_report(m, OK, LOG_EVENTS, "FMU state restored");
+    return OK;
+}
+
+Status state_free(const Instance *m, const char *function, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE))
+        return ERROR;
+    if (!saved || !*saved)
+        return OK; /* as the standard says */
+    if (!is_saved(m, function, *saved))
+        return ERROR;
+    free(*saved);
+    *saved = NULL;
+    return OK;
+}
+
+Status state_size(const Instance *m, const char *function, const void *saved, size_t *size)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
+        !instance_has(m, function, "the size", size))
+        return ERROR;
+    *size = full_size(&m->now);
+    return OK;
+}
+
+Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) || !is_saved(m, function, saved) ||
+        !instance_has(m, function, "the array of bytes", bytes) ||
+        !instance_counts(m, function, "bytes of room", size, full_size(&m->now)))
+        return ERROR;
+    Cursor to = {bytes, NULL, 0};
+    pass_head(&to, m->version);
+    pass(&to, (State *)&((const SavedState *)saved)->state); /* only read when bytes are written */
+    uint64_t sum = checksum(bytes, to.at);
+    pass_bytes(&to, &sum, 8);
+    return OK;
+}
+
+Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved)
+{
+    if (!instance_allows(m, function, BOTH | ANY_MODE) ||
+        !instance_has(m, function, "the array of bytes", bytes) ||
+        !instance_counts(m, function, "bytes", size, full_size(&m->now)))
+        return ERROR;
+    if (!instance_has(m, function, "the pointer to the FMU state", saved))
+        return ERROR;
+    Cursor from = {NULL, bytes, 0};
+    if (!pass_head(&from, m->version))
+        return refuse_bytes(m, function, "of another FMU or FMI version, or no state at all");
+    Cursor end = {NULL, bytes, size - 8};
+    uint64_t written = 0;
+    pass_bytes(&end, &written, 8);
+    if (written != checksum(bytes, size - 8))
+        return refuse_bytes(m, function, "corrupt: their checksum is wrong");
+    SavedState *made = new_state(m, function);
+    if (!made)
+        return ERROR;
+    pass(&from, &made->state);
+    if (!fits(m, function, &made->state)) {
+        free(made);
+        return ERROR;
+    }
+    return hand_over(m, function, made, saved);
+}

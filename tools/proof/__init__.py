@@ -1,0 +1,1 @@
+"""The proof of an FMU, executed: its experiments run by importers, and what becomes of them."""

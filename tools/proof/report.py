@@ -1,0 +1,120 @@
+"""A proof as text and as one JSON object."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from jointfmu.proof.manifest import PURPOSES
+
+from .outcome import Outcome, Proof, WorstPoint
+
+_NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
+_EXPERIMENT = ("experiment", "interface", "verdict", "points", "worst output", *_NUMBERS)
+_OUTPUT = ("output", "worst in", "interface", *_NUMBERS)
+
+
+def lines(proof: Proof) -> Iterator[str]:
+    """Two tables, of experiments and of outputs, each with its worst point; then what missed."""
+    experiments: list[tuple[str, ...]] = [_EXPERIMENT]
+    worst: dict[str, tuple[Outcome, WorstPoint]] = {}
+    for outcome in proof.outcomes:
+        point = outcome.worst
+        verdict = _verdict(outcome), str(outcome.compared or ""), point.output if point else ""
+        cells = _cells(point) if point else ("",) * len(_NUMBERS)
+        experiments.append((outcome.experiment.name, outcome.interface, *verdict, *cells))
+        for own in outcome.points:
+            if own.output not in worst or own.share > worst[own.output][1].share:
+                worst[own.output] = outcome, own
+    yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
+    if proof.outcomes:
+        yield ""
+        yield from _table(experiments)
+    if worst:
+        yield ""
+        rows = [(n, o.experiment.name, o.interface, *_cells(p)) for n, (o, p) in worst.items()]
+        yield from _table([_OUTPUT, *rows])
+    yield ""
+    yield from (f"missed: {text}" for text in proof.misses)
+    yield summary(proof)
+
+
+def count_of(proof: Proof) -> str:
+    """How many experiments there are of each kind, and start values."""
+    kinds = [one.purpose for one in {id(o.experiment): o.experiment for o in proof.outcomes}.values()]
+    parts = [f"{kinds.count(p)} {p}" for p in (*PURPOSES, *sorted({*kinds} - {*PURPOSES})) if p in kinds]
+    return f"{', '.join(parts) or 'no experiment executed'}; {proof.starts} start values"
+
+
+def summary(proof: Proof) -> str:
+    """One line: how many runs of experiments passed, missed, were left out."""
+    left = sum(bool(outcome.left_out) for outcome in proof.outcomes)
+    missed = sum(not outcome.passed for outcome in proof.outcomes)
+    if not proof.outcomes:
+        return "it does not start, nothing was executed"
+    passed = len(proof.outcomes) - left - missed
+    words = [f"{passed} passed", f"{missed} missed", *([f"{left} not executed"] if left else [])]
+    if count := len(proof.differing):
+        words.append(f"{count} start {'value differs' if count == 1 else 'values differ'}")
+    return ", ".join(words)
+
+
+def document(proof: Proof) -> dict[str, object]:
+    """All of it: every experiment with the worst point of each output."""
+    return {
+        "fmu": str(proof.fmu),
+        "importer": proof.importer,
+        "interfaces": list(proof.interfaces),
+        "passed": proof.passed,
+        "start_values": {"compared": proof.starts, "differing": list(proof.differing)},
+        "experiments": [_experiment(outcome) for outcome in proof.outcomes],
+        "misses": proof.misses,
+    }
+
+
+def _experiment(outcome: Outcome) -> dict[str, object]:
+    one = outcome.experiment
+    return {
+        "name": one.name,
+        "interface": outcome.interface or None,
+        "purpose": one.purpose,
+        "verdict": _verdict(outcome),
+        "error": outcome.error or outcome.left_out or None,
+        "points": outcome.compared,
+        "outputs": [_point(point) for point in outcome.points],
+    }
+
+
+def _point(point: WorstPoint) -> Mapping[str, object]:
+    value = point.value if point.finite else None
+    return {
+        "output": point.output,
+        "time": point.time,
+        "value": value,
+        "reference": point.reference,
+        "error": None if value is None else point.error,
+        "allowed": point.allowed,
+        "passed": point.passed,
+    }
+
+
+def _verdict(outcome: Outcome) -> str:
+    if outcome.left_out:
+        return f"not executed: {outcome.left_out}"
+    if not outcome.passed:
+        return "missed"
+    return "passed" if outcome.points else "runs, no reference"
+
+
+def _cells(point: WorstPoint) -> tuple[str, ...]:
+    numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
+    return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")
+
+
+def _table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    """Rows under each other, names left and numbers right."""
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    words = len(rows[0]) - len(_NUMBERS)
+    for row in rows:
+        cells = (
+            cell.ljust(width) if i < words else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        yield "  ".join(cells).rstrip()
