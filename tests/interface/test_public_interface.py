@@ -8,7 +8,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from conftest import here_alone
-from jointfmu_tools.joints.bolted_joint.new import whole
+from jointfmu_tools.joints.bolted_joint.new import computed
 
 import jointfmu
 
@@ -32,7 +32,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def plate(monkeypatch):
     """Makes a bolted joint of PLATE, without the finite elements beside it."""
-    monkeypatch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
+    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 

@@ -10,10 +10,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
-from jointfmu_tools.joints.bolted_joint.layout import PlaneLayout
+from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
-from jointfmu_tools.laboratory.modules import modules
+from jointfmu_tools.laboratory.describe import modules
 from jointfmu_tools.report.course import Course
 from natives import SAME as SAME_FLAVOURS
 from natives import Host, close, jacobian, near, package

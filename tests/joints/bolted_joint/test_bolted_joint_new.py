@@ -10,7 +10,7 @@ from jointfmu_tools import cli
 from jointfmu_tools.drawing import vdi2230
 from jointfmu_tools.drawing.tables import classes, threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
-from jointfmu_tools.joints.bolted_joint.new import layout, whole
+from jointfmu_tools.joints.bolted_joint.new import computed, layout
 from jointfmu_tools.shown import stated
 from jointfmu_tools.uncertainty.problem import pose
 
@@ -28,7 +28,7 @@ STILL = (0.0, 0.0, 0.0)
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
     """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
-    monkeypatch.setattr(whole, "facts", lambda file, *arguments: whole.WholeFacts(file, {}, []))
+    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
 
 
 def made(capsys, *words, path=None):

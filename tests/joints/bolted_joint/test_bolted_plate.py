@@ -9,8 +9,7 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.commands.footprint.finite_elements import with_assembly
-from jointfmu_tools.fem.bolts import BoltList
-from jointfmu_tools.fem.geometry import Assembly, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures

@@ -12,7 +12,7 @@ from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint import report
-from jointfmu_tools.joints.bolted_joint.new import computed, whole
+from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.report.course import Course
 
 from jointfmu.joints import KINDS
@@ -48,7 +48,7 @@ def made(tmp_path_factory):
         if words not in found:
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(whole, "whole_joint", watched)
+                patch.setattr(computed, "whole_joint", watched)
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load(path)

@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 from drive_friction import DRIVES, JOINTS, drag, friction, joint, left_out, measured
 from jointfmu_tools import cli
-from jointfmu_tools.joints.harmonic_drive import catalogue, figures
-from jointfmu_tools.joints.harmonic_drive.beside import beside
+from jointfmu_tools.joints.harmonic_drive import catalogue, job
 from jointfmu_tools.joints.harmonic_drive.efficiency import bench, printed_drives, spring_bench
+from jointfmu_tools.joints.harmonic_drive.friction import SPEED, PrintedFriction, scaled
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED
-from jointfmu_tools.joints.harmonic_drive.scaling import PrintedFriction, scaled
-from jointfmu_tools.report.beside import OWN, PREDICTED, SET
+from jointfmu_tools.joints.harmonic_drive.report import beside
 from jointfmu_tools.report.course import Course
+from jointfmu_tools.report.figure import OWN, PREDICTED, SET
 from jointfmu_tools.report.joint import write_joint_report
 from jointfmu_tools.uncertainty.problem import pose
 
@@ -73,7 +72,7 @@ def test_back_driving_takes_the_starting_torque_and_what_the_load_adds(fmu: Path
 
 
 def test_the_report_draws_it(fmu: Path) -> None:
-    *curves, back = figures.friction(fmu)
+    *curves, back = job.friction(fmu)
     for panel in curves:
         slow, _, fast, *_ = (series.y for series in panel.series)
         assert all(0.0 < b < a < 1.0 for a, b in zip(slow, fast, strict=True))

@@ -12,9 +12,9 @@ import pytest
 from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
+from jointfmu_tools.fitting.hysteresis import Oscillator
 from jointfmu_tools.fitting.loop import Backbone
-from jointfmu_tools.fitting.oscillator import Oscillator
-from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, lines, table, torque_angle
+from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 from memory_measurements import save
 
@@ -59,7 +59,7 @@ def test_angle_of_the_polygon():
     ids=str,
 )
 def test_angles_are_kept(one):
-    found = catalogue.fit(one)
+    found = catalogue.fit_pair(one)
     kept = np.array([one.T1, one.T2, one.rated])
     np.testing.assert_allclose(windup(found.parameters.values, kept), one.angle(kept), rtol=0.01)
     assert found.parameters.values.max_torque == catalogue.MAX_OVER_RATED * one.rated
@@ -108,7 +108,7 @@ def test_a_row_beyond_the_law_is_said(capsys):
 @pytest.mark.slow
 def test_the_lines_stay_where_no_smooth_law_keeps_them():
     one = row(24000, 30000, 49000, 29, 108, rated=151.2)
-    found = lines.fit(one)
+    found = catalogue.fit_lines(one)
     assert "keeps the angle of K1 = 24000" in found.notes[0]
     assert "pair_angle_error" not in found.facts
     assert windup(found.parameters.values, np.array(151.2)) == pytest.approx(one.angle(151.2), rel=1e-12)
@@ -130,7 +130,7 @@ def test_the_default_keeps_the_lines_and_tells_what_the_pair_makes_of_them(tmp_p
     assert document["unknowns"] == []
     facts = {name: fact["value"] for name, fact in document["facts"].items()}
     assert all(abs(facts[f"angle_error_{name}"]) < 0.005 for name in ("T1", "T2", "rated", "max"))
-    pair = catalogue.fit(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
+    pair = catalogue.fit_pair(row(1e4, 1.4e4, 1.6e4, 3.9, 12, rated=31.0)).parameters.values
     K = torque_curve(pair).stiffness[0]
     assert facts["pair_stiffness_zero"] == pytest.approx(K / 1e4 - 1.0, rel=1e-9)
     assert facts["pair_stiffness_zero"] < -0.1
@@ -292,11 +292,11 @@ def test_a_table_is_the_mid_line(loops, tmp_path):
 def test_points_fold_both_directions_and_take_the_offset_off():
     T = np.linspace(-10.0, 10.0, 201)
     line = Backbone(T, T / 5e3 + np.sign(T) * 1e-5 * T**2 + 0.3, np.ones(T.size), 2, None, None, None)
-    torque, angle, shift = table.points(line)
+    torque, angle, shift = torque_angle.points(line)
     assert shift == pytest.approx(0.3, abs=1e-12)
     np.testing.assert_allclose(angle, torque / 5e3 + 1e-5 * torque**2, rtol=0.02)  # means over bins
     with pytest.raises(ValueError, match="needs it to pass zero"):
-        table.points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
+        torque_angle.points(Backbone(T + 15.0, T, np.ones(T.size), 2, None, None, None))
 
 
 @pytest.mark.slow
@@ -344,7 +344,7 @@ def test_exported_tables_keep_to_the_midline(law, tmp_path, capsys):
 @pytest.mark.parametrize("law", ["catalogue", "table"])
 def test_the_modelica_record_is_the_midline(law):
     from jointfmu_tools.joints.harmonic_drive.modelica import COMPONENT
-    from jointfmu_tools.modelica.tables import curve_of
+    from jointfmu_tools.modelica.records import curve_of
 
     file = default("harmonic_drive", law)
     (record,) = COMPONENT.records(file, [()])

@@ -10,11 +10,17 @@ import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive import catalogue
-from jointfmu_tools.joints.harmonic_drive.efficiency import bench, parameters, printed_drives, spring_bench
+from jointfmu_tools.joints.harmonic_drive.efficiency import (
+    bench,
+    hysteresis_loss,
+    lost_motion,
+    parameters,
+    printed_drives,
+    spring_bench,
+)
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+from jointfmu_tools.joints.harmonic_drive.friction import SPEED, efficiency
 from jointfmu_tools.joints.harmonic_drive.new import NEW
-from jointfmu_tools.joints.harmonic_drive.quoted import hysteresis_loss, lost_motion
-from jointfmu_tools.joints.harmonic_drive.quoted_friction import SPEED, efficiency
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
