@@ -155,10 +155,14 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
 
 
 def test_a_servo_holds_the_axis_as_before(six):
-    """The actuators act at the motors, with their gains seen at the link."""
+    """The actuators act at the motors, with their gains seen at the link; friction has no control, and the
+    robot's own coordinates and controls are the first.
+    """
     _, model = six
-    assert model.actuator_trnid[:, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
-    assert model.actuator_gear[:, 0].tolist() == pytest.approx([-1.0, -0.01])
+    assert model.actuator_trnid[:2, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
+    assert model.actuator_gear[:2, 0].tolist() == pytest.approx([-1.0, -0.01])
+    assert (model.nu, model.na) == (2, 6)
+    assert [model.joint(i).name for i in range(6)] == [f"joint{i}" for i in range(1, 7)]
     armature = model.dof_armature[model.joint("joint2_motor").dofadr[0]]
     assert armature == pytest.approx(2.0 / 100.0**2)
     assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0

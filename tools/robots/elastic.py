@@ -18,7 +18,9 @@ Array = NDArray[np.float64]
 MOTOR = "_motor"
 """What the motor's coordinate has after the name of the joint."""
 MOTORS = "drive_motors"
-"""Name of their body."""
+"""What the name of their bodies begins with."""
+_ROOM = 6
+"""Coordinates that MuJoCo allows in a body."""
 _LIGHT = 1e-12
 """Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
 
@@ -118,8 +120,9 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
     made = spec.copy()
     for key in [*made.keys]:
         made.delete(key)
-    motors = _motors(made)
-    for axis in chosen:
+    for i, axis in enumerate(chosen):
+        if i % _ROOM == 0:
+            motors = _motors(made, f"{MOTORS}{i // _ROOM + 1}")
         motor = _add_motor(made, motors, axis)
         if not springs:
             continue
@@ -145,9 +148,9 @@ def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float],
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
 
 
-def _motors(spec: Any) -> Any:
-    """A body of the world for the motors: what turns in it moves nothing else, as the rotor of an armature."""
-    body = spec.worldbody.add_body(name=MOTORS)
+def _motors(spec: Any, name: str) -> Any:
+    """A body of the world for motors: what turns in it moves nothing else, as the rotor of an armature."""
+    body = spec.worldbody.add_body(name=name)
     body.mass, body.inertia, body.explicitinertial = _LIGHT, [_LIGHT] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     return body
