@@ -4,7 +4,7 @@ import io
 import json
 import re
 from contextlib import redirect_stdout
-from importlib.util import find_spec
+from importlib import metadata
 from pathlib import Path
 
 import fmpy
@@ -168,6 +168,60 @@ def test_a_servo_holds_the_axis_as_before(six):
     assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0
 
 
+def test_the_longest_step_is_where_the_file_diverges(six):
+    """At the frequency of small vibrations there, with motors free, drives without load."""
+    said, _ = six
+    assert any(line.startswith("its timestep, 0.002 s, is beyond") for line in said["notes"])
+    for times, stable in ((0.95, True), (1.4, False)):
+        model = mujoco.MjModel.from_xml_path(said["written"][0])
+        model.opt.timestep, data = times * said["longest_step"], mujoco.MjData(model)
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
+        data.qvel[:] = 1e-3
+        mujoco.mj_step(model, data, 400)
+        assert (np.abs(data.qvel).max() < 10.0 and not data.warning.number.any()) == stable
+
+
+def fallen(model, step, friction="bristles"):
+    """Angles of the links after falling for 0.4 s, motors free but for their friction."""
+    model.opt.timestep, data = step, mujoco.MjData(model)
+    for i, angle in enumerate((0.1, 0.7, 0.8, 0.1, 0.5, 0.2), 1):
+        data.joint(f"joint{i}").qpos[0] = angle
+        data.joint(f"joint{i}_motor").qpos[0] = -100.0 * angle
+    if friction == "constraint":
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
+        model.dof_frictionloss[6:] = model.actuator_forcerange[-6:, 1]
+    mujoco.mj_step(model, data, round(0.4 / step))
+    return data.qpos[:6].copy()
+
+
+def test_bristles_bear_steps_that_the_drives_bear(six):
+    """As documented; a constraint's friction is softer than that."""
+    said, _ = six
+    model = mujoco.MjModel.from_xml_path(said["written"][0])
+    model.actuator_gainprm[:2], model.actuator_biasprm[:2] = 0.0, 0.0
+    fine, coarse = fallen(model, 5e-5), fallen(model, 5e-4)
+    assert np.abs(fine - [0.1, 0.7, 0.8, 0.1, 0.5, 0.2]).max() > 0.1
+    assert coarse == pytest.approx(fine, abs=1e-3)
+    assert np.abs(fallen(model, 5e-4, "constraint") - fine).max() > 0.05
+
+
+def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_path, capsys, few_poses):
+    """With a short step they are the drive's; with MuJoCo's own softer for a light rotor, which is said."""
+    text = ROBOT.read_text()
+    for option, loss, noted in (
+        ('integrator="RK4"', 0.0204, []),
+        ('timestep="2e-4"', 0.0, []),
+        ('timestep="2e-3"', 0.0, ["joint6: friction builds up over 0.0816 rad of the motor"]),
+    ):
+        robot = tmp_path / "robot.xml"
+        robot.write_text(text.replace("<worldbody>", f"<option {option}/><worldbody>"))
+        said = made(capsys, robot, tmp_path / "out", "--drive", "joint6=CSG-14-100")
+        model = mujoco.MjModel.from_xml_path(said["written"][0])
+        assert model.dof_frictionloss.max() == pytest.approx(loss, rel=0.01)
+        assert model.na == (not loss)
+        assert [line.split(",")[0] for line in said["notes"] if "friction" in line] == noted
+
+
 def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, few_poses):
     words = ["--drive", "joint2=CSG-40-100", "joint3=CSG-25-100", "--payload", "3"]
     free = made(capsys, ROBOT, tmp_path / "free", *words)
@@ -186,7 +240,7 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     robot.write_text(SEVEN.format(links))
     words = [f"j{i}=CSG-20-100" for i in range(1, 8)]
     said = made(capsys, robot, tmp_path / "out", "--drive", *words, "--pose", "j2=1.5708")
-    assert len(said["notes"]) == 7
+    assert sum("no armature" in line for line in said["notes"]) == 7
     assert list(said["wind_up"]) == [f"j{i}" for i in range(1, 8)]
     assert said["wind_up"]["j1"] == pytest.approx(0.0, abs=1e-9)
     assert said["wind_up"]["j2"] > 1e-4
@@ -195,27 +249,43 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     assert all(Path(path).stat().st_size > 1000 for path in said["written"])
 
 
+OTHERS = {
+    "airo-models": [("ur3e/ur3e.urdf", 6), ("ur5e/ur5e.urdf", 6)],
+    "openarm-mujoco": [("v2/openarm_bimanual.xml", 7)],
+    "robosuite": [(f"robots/{n}/robot.xml", 7) for n in ("panda", "iiwa", "kinova3", "sawyer", "xarm7")],
+}
+"""{wheel: files of robots with their axes}."""
+
+
+def files_of(wheel):
+    """Those installed; robosuite's are half a gigabyte, so it is no part of the extra `test`."""
+    try:
+        return [file for file in metadata.files(wheel) or [] if file.suffix in (".xml", ".urdf")]
+    except metadata.PackageNotFoundError:
+        pytest.skip(f"{wheel} is not installed")
+
+
 @pytest.mark.parametrize(
-    ("name", "count"), [("panda", 7), ("ur5e", 6), ("iiwa", 7), ("kinova3", 7), ("sawyer", 7), ("xarm7", 7)]
+    ("wheel", "end", "count"), [(wheel, *robot) for wheel, robots in OTHERS.items() for robot in robots]
 )
-def test_robots_of_others(name, count, tmp_path, capsys):
-    """Those of robosuite where it is installed: half a gigabyte. With 1 kg and without."""
-    spec = find_spec("robosuite")
-    if spec is None:
-        pytest.skip("robosuite is not installed")
-    robot = Path(spec.origin).parent / f"models/assets/robots/{name}/robot.xml"
+def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
+    """With 1 kg and without; it falls with a step that it is said to bear."""
+    (robot,) = (file.locate() for file in files_of(wheel) if file.as_posix().endswith(end))
     rigid = mujoco.MjModel.from_xml_path(str(robot))
     joints = [rigid.joint(i).name for i in range(rigid.njnt)]
-    arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][-count:]
-    said = made(capsys, robot, tmp_path, "--drive", *(f"{joint}=CSG-32-100" for joint in arm))
-    bare = made(capsys, robot, tmp_path, "--drive", *(f"{j}=CSG-32-100" for j in arm), "--payload", "0")
+    arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][:count]
+    drives = [f"{joint}=CSG-32-100" for joint in arm]
+    said = made(capsys, robot, tmp_path, "--drive", *drives)
+    bare = made(capsys, robot, tmp_path, "--drive", *drives, "--payload", "0")
     assert said["frequencies"]["lowest"] < bare["frequencies"]["lowest"]
     model = mujoco.MjModel.from_xml_path(said["written"][0])
-    assert model.nv == rigid.nv + count
-    data = mujoco.MjData(model)
-    for _ in range(500):
-        mujoco.mj_step(model, data)
-    assert np.isfinite(data.qpos).all()
+    assert (model.nv, model.nu) == (rigid.nv + count, rigid.nu)
+    model.opt.timestep, data = 0.5 * said["longest_step"], mujoco.MjData(model)
+    mujoco.mj_step(model, data, 3000)
+    assert not data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
+    for joint in arm:
+        wound = data.joint(joint).qpos[0] + 0.01 * data.joint(f"{joint}_motor").qpos[0]
+        assert abs(wound) < 0.05
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,7 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75).save(
         "d.toml"
     )
-    said, model = exported(capsys, "d.toml")
+    said, _ = exported(capsys, "d.toml")
     lacks = " ".join(said["lacks"])
     assert "friction that grows with the load: at rated torque" in lacks
     text = (folder / "drive.xml").read_text()

@@ -30,14 +30,14 @@ class ElasticAxis:
     """A joint of the robot with its drive.
 
     rotor : inertia at the output [kg.m2], that of the motor times the square of the ratio
-    noted : where it comes from, if not from the robot's armature
+    noted : what is not as the robot or the drive has it
     """
 
     joint: str
     drive: Transmission
     fitted: FittedTendons
     rotor: float
-    noted: str = ""
+    noted: tuple[str, ...] = ()
 
     def wind_up(self, torque: float) -> float:
         """[rad] on the way from rest at a torque [N.m]."""
@@ -85,11 +85,19 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
         if joint.name in drives:
             drive, dof = drives[joint.name], joint.dofadr[0]
             own = float(model.dof_armature[dof])
-            rotor, noted = own, ""
+            rotor, noted = own, []
             if own <= 0.0:
                 rotor = float(matrix[dof, dof])
-                noted = f"{joint.name}: no armature; the rotor is taken as large as what the axis turns"
-            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, noted))
+                noted.append("no armature; the rotor is taken as large as what the axis turns")
+            if drive.static and bristles.borne(model.opt):
+                angle = bristles.presliding(drive, rotor / drive.ratio**2, model.opt.timestep)
+                if angle > 1.01 * drive.presliding:
+                    noted.append(
+                        f"friction builds up over {angle:.3g} rad of the motor, as the step asks, "
+                        f"{drive.presliding:g} rad in the FMU"
+                    )
+            lines = tuple(f"{joint.name}: {line}" for line in noted)
+            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, lines))
     return found
 
 
@@ -115,8 +123,6 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
 
     springs : False leaves out the drives, and the friction of their motors
     """
-    import mujoco
-
     made = spec.copy()
     for key in [*made.keys]:
         made.delete(key)
@@ -127,7 +133,7 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
         if not springs:
             continue
         motor.damping = [axis.drive.viscous, 0.0, 0.0]
-        if made.option.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+        if not bristles.borne(made.option):
             motor.frictionloss = axis.drive.dry
         elif axis.drive.static:
             bristles.add(made, axis.drive, motor.name, motor.armature, made.option.timestep)
