@@ -123,13 +123,13 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
 
     springs : False leaves out the drives, and the friction of their motors
     """
-    made = spec.copy()
+    made, model = spec.copy(), spec.compile()
     for key in [*made.keys]:
         made.delete(key)
     for i, axis in enumerate(chosen):
         if i % _ROOM == 0:
             motors = _motors(made, f"{MOTORS}{i // _ROOM + 1}")
-        motor = _add_motor(made, motors, axis)
+        motor = _add_motor(made, motors, axis, model)
         if not springs:
             continue
         motor.damping = [axis.drive.viscous, 0.0, 0.0]
@@ -162,21 +162,35 @@ def _motors(spec: Any, name: str) -> Any:
     return body
 
 
-def _add_motor(spec: Any, motors: Any, axis: ElasticAxis) -> Any:
-    """The motor's angle [rad], and the joint's actuators at it. It is a slide, which costs MuJoCo no rotation
-    and has a place of its own on the diagonal of the mass matrix.
+def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
+    """The motor's angle [rad], and the joint's actuators at it, each within the joint's own limit of all,
+    as friction is an actuator too. It is a slide, which costs MuJoCo no rotation and has a place of its own
+    on the diagonal of the mass matrix.
+
+    rigid : the robot's MjModel
     """
     import mujoco
 
-    joint, ratio = spec.joint(axis.joint), axis.drive.ratio
+    joint, ratio, number = spec.joint(axis.joint), axis.drive.ratio, rigid.joint(axis.joint).id
     motor = motors.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_SLIDE)
     motor.armature = axis.rotor / ratio**2
     joint.armature = 0.0
     for actuator in spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
+            if rigid.jnt_actfrclimited[number] and actuator.gear[0]:
+                _limit(actuator, rigid.jnt_actfrcrange[number] / actuator.gear[0])
             actuator.target = axis.joint + MOTOR
             actuator.gear = np.asarray(actuator.gear) / ratio
     return motor
+
+
+def _limit(actuator: Any, ends: Array) -> None:
+    """Keep an actuator's force between two ends, and its own where it has some."""
+    low, high = np.sort(ends)
+    own = np.asarray(actuator.forcerange)
+    if own[0] < own[1] and actuator.forcelimited != 0:
+        low, high = max(low, own[0]), min(high, own[1])
+    actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
 def posed(model: Any, angles: Mapping[str, str]) -> Array:
