@@ -4,7 +4,7 @@ import io
 import json
 import re
 from contextlib import redirect_stdout
-from importlib.util import find_spec
+from importlib import metadata
 from pathlib import Path
 
 import fmpy
@@ -155,13 +155,85 @@ def test_frequencies_are_those_of_the_model_in_mujoco(six, capsys, tmp_path):
 
 
 def test_a_servo_holds_the_axis_as_before(six):
-    """The actuators act at the motors, with their gains seen at the link."""
+    """The actuators act at the motors, with their gains seen at the link; friction has no control, and the
+    robot's own coordinates and controls are the first.
+    """
     _, model = six
-    assert model.actuator_trnid[:, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
-    assert model.actuator_gear[:, 0].tolist() == pytest.approx([-1.0, -0.01])
+    assert model.actuator_trnid[:2, 0].tolist() == [model.joint(f"joint{i}_motor").id for i in (1, 2)]
+    assert model.actuator_gear[:2, 0].tolist() == pytest.approx([-1.0, -0.01])
+    assert (model.nu, model.na) == (2, 6)
+    assert [model.joint(i).name for i in range(6)] == [f"joint{i}" for i in range(1, 7)]
     armature = model.dof_armature[model.joint("joint2_motor").dofadr[0]]
     assert armature == pytest.approx(2.0 / 100.0**2)
     assert model.dof_armature[model.joint("joint2").dofadr[0]] == 0.0
+
+
+@pytest.mark.parametrize(("own", "expected"), [("", [-0.4, 0.6]), ('forcerange="-0.5 0.5"', [-0.4, 0.5])])
+def test_a_joints_limit_of_its_actuators_is_theirs(own, expected, tmp_path, capsys, few_poses):
+    """60 N m at the link by a gear of 100; the ratio of the drive turns the gear over, not the force."""
+    text = ROBOT.read_text().replace('name="joint1"', 'name="joint1" actuatorfrcrange="-40 60"')
+    robot = tmp_path / "robot.xml"
+    robot.write_text(text.replace('name="motor1"', f'name="motor1" {own}'))
+    said = made(capsys, robot, tmp_path / "out", "--drive", "joint1=CSG-32-100")
+    model = mujoco.MjModel.from_xml_path(said["written"][0])
+    assert model.actuator("motor1").forcerange.tolist() == pytest.approx(expected)
+    assert model.actuator("motor1").forcelimited
+
+
+def test_the_longest_step_is_where_the_file_diverges(six):
+    """At the frequency of small vibrations there, with motors free, drives without load."""
+    said, _ = six
+    assert said["notes"] == []
+    for times, stable in ((0.95, True), (1.4, False)):
+        model = mujoco.MjModel.from_xml_path(said["written"][0])
+        model.opt.timestep, data = times * said["longest_step"], mujoco.MjData(model)
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
+        data.qvel[:] = 1e-3
+        mujoco.mj_step(model, data, 400)
+        assert (np.abs(data.qvel).max() < 10.0 and not data.warning.number.any()) == stable
+
+
+def fallen(model, step, friction="bristles"):
+    """Angles of the links after falling for 0.4 s, motors free but for their friction."""
+    model.opt.timestep, data = step, mujoco.MjData(model)
+    for i, angle in enumerate((0.1, 0.7, 0.8, 0.1, 0.5, 0.2), 1):
+        data.joint(f"joint{i}").qpos[0] = angle
+        data.joint(f"joint{i}_motor").qpos[0] = -100.0 * angle
+    if friction == "constraint":
+        model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
+        model.dof_frictionloss[6:] = model.actuator_forcerange[-6:, 1]
+    mujoco.mj_step(model, data, round(0.4 / step))
+    return data.qpos[:6].copy()
+
+
+def test_bristles_bear_steps_that_the_drives_bear(six):
+    """As documented; a constraint's friction is softer than that."""
+    said, _ = six
+    model = mujoco.MjModel.from_xml_path(said["written"][0])
+    model.actuator_gainprm[:2], model.actuator_biasprm[:2] = 0.0, 0.0
+    fine, coarse = fallen(model, 5e-5), fallen(model, 5e-4)
+    assert np.abs(fine - [0.1, 0.7, 0.8, 0.1, 0.5, 0.2]).max() > 0.1
+    assert coarse == pytest.approx(fine, abs=1e-3)
+    assert np.abs(fallen(model, 5e-4, "constraint") - fine).max() > 0.05
+
+
+def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_path, capsys, few_poses):
+    """With a short step they are the drive's; with MuJoCo's own softer for a light rotor, which is said."""
+    text = ROBOT.read_text()
+    for option, loss, noted in (
+        ('integrator="RK4"', 0.0204, []),
+        ('timestep="2e-4"', 0.0, []),
+        ('timestep="2e-3"', 0.0, ["joint6: friction builds up over 0.0816 rad of the motor"]),
+    ):
+        robot = tmp_path / "robot.xml"
+        robot.write_text(text.replace('<option timestep="0.0005"/>', f"<option {option}/>"))
+        said = made(capsys, robot, tmp_path / "out", "--drive", "joint6=CSG-14-100")
+        model = mujoco.MjModel.from_xml_path(said["written"][0])
+        assert model.dof_frictionloss.max() == pytest.approx(loss, rel=0.01)
+        assert model.na == (not loss)
+        assert [line.split(",")[0] for line in said["notes"] if "friction" in line] == noted
+        beyond = ["its timestep, 0.002 s, is beyond 0.000676 s, which the drives bear"]
+        assert [line for line in said["notes"] if "timestep" in line] == ([] if "2e-4" in option else beyond)
 
 
 def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, few_poses):
@@ -182,7 +254,7 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     robot.write_text(SEVEN.format(links))
     words = [f"j{i}=CSG-20-100" for i in range(1, 8)]
     said = made(capsys, robot, tmp_path / "out", "--drive", *words, "--pose", "j2=1.5708")
-    assert len(said["notes"]) == 7
+    assert sum("no armature" in line for line in said["notes"]) == 7
     assert list(said["wind_up"]) == [f"j{i}" for i in range(1, 8)]
     assert said["wind_up"]["j1"] == pytest.approx(0.0, abs=1e-9)
     assert said["wind_up"]["j2"] > 1e-4
@@ -191,27 +263,42 @@ def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     assert all(Path(path).stat().st_size > 1000 for path in said["written"])
 
 
+OTHERS = {
+    "airo-models": [("ur3e/ur3e.urdf", 6), ("ur5e/ur5e.urdf", 6)],
+    "openarm-mujoco": [("v2/openarm_bimanual.xml", 7)],
+    "robosuite": [(f"robots/{n}/robot.xml", 7) for n in ("panda", "iiwa", "kinova3", "sawyer", "xarm7")],
+}
+"""{wheel: files of robots with their axes}."""
+
+
+def files_of(wheel):
+    """Those installed; robosuite's are half a gigabyte, so it is no part of the extra `test`."""
+    try:
+        return [file for file in metadata.files(wheel) or [] if file.suffix in (".xml", ".urdf")]
+    except metadata.PackageNotFoundError:
+        pytest.skip(f"{wheel} is not installed")
+
+
 @pytest.mark.parametrize(
-    ("name", "count"), [("panda", 7), ("ur5e", 6), ("iiwa", 7), ("kinova3", 7), ("sawyer", 7), ("xarm7", 7)]
+    ("wheel", "end", "count"), [(wheel, *robot) for wheel, robots in OTHERS.items() for robot in robots]
 )
-def test_robots_of_others(name, count, tmp_path, capsys):
-    """Those of robosuite where it is installed: half a gigabyte. With 1 kg and without."""
-    spec = find_spec("robosuite")
-    if spec is None:
-        pytest.skip("robosuite is not installed")
-    robot = Path(spec.origin).parent / f"models/assets/robots/{name}/robot.xml"
+def test_robots_of_others(wheel, end, count, tmp_path, capsys, few_poses):
+    """With 1 kg; it falls with a step that it is said to bear."""
+    (robot,) = (file.locate() for file in files_of(wheel) if file.as_posix().endswith(end))
     rigid = mujoco.MjModel.from_xml_path(str(robot))
     joints = [rigid.joint(i).name for i in range(rigid.njnt)]
-    arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][-count:]
-    said = made(capsys, robot, tmp_path, "--drive", *(f"{joint}=CSG-32-100" for joint in arm))
-    bare = made(capsys, robot, tmp_path, "--drive", *(f"{j}=CSG-32-100" for j in arm), "--payload", "0")
-    assert said["frequencies"]["lowest"] < bare["frequencies"]["lowest"]
+    arm = [joint for joint in joints if rigid.joint(joint).type == mujoco.mjtJoint.mjJNT_HINGE][:count]
+    drives = [f"{joint}=CSG-32-100" for joint in arm]
+    said = made(capsys, robot, tmp_path, "--drive", *drives)
+    assert 1.0 < said["frequencies"]["lowest"] < said["frequencies"]["highest"]
     model = mujoco.MjModel.from_xml_path(said["written"][0])
-    assert model.nv == rigid.nv + count
-    data = mujoco.MjData(model)
-    for _ in range(500):
-        mujoco.mj_step(model, data)
-    assert np.isfinite(data.qpos).all()
+    assert (model.nv, model.nu) == (rigid.nv + count, rigid.nu)
+    model.opt.timestep, data = 0.5 * said["longest_step"], mujoco.MjData(model)
+    mujoco.mj_step(model, data, 3000)
+    assert not data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number
+    for joint in arm:
+        wound = data.joint(joint).qpos[0] + 0.01 * data.joint(f"{joint}_motor").qpos[0]
+        assert abs(wound) < 0.05
 
 
 @pytest.mark.parametrize(

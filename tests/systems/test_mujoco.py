@@ -176,8 +176,24 @@ def test_trials_leave_the_path_alone(robot: Robot, integrator: str) -> None:
         assert np.array_equal(data.qpos, plain.qpos)
 
 
-def test_the_path_is_part_of_mujocos_state(robot: Robot) -> None:
-    model, data = robot(LOOP)
+def test_sensors_follow_speeds_alone(robot: Robot) -> None:
+    """As finite differences of MuJoCo's ask: positions are not evaluated again."""
+    model, data = robot({})
+    run(model, data, 100)
+    data.qvel[1] += 0.1
+    again = mujoco.MjData(model)
+    mujoco.mj_copyData(again, model, data)
+    mujoco.mj_forwardSkip(model, data, mujoco.mjtStage.mjSTAGE_POS, 0)
+    mujoco.mj_forward(model, again)
+    assert np.array_equal(data.sensordata, again.sensordata)
+    assert data.sensordata[1] == data.qfrc_passive[1]
+
+
+@pytest.mark.parametrize("drive", [LOOP, {"friction_coulomb": 0.02}])
+def test_the_path_is_part_of_mujocos_state(robot: Robot, drive: dict[str, Any]) -> None:
+    """Of a hysteresis that is off nothing is there: 44 sliders before and after."""
+    model, data = robot(drive)
+    assert model.plugin_statenum.tolist() == [122 if drive is LOOP else 122 - 2 * 44]
     first = run(model, data, 400)
     kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
     saved = np.empty(mujoco.mj_stateSize(model, kind))

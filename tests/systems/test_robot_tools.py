@@ -1,11 +1,16 @@
-"""The pages of Drake and Pinocchio: their code runs where these are installed, and says what `robot` says."""
+"""The pages of robots' simulators: their commands and code run, those of Drake and Pinocchio where these are
+installed, and say what `robot` says.
+"""
 
 import json
 import re
+import shlex
+import shutil
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from conftest import here_alone
 from jointfmu_tools import cli
 
 ROOT = Path(__file__).parents[2]
@@ -28,3 +33,26 @@ def test_the_page_gives_wind_up_and_tip_error(page, package, capsys, tmp_path, m
     assert 1e-3 * moved == pytest.approx(expected["tip_error"], rel=0.03)
     for angle, name in zip(wound[1:3], ("joint2", "joint3"), strict=True):
         assert 1e-3 * angle == pytest.approx(expected["wind_up"][name], rel=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("page", "found"),
+    [("mujoco", r"elbow at (29\.\d|30\.\d)\d\d deg, -?\d\.\d\d N m"), ("ros2", r"wrote \S*drive\.urdf")],
+)
+def test_what_the_page_has_runs_top_to_bottom(page, found, capsys, tmp_path, monkeypatch):
+    """But for what installs."""
+    pytest.importorskip("mujoco")
+    shutil.copytree(ROOT / "models/robots", tmp_path / "models/robots")
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / f"docs/tools/{page}.md").read_text()
+    with here_alone():
+        for language, block in re.findall(r"```(sh|python)\n(.*?)```", text, re.DOTALL):
+            if language == "python":
+                exec(compile(block, page, "exec"), {})
+                continue
+            for line in block.splitlines():
+                command, *words = shlex.split(line, comments=True)
+                assert command in ("jointfmu", "python")
+                assert command == "python" or cli.main(words) == 0
+    assert re.search(found, capsys.readouterr().out)

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
+from jointfmu_tools.robots.fitted import fit
+from jointfmu_tools.robots.transmission import area, transmission
 
 import jointfmu
 
@@ -100,13 +102,23 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     jointfmu.drive("CSG-20-100", starting_torque=0.1, back_driving_torque=20.0, efficiency=0.75).save(
         "d.toml"
     )
-    said, model = exported(capsys, "d.toml")
+    said, _ = exported(capsys, "d.toml")
     lacks = " ".join(said["lacks"])
     assert "friction that grows with the load: at rated torque" in lacks
     text = (folder / "drive.xml").read_text()
     assert "it cannot carry:" in text
     assert all(line in text for line in said["lacks"])
     assert "the temperature of the lubricant" in lacks
+
+
+@pytest.mark.parametrize("share", [0.1, 0.2, 0.3, 0.5, 0.7])
+@pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
+def test_loops_inside_have_the_area_of_the_fmus(name, share):
+    """Fitted at rated torque alone."""
+    own = transmission(jointfmu.drive(name, hysteresis=1.0).file)
+    torques, x = own.loop(share * own.rated_torque)
+    found = fit(own, own.rated_torque).along(x)
+    assert area(x, found) == pytest.approx(area(x, torques), rel=0.03)
 
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])

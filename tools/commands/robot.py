@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     except ImportError as error:
         raise without_package(error, "read robots", "mujoco") from None
     from ..interface import load
-    from ..robots import elastic
+    from ..robots import elastic, poses
     from ..robots import pictures as drawn
     from ..robots.names import check_names
     from ..robots.transmission import transmission
@@ -93,6 +93,12 @@ def run(args: argparse.Namespace) -> int:
             more += _system(args, model, axes, files, pose, tip)
     except ImportError as error:
         raise without_package(error, "compile", "mujoco") from None
+    longest = poses.longest_step(model, axes, pose)
+    notes = [line for axis in axes for line in axis.noted]
+    if model.opt.timestep > longest:
+        notes.append(
+            f"its timestep, {model.opt.timestep:g} s, is beyond {longest:.3g} s, which the drives bear"
+        )
     facts = {
         "written": [str(path) for path in (written, *pictures, *more)],
         "payload": args.payload,
@@ -101,7 +107,8 @@ def run(args: argparse.Namespace) -> int:
         "frequencies": {"lowest": float(found.min()), "highest": float(found.max())},
         "wind_up": dict(zip([axis.joint for axis in axes], wound.tolist(), strict=True)),
         "tip_error": sunk,
-        "notes": [axis.noted for axis in axes if axis.noted],
+        "longest_step": longest,
+        "notes": notes,
     }
     print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
     return 0

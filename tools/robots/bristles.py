@@ -1,4 +1,4 @@
-"""Friction of a drive's motor as MuJoCo 4's passive `dcmotor`: bristles by Canudas de Wit et al. (1995), LuGre.
+"""Friction of a drive's motor as MuJoCo 4's passive `dcmotor`: bristles, LuGre, Canudas de Wit et al. (1995).
 
     friction = k z + c dz/dt,  dz/dt = w - k |w| z / g(w),  g(w) = dry + (static - dry) exp(-(w/w_s)^2)
 
@@ -28,6 +28,18 @@ def numbers(drive: Transmission, inertia: float, step: float) -> tuple[float, fl
     stiffness = min(drive.static / drive.presliding, inertia / step**2)
     damping = max(2.0 * float(np.sqrt(stiffness * inertia)) - drive.viscous, 0.0)
     return stiffness, damping, drive.dry, drive.static, drive.stribeck_speed
+
+
+def presliding(drive: Transmission, inertia: float, step: float) -> float:
+    """Angle [rad] of the motor over which its friction builds up to 1 - 1/e: the drive's, or more."""
+    return drive.static / numbers(drive, inertia, step)[0]
+
+
+def borne(option: Any) -> bool:
+    """Whether the integrator of MuJoCo's options bears them."""
+    import mujoco
+
+    return bool(option.integrator != mujoco.mjtIntegrator.mjINT_RK4)
 
 
 def element(drive: Transmission, joint: str, inertia: float, step: float) -> str:

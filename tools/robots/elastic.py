@@ -18,7 +18,9 @@ Array = NDArray[np.float64]
 MOTOR = "_motor"
 """What the motor's coordinate has after the name of the joint."""
 MOTORS = "drive_motors"
-"""Name of their body."""
+"""What the name of their bodies begins with."""
+_ROOM = 6
+"""Coordinates that MuJoCo allows in a body."""
 _LIGHT = 1e-12
 """Mass [kg] and inertia [kg.m2] of the motors' body; their rotors are armatures."""
 
@@ -28,14 +30,14 @@ class ElasticAxis:
     """A joint of the robot with its drive.
 
     rotor : inertia at the output [kg.m2], that of the motor times the square of the ratio
-    noted : where it comes from, if not from the robot's armature
+    noted : what is not as the robot or the drive has it
     """
 
     joint: str
     drive: Transmission
     fitted: FittedTendons
     rotor: float
-    noted: str = ""
+    noted: tuple[str, ...] = ()
 
     def wind_up(self, torque: float) -> float:
         """[rad] on the way from rest at a torque [N.m]."""
@@ -83,11 +85,19 @@ def axes(spec: Any, drives: Mapping[str, Transmission]) -> list[ElasticAxis]:
         if joint.name in drives:
             drive, dof = drives[joint.name], joint.dofadr[0]
             own = float(model.dof_armature[dof])
-            rotor, noted = own, ""
+            rotor, noted = own, []
             if own <= 0.0:
                 rotor = float(matrix[dof, dof])
-                noted = f"{joint.name}: no armature; the rotor is taken as large as what the axis turns"
-            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, noted))
+                noted.append("no armature; the rotor is taken as large as what the axis turns")
+            if drive.static and bristles.borne(model.opt):
+                angle = bristles.presliding(drive, rotor / drive.ratio**2, model.opt.timestep)
+                if angle > 1.01 * drive.presliding:
+                    noted.append(
+                        f"friction builds up over {angle:.3g} rad of the motor, as the step asks, "
+                        f"{drive.presliding:g} rad in the FMU"
+                    )
+            lines = tuple(f"{joint.name}: {line}" for line in noted)
+            found.append(ElasticAxis(joint.name, drive, fit(drive, drive.rated_torque), rotor, lines))
     return found
 
 
@@ -113,18 +123,17 @@ def with_drives(spec: Any, chosen: list[ElasticAxis], springs: bool = True) -> A
 
     springs : False leaves out the drives, and the friction of their motors
     """
-    import mujoco
-
-    made = spec.copy()
+    made, model = spec.copy(), spec.compile()
     for key in [*made.keys]:
         made.delete(key)
-    motors = _motors(made)
-    for axis in chosen:
-        motor = _add_motor(made, motors, axis)
+    for i, axis in enumerate(chosen):
+        if i % _ROOM == 0:
+            motors = _motors(made, f"{MOTORS}{i // _ROOM + 1}")
+        motor = _add_motor(made, motors, axis, model)
         if not springs:
             continue
         motor.damping = [axis.drive.viscous, 0.0, 0.0]
-        if made.option.integrator == mujoco.mjtIntegrator.mjINT_RK4:
+        if not bristles.borne(made.option):
             motor.frictionloss = axis.drive.dry
         elif axis.drive.static:
             bristles.add(made, axis.drive, motor.name, motor.armature, made.option.timestep)
@@ -145,29 +154,43 @@ def _springs(axis: ElasticAxis) -> Iterator[tuple[str, list[float], list[float],
         yield f"{name}_slider{i}", [spring, 0.0, 0.0], none, limit
 
 
-def _motors(spec: Any) -> Any:
-    """A body of the world for the motors: what turns in it moves nothing else, as the rotor of an armature."""
-    body = spec.worldbody.add_body(name=MOTORS)
+def _motors(spec: Any, name: str) -> Any:
+    """A body of the world for motors: what turns in it moves nothing else, as the rotor of an armature."""
+    body = spec.worldbody.add_body(name=name)
     body.mass, body.inertia, body.explicitinertial = _LIGHT, [_LIGHT] * 3, True
     body.ipos, body.iquat = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]
     return body
 
 
-def _add_motor(spec: Any, motors: Any, axis: ElasticAxis) -> Any:
-    """The motor's angle [rad], and the joint's actuators at it. It is a slide, which costs MuJoCo no rotation
-    and has a place of its own on the diagonal of the mass matrix.
+def _add_motor(spec: Any, motors: Any, axis: ElasticAxis, rigid: Any) -> Any:
+    """The motor's angle [rad], and the joint's actuators at it, each within the joint's own limit of all,
+    as friction is an actuator too. It is a slide, which costs MuJoCo no rotation and has a place of its own
+    on the diagonal of the mass matrix.
+
+    rigid : the robot's MjModel
     """
     import mujoco
 
-    joint, ratio = spec.joint(axis.joint), axis.drive.ratio
+    joint, ratio, number = spec.joint(axis.joint), axis.drive.ratio, rigid.joint(axis.joint).id
     motor = motors.add_joint(name=axis.joint + MOTOR, type=mujoco.mjtJoint.mjJNT_SLIDE)
     motor.armature = axis.rotor / ratio**2
     joint.armature = 0.0
     for actuator in spec.actuators:
         if actuator.trntype == mujoco.mjtTrn.mjTRN_JOINT and actuator.target == axis.joint:
+            if rigid.jnt_actfrclimited[number] and actuator.gear[0]:
+                _limit(actuator, rigid.jnt_actfrcrange[number] / actuator.gear[0])
             actuator.target = axis.joint + MOTOR
             actuator.gear = np.asarray(actuator.gear) / ratio
     return motor
+
+
+def _limit(actuator: Any, ends: Array) -> None:
+    """Keep an actuator's force between two ends, and its own where it has some."""
+    low, high = np.sort(ends)
+    own = np.asarray(actuator.forcerange)
+    if own[0] < own[1] and actuator.forcelimited != 0:
+        low, high = max(low, own[0]), min(high, own[1])
+    actuator.forcelimited, actuator.forcerange = 1, [low, high]
 
 
 def posed(model: Any, angles: Mapping[str, str]) -> Array:

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from .transmission import Transmission, area
+from .transmission import LOOP, RAMP, Transmission, area
 
 Array = NDArray[np.float64]
 
-YIELDS = np.geomspace(0.01, 0.4, 12)
+YIELDS = np.geomspace(0.01, 0.4, 6)
 """Wind-ups at which the springs may yield, over that at the largest torque of the fit [1]: all yield on
 the way there, so beyond it none holds a set that the fit has not seen."""
 LOSSLESS = 1e-6
@@ -48,13 +48,29 @@ def slider(wind_up: Array, limit: float) -> Array:
 
 
 def fit(drive: Transmission, torque: float) -> FittedTendons:
-    """The least squares of the torque along a ramp to a torque [N.m] and a loop from there, none negative."""
+    """The least squares of the torque along a ramp to a torque [N.m] and a loop from there, none negative.
+
+    The springs that yield come first, from half the distance of the loop's branches, in which what is elastic
+    has no part: so loops inside have their area too.
+    """
     torques, x = drive.loop(torque)
     largest = float(np.max(np.abs(x)))
     lossy = abs(area(x, torques)) > LOSSLESS * 4.0 * torque * largest
     limits = (YIELDS * largest).tolist() if lossy else []
+    sliders: tuple[tuple[float, float], ...] = ()
+    if lossy:
+        each = [slider(x, y) for y in limits]
+        found = nnls(np.stack([opening(x, force) for force in each], axis=1), opening(x, torques))[0]
+        sliders = tuple((k, y) for k, y in zip(found.tolist(), limits, strict=True) if k > 0.0)
+    rest = torques - sum((k * slider(x, y) for k, y in sliders), np.zeros_like(x))
     scaled = x / largest
-    columns = np.stack([scaled, scaled**3, *(slider(x, y) / largest for y in limits)], axis=1)
-    found = nnls(columns, torques)[0] / largest
-    sliders = tuple((k, y) for k, y in zip(found[2:].tolist(), limits, strict=True) if k > 0.0)
-    return FittedTendons(float(found[0]), float(found[1]) / largest**2, sliders, torque)
+    linear, cubic = (nnls(np.stack([scaled, scaled**3], axis=1), rest)[0] / largest).tolist()
+    return FittedTendons(linear, cubic / largest**2, sliders, torque)
+
+
+def opening(wind_up: Array, force: Array) -> Array:
+    """Half the distance (n) of the branches of a loop after its ramp, at wind-ups between its ends."""
+    back, forth = slice(RAMP, RAMP + LOOP // 2 + 1), slice(RAMP + LOOP // 2, None)
+    at = np.linspace(wind_up[back].min(), wind_up[back].max(), RAMP)
+    down = np.interp(at, wind_up[back][::-1], force[back][::-1])
+    return np.asarray(0.5 * (down - np.interp(at, wind_up[forth], force[forth])))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from jointfmu import __version__
 
-from .bristles import element
+from .bristles import element, presliding
 from .fitted import FittedTendons, fit
 from .transmission import RAMP, Transmission, area
 
@@ -141,6 +141,13 @@ def check_version() -> None:
         raise ValueError(f"mujoco {mujoco.__version__} has no springs that yield; expected 4.0 or newer")
 
 
+def _about_friction(drive: Transmission, motor: float) -> Iterator[str]:
+    angle = presliding(drive, motor, STEP)
+    yield f"dry friction builds up over {angle:.3g} rad of the motor, {drive.presliding:g} rad in the FMU"
+    yield "  and after a reversal as Dahl has it, not Masing; its numbers are of this motor"
+    yield f"  and steps up to {STEP:g} s, not for the integrator RK4"
+
+
 def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
     """The file of a drive fitted up to a torque [N.m], and what running it showed.
 
@@ -153,6 +160,7 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
     miss = measured(drive, fitted)
     stiffness = fitted.linear + sum(k for k, _ in fitted.sliders)
     link = stiffness / (2.0 * np.pi * FREQUENCY) ** 2
+    motor = link / drive.ratio**2
     about = [
         f"{drive.name} as plain MJCF, jointfmu {__version__}; needs MuJoCo 4.0 or newer, no plugin",
         f"torque = k x + k3 x^3 and {len(fitted.sliders)} springs that yield, x = link - motor/ratio, "
@@ -161,9 +169,9 @@ def text(drive: Transmission, torque: float) -> tuple[str, Miss]:
         *(f"  {line}" for line in miss.lines(torque)),
         f"beyond {torque:g} N.m the cubic goes on; the FMU is tabulated to {drive.max_torque:g} N.m",
         f"inertias stand for yours: {FREQUENCY:g} Hz of the link, motor locked; the motor's is as large",
+        *(_about_friction(drive, motor) if drive.static else ()),
         "it cannot carry:" if drive.lacks else "nothing of the drive is left out",
         *(f"  {line}" for line in drive.lacks),
     ]
     comment = "\n".join(f"  {line.replace('--', '- -')}" for line in about)
-    model = _model(drive, fitted, link / drive.ratio**2, link)
-    return f"<!--\n{comment}\n-->\n{model}", miss
+    return f"<!--\n{comment}\n-->\n{_model(drive, fitted, motor, link)}", miss

@@ -55,6 +55,19 @@ def frequencies(model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: f
     return np.asarray(np.sort(1.0 / (2.0 * np.pi * np.sqrt(squares))))
 
 
+def longest_step(model: Any, axes: Sequence[ElasticAxis], pose: Array) -> float:
+    """Step [s] beyond which MuJoCo's default integrator diverges: 2 over the highest natural frequency of
+    links and free motors at a pose, the drives at the torques of their fits.
+    """
+    own = dofs(model, axes)
+    rotors = np.zeros(model.nv)
+    rotors[own] = model.dof_armature[own]
+    mobility = np.linalg.inv(mass_matrix(model, pose) - np.diag(rotors))[np.ix_(own, own)]
+    mobility += np.diag([1.0 / axis.rotor for axis in axes])
+    scale = np.sqrt([axis.stiffness(axis.fitted.torque) for axis in axes])
+    return float(2.0 / np.sqrt(np.linalg.eigvalsh(scale[:, None] * mobility * scale)[-1]))
+
+
 def sag(
     model: Any, axes: Sequence[ElasticAxis], pose: Array, payload: float, tip: int
 ) -> tuple[Array, float]:
