@@ -11,10 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from patch_reduction import pole_deviations
 from scipy.optimize import brentq
 
+from jointfmu.joints.bolted_joint import spring as spring_
 from jointfmu.joints.bolted_joint.law import Bolted, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.mechanics import sliders as sliders_
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.parameters import default
 
@@ -30,6 +33,8 @@ AMPLITUDES = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.999)
 """Force of the loops over the friction [1]."""
 SWUNG, SWING, CYCLES = 9e3, 0.3, (1, 2, 20, 100)
 """Preload [N] at which the normal force swings by this part of it, at a shift that stays, and so often."""
+COUNTS = ((22, 10, 7), (40, 5, 3), (60, 3, 2))
+"""Patches, heights below and above the reference, of as many sliders together; first those of the joint."""
 ALONG = 20
 """Displacements up to gross slip at which the force is compared."""
 
@@ -103,6 +108,29 @@ def joints() -> Iterator[tuple[str, Bolted]]:
     """The box specimen with both laws."""
     yield "zhao2018", default("bolted_joint").values
     yield "roughness", default("bolted_joint", "roughness").values
+
+
+def print_counts() -> None:
+    """The same number of sliders on more patches: the first table for each, and turns about poles."""
+    shape = pressure_shape(default("bolted_joint").values.pattern)
+    print("| patches | sliders each | force | " + " | ".join(f"loop {x:g}" for x in AMPLITUDES), end="")
+    print(" | any pole: 95 %, all |\n" + "|---" * (4 + len(AMPLITUDES)) + "|")
+    for counts in COUNTS:
+        use(*counts)
+        spring = BoltedJointSpring.of(default("bolted_joint").values)
+        found = [deviations(spring, preload, moment) for preload in PRELOADS for moment in MOMENTS]
+        cells = [f"{x:.1%}" for x in np.max([a for _, a in found], axis=0)]
+        poles = "{:.1%}, {:.1%}".format(*pole_deviations(shape, spring.patches))
+        row = [str(counts[0]), str(spring.foundation().sliders), f"{max(f for f, _ in found):.2%}"]
+        print("| " + " | ".join([*row, *cells, poles]) + " |", flush=True)
+    use(*COUNTS[0])
+    print()
+
+
+def use(patches: int, below: int, above: int) -> None:
+    """Joints from now on have so many patches and heights."""
+    spring_.PATCHES, sliders_.BELOW, sliders_.ABOVE = patches, below, above
+    spring_.patches.cache_clear()
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ from jointfmu.quantity import where
 
 from .graph import Graph, symbols
 
-SLIDERS = ("sliders",)
+SLIDERS = ("sliders", "vectors")
 """Shared C of joints that have sliders."""
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from ctypes import CDLL, POINTER, Structure, byref, c_bool, c_double, c_int
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
@@ -20,6 +21,8 @@ MOVES, SLIDERS = 100_000, 8
 ROUND_OFF = 1e-13
 """Of a sum of some products, over the largest of what is compared: C adds in another order."""
 POINTER_TO = POINTER(c_double)
+AVX = " avx " in Path("/proc/cpuinfo").read_text(encoding="utf-8")
+"""Whether this processor has vectors of four."""
 
 
 class CSliders(Structure):
@@ -37,7 +40,7 @@ class Sum(Structure):
 class Abreast(Structure):
     """The same name in sliders.h."""
 
-    _fields_ = [("n", c_int), ("given", c_double * 64 * 11), ("found", c_double * 64 * 7)]
+    _fields_ = [("fours", c_bool), ("n", c_int), ("given", c_double * 64 * 11), ("found", c_double * 64 * 7)]
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +58,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> CDLL:
         function(f.name, f.doc, ca.vertcat(*f.x), none, f.y, f.name.endswith("_seed")) for f in g.functions
     ]
     law = "\n".join(text.replace("\nvoid ", "\nstatic inline void ", 1) for text in texts)
-    names = ("sliders.c", "sliders.h", "elementary.c", "elementary.h")
+    names = ("sliders.c", "sliders.h", "vectors.h", "elementary.c", "elementary.h")
     files = {name: (RUNTIME / "law" / name).read_text(encoding="utf-8") for name in names}
     files |= {"law.h": f'#include <math.h>\n#include "elementary.h"\n{HELPERS}\n{law}'}
     files |= {"elementary_tables.h": elementary.tables()}
@@ -132,7 +135,7 @@ def test_along_one_direction(library: CDLL) -> None:
 
 def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) -> np.ndarray:
     """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
-    forces alone are the same, however many sliders stand abreast."""
+    forces alone are the same, however many sliders stand abreast, and all the bits by vectors of four."""
     K, per_K, before, after, *force = kept
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 2)()
     out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 2)(*shift)
@@ -142,11 +145,13 @@ def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) ->
     close(list(sticks), np.sum(tried[:, :first], axis=1), SLIDERS * (1.0 + np.max(np.abs(tried))))
     e_x, e_y, size = np.array(direction(list(shift)))[:, None] * np.ones(SLIDERS)
     abreast, alone = Abreast(n=SLIDERS), Abreast(n=SLIDERS - 2)
-    for rows in (abreast, alone):
+    fours = Abreast(n=SLIDERS, fours=AVX)
+    for rows in (abreast, fours, alone):
         given = np.ctypeslib.as_array(rows.given)
         given[:, :SLIDERS] = [*force, *tried, e_x, e_y, K * size, before, after, K, per_K]
         library.sliders_slide(byref(rows), c_bool(rows is alone))
     found = np.array(abreast.found)[:, :SLIDERS]
+    np.testing.assert_array_equal(np.array(fours.found)[:, :SLIDERS], found)
     close(np.array(alone.found)[:2, : alone.n], found[:2, : alone.n], 1.0 + np.max(np.abs(tried)))
     np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
     return found

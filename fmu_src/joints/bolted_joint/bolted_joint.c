@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tabulated.h"
+#include "vectors.h"
 
 enum { /* places of the inputs */
     PRELOAD = INPUT_PRELOAD,
@@ -72,6 +73,7 @@ bool kind_tabulate(Joint *joint, Text *why)
                                    : "memory = false beside sides = elastic: expected true, elastic sides go with friction that remembers");
         return false;
     }
+    kind->work.abreast.fours = vectors_of_four();
     whole_begin(kind);
     energy_tabulate(&kind->energy, &joint->curve);
     for (int i = 0; i < n_nodes(); i++) {

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "vectors.h"
+
 /* From a row on, a multiple of four. */
 static inline void take_fours(double by, const double *restrict column, int first, double *restrict x)
 {
@@ -57,8 +59,10 @@ void dense_solve(const double (*a)[MODES], const int *pivots, double *x)
     }
 }
 
-void dense_products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                         double (*restrict h)[WIDE])
+/* Sums go in lanes, which a processor adds side by side. */
+
+WITHIN void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
+                     double (*restrict h)[WIDE])
 {
     enum { L = LANES_OF_MODES }; /* in blocks, whose sums stay in registers */
     for (int r = 0; r < size; r += L)
@@ -72,4 +76,45 @@ void dense_products(int n, const double (*restrict weighted)[WIDE], const double
                 for (int l = 0; l < L; l++)
                     h[r + k][c + l] += sum[k][l];
         }
+}
+COMPILED_TWICE(products,
+               (int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
+                double (*restrict h)[WIDE]),
+               (n, weighted, rows, size, h))
+
+void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
+                    int size, double (*restrict h)[WIDE])
+{
+    (fours ? products_fours : products_any)(n, weighted, rows, size, h);
+}
+
+WITHIN void add_rows(int n, const double *by, const double (*row)[WIDE], double *restrict sum)
+{
+    int i = 0;
+    for (; i + 4 <= n; i += 4)
+        for (int k = 0; k < MODES; k++)
+            sum[k] += (by[i] * row[i][k] + by[i + 1] * row[i + 1][k]) +
+                      (by[i + 2] * row[i + 2][k] + by[i + 3] * row[i + 3][k]);
+    for (; i < n; i++)
+        for (int k = 0; k < MODES; k++)
+            sum[k] += by[i] * row[i][k];
+}
+COMPILED_TWICE(add_rows, (int n, const double *by, const double (*row)[WIDE], double *restrict sum), (n, by, row, sum))
+
+void dense_add_rows(bool fours, int n, const double *by, const double (*row)[WIDE], double *sum)
+{
+    (fours ? add_rows_fours : add_rows_any)(n, by, row, sum);
+}
+
+WITHIN void dots(int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+{
+    for (int i = 0; i < n; i++)
+        result[stride * i] = dense_dot(row[i], x);
+}
+COMPILED_TWICE(dots, (int n, const double (*row)[WIDE], const double *x, int stride, double *result),
+               (n, row, x, stride, result))
+
+void dense_dots(bool fours, int n, const double (*row)[WIDE], const double *x, int stride, double *result)
+{
+    (fours ? dots_fours : dots_any)(n, row, x, stride, result);
 }

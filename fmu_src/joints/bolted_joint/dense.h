@@ -2,6 +2,8 @@
 #ifndef JOINTFMU_DENSE_H
 #define JOINTFMU_DENSE_H
 
+#include <stdbool.h>
+
 #include "law.h"
 
 /* A row of modes and of the three motions that act with them, in fours. */
@@ -12,8 +14,22 @@ _Static_assert(MODES % LANES_OF_MODES == 0, "rows in fours");
 void dense_factor(double (*a)[MODES], int *pivots);
 /* Solve with them, in place of the right side. */
 void dense_solve(const double (*factors)[MODES], const int *pivots, double *x);
+/* Sum of the products of two rows. */
+static inline double dense_dot(const double *a, const double *b)
+{
+    double sum[LANES_OF_MODES] = {0.0};
+    for (int k = 0; k < MODES; k += LANES_OF_MODES)
+        for (int l = 0; l < LANES_OF_MODES; l++)
+            sum[l] += a[k + l] * b[k + l];
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+/* The following on a processor with vectors_of_four or any other. */
 /* Add the products of n weighted rows with the rows themselves to h, its lower half up to a size. */
-void dense_products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                    double (*restrict h)[WIDE]);
+void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
+                    int size, double (*restrict h)[WIDE]);
+/* Add n rows with their weights to a sum over the modes. */
+void dense_add_rows(bool fours, int n, const double *by, const double (*row)[WIDE], double *sum);
+/* What n rows are along x, each in its place of the result. */
+void dense_dots(bool fours, int n, const double (*row)[WIDE], const double *x, int stride, double *result);
 
 #endif

@@ -42,50 +42,23 @@ void whole_begin(Kind *kind)
         lay_row(data.stretch[b], 1.0, data.bolts[b][1], -data.bolts[b][0], kind->stretch[b]);
 }
 
-/* Sums go in lanes, which a processor adds side by side. */
-static inline double dot(const double *a, const double *b)
-{
-    double sum[LANES_OF_MODES] = {0.0};
-    for (int k = 0; k < MODES; k += LANES_OF_MODES)
-        for (int l = 0; l < LANES_OF_MODES; l++)
-            sum[l] += a[k + l] * b[k + l];
-    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
-}
-
 static inline void add_scaled(double by, const double *restrict row, double *restrict sum)
 {
     for (int k = 0; k < MODES; k++)
         sum[k] += by * row[k];
 }
 
-/* Add four rows with their weights. */
-static inline void add_four(const double *by, const double (*row)[WIDE], double *restrict sum)
-{
-    for (int k = 0; k < MODES; k++)
-        sum[k] += (by[0] * row[0][k] + by[1] * row[1][k]) + (by[2] * row[2][k] + by[3] * row[3][k]);
-}
-
-/* The same with so many. */
-static void add_rows(int n, const double *by, const double (*row)[WIDE], double *sum)
-{
-    int i = 0;
-    for (; i + 4 <= n; i += 4)
-        add_four(by + i, row + i, sum);
-    for (; i < n; i++)
-        add_scaled(by[i], row[i], sum);
-}
-
 void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2])
 {
     if (!ELASTIC)
         return;
-    for (int i = 0; i < (int)data.n_opening && opened; i++)
-        opened[i] = dot(kind->opening[i], amplitude);
-    for (int j = 0; j < (int)data.n_patch_x; j++) {
-        bent[j][0] = dot(kind->patch[0][j], amplitude);
-        bent[j][1] = dot(kind->patch[1][j], amplitude);
-        if (patch_opened)
-            patch_opened[j] = dot(kind->patch[2][j], amplitude);
+    const bool fours = kind->work.abreast.fours;
+    const int patches = (int)data.n_patch_x;
+    for (int d = 0; d < 2; d++)
+        dense_dots(fours, patches, kind->patch[d], amplitude, 2, &bent[0][d]);
+    if (opened) {
+        dense_dots(fours, (int)data.n_opening, kind->opening, amplitude, 1, opened);
+        dense_dots(fours, patches, kind->patch[2], amplitude, 1, patch_opened);
     }
 }
 
@@ -98,15 +71,16 @@ static inline void scale(double by, const double *restrict row, double *restrict
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
 static void press_all(Kind *kind, int size, double (*by_normal)[WIDE])
 {
+    const bool fours = kind->work.abreast.fours;
     memset(by_normal, 0, WIDE * sizeof *by_normal);
     for (int i = 0; i < (int)data.n_nodes; i++)
         scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
-    dense_products((int)data.n_nodes, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->opening, size,
-                   by_normal);
+    dense_products(fours, (int)data.n_nodes, (const double(*)[WIDE])kind->weighted,
+                   (const double(*)[WIDE])kind->opening, size, by_normal);
     for (int b = 0; b < (int)data.n_bolts; b++)
         scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
-    dense_products((int)data.n_bolts, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->stretch, size,
-                   by_normal);
+    dense_products(fours, (int)data.n_bolts, (const double(*)[WIDE])kind->weighted,
+                   (const double(*)[WIDE])kind->stretch, size, by_normal);
 }
 
 /* The same by shear in `by_shear`, of patches with their tangents. */
@@ -120,7 +94,8 @@ static void shear_all(Kind *kind, int size, const double (*tangent)[3])
             for (int k = 0; k < WIDE; k++)
                 kind->weighted[j][k] = weight * (t[0] * kind->patch[0][j][k] + t[1] * kind->patch[1][j][k]);
         }
-        dense_products(n, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->patch[d], size, kind->by_shear);
+        dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
+                       (const double(*)[WIDE])kind->patch[d], size, kind->by_shear);
     }
 }
 
@@ -144,13 +119,14 @@ static inline double seat(int b, const double *v)
 
 static inline double stretched(const Kind *kind, int b, const double *v, const double *amplitude)
 {
-    return seat(b, v) + dot(kind->stretch[b], amplitude);
+    return seat(b, v) + dense_dot(kind->stretch[b], amplitude);
 }
 
 /* Residual of the amplitudes, and what of it is round-off. */
 static double residual(const Joint *joint, const double *inputs, const double *amplitude, double *r)
 {
     const Kind *kind = &joint->kind;
+    const bool fours = kind->work.abreast.fours;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
     double normal[MOST_OPENING], shear[2][MOST_PATCHES], bolts[MOST_STRETCH];
     for (int k = 0; k < MODES; k++)
@@ -175,10 +151,10 @@ static double residual(const Joint *joint, const double *inputs, const double *a
         bolts[b] = kind->bolt * stretched(kind, b, inputs, amplitude);
         forces += fabs(bolts[b]);
     }
-    add_rows((int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
+    dense_add_rows(fours, (int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
     for (int d = 0; d < 2; d++)
-        add_rows((int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
-    add_rows((int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
+        dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
+    dense_add_rows(fours, (int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
@@ -237,7 +213,7 @@ static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
         dense_solve((const double(*)[MODES])kind->factors, kind->pivots, z);
-        kind->whole[d] = h[at] + dot(h, z);
+        kind->whole[d] = h[at] + dense_dot(h, z);
     }
     followed->known = true;
 }
@@ -328,13 +304,13 @@ static void broyden(Kind *kind, int kept)
     double(*steps)[MODES] = kind->steps, *squares = kind->squares;
     double *step = steps[kept];
     for (int i = 0; i + 1 < kept; i++)
-        add_scaled(dot(steps[i], step) / squares[i], steps[i + 1], step);
+        add_scaled(dense_dot(steps[i], step) / squares[i], steps[i + 1], step);
     if (kept > 0) {
-        const double by = 1.0 / (1.0 - dot(steps[kept - 1], step) / squares[kept - 1]);
+        const double by = 1.0 / (1.0 - dense_dot(steps[kept - 1], step) / squares[kept - 1]);
         for (int k = 0; k < MODES; k++)
             step[k] *= by;
     }
-    squares[kept] = dot(step, step);
+    squares[kept] = dense_dot(step, step);
 }
 
 /* As `Whole._newton` of the package; where nothing is found with the residual that is missed. */
@@ -368,14 +344,14 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         dense_solve((const double(*)[MODES])kind->factors, kind->pivots, step);
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
-        const double falls = dot(r, step);
+        const double falls = dense_dot(r, step);
         for (int p = 0; p < NEWTON_PARTS; p++) {
             for (int k = 0; k < MODES; k++)
                 amplitude[k] = begin[k] + size * step[k];
             if (!try_at(joint, way, at, amplitude, last, why))
                 return REFUSED;
             least = residual(joint, at, amplitude, r);
-            const double rises = dot(r, step);
+            const double rises = dense_dot(r, step);
             if (!(rises > 0.5 * fabs(falls)))
                 break;
             size *= fmax(falls / (falls - rises), 0.1);
@@ -472,7 +448,7 @@ static void tell_whole(const Kind *kind, const double stiffness[MOTIONS], double
 static void tell_stretch(const Kind *kind, const double *amplitude, double *x)
 {
     for (int b = 0; b < (int)data.n_bolts; b++) {
-        const double stretch = dot(kind->stretch[b], amplitude);
+        const double stretch = dense_dot(kind->stretch[b], amplitude);
         x[SUM_STRETCH] += stretch;
         x[SUM_STRETCH_X] += stretch * data.bolts[b][0];
         x[SUM_STRETCH_Y] += stretch * data.bolts[b][1];
@@ -538,13 +514,13 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
         double sum = 0.0;
         for (int i = 0; i < (int)data.n_nodes; i++) {
             const double normal[MOTIONS] = {0.0, 0.0, 1.0, data.nodes[i][PLACE_Y], -data.nodes[i][PLACE_X], 0.0};
-            const double u = normal[d] + dot(kind->opening[i], z);
+            const double u = normal[d] + dense_dot(kind->opening[i], z);
             sum += data.nodes[i][SHARE] * kind->stiffening[i] * u * u;
         }
         for (int j = 0; j < (int)data.n_patches; j++) {
             const double along[MOTIONS] = {1.0, 0.0, 0.0, 0.0, 0.0, -data.patches[j][PLACE_Y]};
             const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
-            const double u = along[d] + dot(kind->patch[0][j], z), v = across[d] + dot(kind->patch[1][j], z);
+            const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
             const double *t = kind->shears[j].tangent;
             sum += data.patches[j][SHARE] * (t[0] * u * u + 2.0 * t[1] * u * v + t[2] * v * v);
         }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "vectors.h"
+
 /* The sums go in lanes, which a processor adds side by side. */
 enum { LANES = 4 };
 
@@ -206,7 +208,7 @@ int sliders_stick(int n, const Sliders *s, const double shift[2], double *const 
 #define ALL_FOUR
 #endif
 
-static inline void slide_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+WITHIN void slide_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
 {
     for (int i = 0; i < n; i += LANES) {
         ALL_FOUR
@@ -221,7 +223,7 @@ static inline void slide_each(int n, const double (*restrict given)[ABREAST], do
     }
 }
 
-static inline void return_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+WITHIN void return_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
 {
     for (int i = 0; i < n; i += LANES) {
         ALL_FOUR
@@ -236,15 +238,21 @@ static inline void return_each(int n, const double (*restrict given)[ABREAST], d
     }
 }
 
+WITHIN void slide_or_return(int n, Abreast *abreast, bool forces)
+{
+    const double(*given)[ABREAST] = (const double(*)[ABREAST])abreast->given;
+    if (forces)
+        return_each(n, given, abreast->found);
+    else
+        slide_each(n, given, abreast->found);
+}
+COMPILED_TWICE(slide_or_return, (int n, Abreast *abreast, bool forces), (n, abreast, forces))
+
 void sliders_slide(Abreast *abreast, bool forces)
 {
     int n = abreast->n;
     for (; n % LANES != 0; n++) /* none has hardly any limit */
         for (int r = 0; r < N_SLIDER; r++)
             abreast->given[r][n] = 0.0;
-    const double(*given)[ABREAST] = (const double(*)[ABREAST])abreast->given;
-    if (forces)
-        return_each(n, given, abreast->found);
-    else
-        slide_each(n, given, abreast->found);
+    (abreast->fours ? slide_or_return_fours : slide_or_return_any)(n, abreast, forces);
 }

@@ -41,6 +41,7 @@ int sliders_stick(int n, const Sliders *s, const double shift[2], double *const 
 enum { ABREAST = 64, N_SLIDER = 11, SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };
 _Static_assert((int)ABREAST >= (int)MOST_SLIDERS, "those of one call");
 typedef struct {
+    bool fours; /* the processor has vectors_of_four */
     int n;
     double given[N_SLIDER][ABREAST], found[N_SLID][ABREAST];
 } Abreast;

@@ -1,0 +1,49 @@
+/* Loops that are compiled twice: for every processor, and for those of x86-64 with vectors of four doubles, of
+ * which the host's is asked once. Operations and their order are the same, and so are the bits. */
+#ifndef JOINTFMU_VECTORS_H
+#define JOINTFMU_VECTORS_H
+
+#include <stdbool.h>
+
+#ifdef __GNUC__
+#define WITHIN __attribute__((always_inline, flatten)) static inline /* with all that it calls */
+#else
+#define WITHIN static inline
+#endif
+
+/* `loop`, which is WITHIN, as `loop_any` and `loop_fours`. */
+#define COMPILED_TWICE(loop, parameters, arguments) \
+    static void loop##_any parameters               \
+    {                                               \
+        loop arguments;                             \
+    }                                               \
+    OF_FOUR static void loop##_fours parameters     \
+    {                                               \
+        loop arguments;                             \
+    }
+
+#if defined __x86_64__ && defined __GNUC__
+#include <cpuid.h>
+
+#define OF_FOUR __attribute__((target("avx")))
+
+/* Whether processor and operating system have them (Intel, Software Developer's Manual, 1-14.3). */
+static inline bool vectors_of_four(void)
+{
+    enum { XSAVE_AND_AVX = 3 << 27, XMM_AND_YMM = 6 };
+    unsigned a, b, c, d, low, high;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & XSAVE_AND_AVX) != XSAVE_AND_AVX)
+        return false;
+    __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    return (low & XMM_AND_YMM) == XMM_AND_YMM;
+}
+#else
+#define OF_FOUR
+
+static inline bool vectors_of_four(void)
+{
+    return false;
+}
+#endif
+
+#endif
