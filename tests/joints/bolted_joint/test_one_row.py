@@ -1,7 +1,7 @@
 """Assemblies whose bolts are no two rows: what finite elements write of them."""
 
 import pytest
-from jointfmu_tools.commands.footprint.finite_elements import with_assembly
+from jointfmu_tools.commands.footprint.compute import with_assembly
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 
 from jointfmu.parameters import default
