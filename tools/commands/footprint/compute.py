@@ -49,6 +49,15 @@ def joint_file(path: Path | None) -> ParameterFile:
     return file
 
 
+def check_bolts(option: str, file: ParameterFile) -> None:
+    """Refuse an option for the whole joint where the file has no bolts that bear."""
+    if not file.flat.get("bolt_stiffness", 0.0) > 0.0:
+        raise ValueError(
+            f"{option} without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file of "
+            "--params"
+        )
+
+
 def judge_assembly(
     file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
 ) -> Judgement:
@@ -123,11 +132,8 @@ def run(args: argparse.Namespace) -> int:
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
     _check(args)
-    if args.attached and not file.flat.get("bolt_stiffness", 0.0) > 0.0:
-        raise ValueError(
-            f"--attached {args.attached} without the stiffness of a bolt: expected bolt_stiffness above 0 "
-            "N/m in the file of --params"
-        )
+    if args.attached:
+        check_bolts(f"--attached {args.attached}", file)
     if args.field:
         results.check(args.field)
     file = with_assembly(file, assembly, whole=args.out is not None)

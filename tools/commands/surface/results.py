@@ -16,6 +16,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ...pressure import judge_file
+from ...shown import aligned
 from ...surfaces.form import ScanRoughness
 from ...surfaces.heights import Areal, Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
@@ -172,9 +173,7 @@ def _print(
         print(f"repaired in {name}: {repair}")
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
     rows = [heads, *(_row(result) for result in identified.results)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
-    for row in rows:
-        print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    print("\n".join(aligned(rows)))
     print("brackets: 95 % confidence intervals")
     for joint in joints_shown(args, file):
         print(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
