@@ -8,6 +8,6 @@ PARTS = ToolParts(
     checks="job",
     figures="job",
     ringing="job",
-    export="interface",
-    pressure="interface",
+    export="load",
+    pressure="load",
 )
