@@ -11,7 +11,7 @@ from jointfmu_tools.joints.bolted_joint.new import computed
 
 import jointfmu
 
-MODULES = ("table", "frame", "joint", "law", "make", "run")
+MODULES = ("frame", "joint", "law", "make")
 PLATE = {
     "plate": (200, 100),
     "bolts": "4xM12",
