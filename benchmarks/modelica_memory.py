@@ -11,7 +11,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from jointfmu_tools.joints.bolted_joint.modelica.tight import tightened
+from jointfmu_tools.joints.bolted_joint.modelica import tightened
 from scipy.integrate import solve_ivp
 from scipy.interpolate import BPoly
 from validity_tables import heading, row

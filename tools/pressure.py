@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
@@ -29,6 +30,17 @@ class NominalPressure:
     peak: Callable[..., float]
     scale: Callable[..., float] = lambda parameters, load: 1.0
     borne: Callable[..., tuple[float, str] | None] = lambda parameters: None
+
+
+def over_area(parameters: Any, load: float) -> float:
+    """Pressure [Pa] of a load [N] that is spread evenly over the nominal area."""
+    return float(load / parameters.A_0)
+
+
+FLANKS = NominalPressure(
+    load="f", usual=lambda joint: min(3e3, 0.1 * joint.hardness * joint.A_0), mean=over_area, peak=over_area
+)
+"""Of flanks under a normal force f."""
 
 
 def nominal_pressure(kind: Kind) -> NominalPressure | None:

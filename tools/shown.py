@@ -1,7 +1,7 @@
 """Numbers as people read them: one unit for all stiffnesses, units spelled out, a file's with sources."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from jointfmu.contact.roughness import DECLARED
@@ -34,6 +34,12 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
         return f"{value:g}", ""
     shown = shown_unit(unit, value)
     return f"{factor(unit, shown) * value:.{digits}g}", spelled(shown)
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines, columns as wide as their widest cell."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(f"{c:{w}}" for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 class Stated(NamedTuple):

@@ -12,7 +12,7 @@ from jointfmu_tools.joints.bolted_joint.new import computed
 
 import jointfmu
 
-MODULES = ("table", "frame", "joint", "law", "make", "run")
+MODULES = ("frame", "joint", "law", "make")
 PLATE = {
     "plate": (200, 100),
     "bolts": "4xM12",
@@ -32,7 +32,7 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def plate(monkeypatch):
     """Makes a bolted joint of PLATE, without the finite elements beside it."""
-    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
+    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
     return lambda **changes: jointfmu.bolted_joint(**PLATE | changes)
 
 

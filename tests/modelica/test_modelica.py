@@ -19,7 +19,7 @@ import pytest
 from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
 from jointfmu_tools.cli import main
 from jointfmu_tools.joint_parts import part
-from jointfmu_tools.joints.bolted_joint.modelica import tight
+from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
 from jointfmu_tools.modelica import library, records
 from jointfmu_tools.modelica.records import identifier
 from jointfmu_tools.systems.system import system
@@ -192,7 +192,7 @@ def test_a_thinned_curve_keeps_load_and_stiffness(kind: str, request: pytest.Fix
 
 
 def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointSpring):
-    joint = tight.tightened(bolted, 15e3, 4500.0)
+    joint = bolted_modelica.tightened(bolted, 15e3, 4500.0)
     total = records.curve_of(joint.table)
     preload = 15e3 * bolted.joint.n_bolts
     rest = bolted.motion(15e3, 4500.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -202,13 +202,13 @@ def test_one_total_stands_for_all_nodes_of_the_bolted_joint(bolted: BoltedJointS
         assert load == pytest.approx(exact["f_z"], abs=EXACT * max(preload, abs(exact["f_z"])))
         assert stiffness == pytest.approx(exact["K_zz"], abs=EXACT * max(rest["K_zz"], exact["K_zz"]))
         eta = np.interp(-s_z, *joint.damping.T)
-        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * tight.DAMPING_TOLERANCE)
+        assert eta == pytest.approx(exact["eta_n"], rel=2.0 * bolted_modelica.DAMPING_TOLERANCE)
 
 
 @pytest.mark.parametrize("preload", [0.0, -1.0, math.nan, 1e9])
 def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload: float):
     with pytest.raises(ValueError, match=r"preload = .* N per bolt"):
-        tight.tightened(bolted, preload, 0.0)
+        bolted_modelica.tightened(bolted, preload, 0.0)
 
 
 # ---- the command ----
@@ -391,7 +391,9 @@ def test_bolted_component_gives_the_forces_of_the_package(rumoca: Any, bolted: B
         damping = max(abs(exact["C_zz"] * v[2]), 1.0)
         for i, axis in enumerate("xyz"):
             error = abs(found[f"joint.f[{i + 1}]"][k] - exact[f"f_{axis}"])
-            allowed = EXACT * scale + (2.0 * tight.DAMPING_TOLERANCE * damping if axis == "z" else 0.0)
+            allowed = EXACT * scale + (
+                2.0 * bolted_modelica.DAMPING_TOLERANCE * damping if axis == "z" else 0.0
+            )
             assert error <= allowed, (axis, t, found[f"joint.f[{i + 1}]"][k], exact[f"f_{axis}"])
 
 
@@ -402,7 +404,7 @@ def test_elastic_shear_of_the_bolted_component_is_that_of_the_package(rumoca: An
     body += "".join(f"\n  Move m{a}(at=0.0, rate={v!r});" for a, v in zip("xyz", rates, strict=True))
     wires = "\n  ".join(f"connect(joint.flange_{a}, m{a}.flange);" for a in "xyz")
     found = simulate(rumoca, top(body, wires, move("Translational", "s")), 1.0, 1e-2)
-    total = tight.tightened(bolted, 9e3, 0.0)
+    total = bolted_modelica.tightened(bolted, 9e3, 0.0)
     limit, u = bolted.joint.mu * total.force, (found["joint.s_rel[1]"], found["joint.s_rel[2]"])
     assert np.max(np.hypot(*u) * found["joint.K_t"]) > 2.0 * limit
     curve = [found[f"joint.{name}"] for name in ("G", "K_n", "bend")]

@@ -57,7 +57,7 @@ def paths(tmp_path_factory) -> list[Path]:
         for name, given in PLATES.items():
             out = ["--out", str(folder / f"{name}.toml")]
             assert cli.main(["new", "bolted-joint", *given, *more, *out]) == 0
-            patch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
+            patch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
     return sorted(folder.iterdir())
 
 

@@ -39,7 +39,7 @@ from jointfmu_fmu_src.ssv import NUMBER
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
 from jointfmu_tools.job.checks import check_decays, check_ringing
-from jointfmu_tools.joints.harmonic_drive.ringing import LOADING
+from jointfmu_tools.joints.harmonic_drive.job import LOADING
 from jointfmu_tools.report.systems import windup
 from jointfmu_tools.systems import decays, ringing, ssp
 from jointfmu_tools.systems.cosimulation import simulate as simulate_system

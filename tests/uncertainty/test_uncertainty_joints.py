@@ -10,8 +10,7 @@ from conftest import refused_line
 from joint_cases import JOINTS
 from jointfmu_tools import cli
 from jointfmu_tools.uncertainty import propagate
-from jointfmu_tools.uncertainty.problem import pose
-from jointfmu_tools.uncertainty.reduced import reduced
+from jointfmu_tools.uncertainty.problem import pose, reduced
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default

@@ -12,7 +12,7 @@ from jointfmu.mechanics.curve import approach_curve
 
 from ..fem import installed
 from ..fields.clamped import clamping
-from .footprint.finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly
+from .footprint.compute import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
     from ..fem.modes import NaturalModes

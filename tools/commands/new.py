@@ -19,6 +19,7 @@ from ..interface.joint import Joint
 from ..interface.make import made
 from ..joint_parts import part
 from ..pressure import judge_file
+from ..shown import aligned
 from . import check_files, declare
 
 
@@ -81,10 +82,7 @@ def _table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespac
     if args.json:
         print(json.dumps(content))
         return 0
-    widths = {key: max(len(_shown(row[key])) for row in [*content, {key: key}]) for key in content[0]}
-    print("  ".join(f"{key:{width}}" for key, width in widths.items()).rstrip())
-    for row in content:
-        print("  ".join(f"{_shown(row[key]):{width}}" for key, width in widths.items()).rstrip())
+    print("\n".join(aligned([[*content[0]], *([_shown(cell) for cell in row.values()] for row in content)])))
     return 0
 
 

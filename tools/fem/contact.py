@@ -56,6 +56,16 @@ class Interface:
     area: Array
     position: Array
 
+    @property
+    def centroid(self) -> Array:
+        """Of the contact (2) [m]."""
+        return np.asarray(self.area @ self.position / self.area.sum())
+
+    @property
+    def centred(self) -> Array:
+        """Places (q, 2) [m] of the quadrature points from the centroid."""
+        return self.position - self.centroid
+
     @classmethod
     def of(cls, mesh: MeshQuad, element: Element | None = None) -> "Interface":
         """Quadrature of a plane mesh; the element is the trace of the bodies' element."""

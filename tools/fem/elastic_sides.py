@@ -78,7 +78,7 @@ class Cells:
 def cell_means(joint: WholeJoint, places: Array, normal: Array) -> sp.csr_matrix:
     """Means (n, q) over the cells of places (n, 2) [m], by the stiffness of the interface (q)."""
     at = joint.interface
-    position = at.position - at.area @ at.position / at.area.sum()
+    position = at.centred
     cell = cKDTree(places).query(position)[1]
     weight = at.area * np.maximum(normal, 1e-6 * normal.max())
     sums = sp.csr_matrix((weight, (cell, np.arange(cell.size))), shape=(len(places), cell.size))
@@ -195,7 +195,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     joint = linear.joint
     cells = Cells.of(joint, spring, normal)
     at = joint.interface
-    bolts = joint.bolts - at.area @ at.position / at.area.sum()
+    bolts = joint.bolts - at.centroid
     states = States.of(cells, bolts, preload)
     forces = np.stack([states.forces(motion) for motion in states.motions()], axis=1)
     fields = _modes(linear, cells.moved @ forces)
@@ -212,17 +212,16 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         cell_means(joint, spring.shape.position, normal) @ traces[2],
         _planes(spring.shape.position),
         weight * spring.shape.share * tight,
-        _planes(at.position - at.area @ at.position / at.area.sum()),
+        _planes(at.centred),
         traces[2],
         area,
     )
     means = cell_means(joint, patches.position, normal)
-    place = at.position - at.area @ at.position / at.area.sum()
     both = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
         _turns(patches.position),
         np.tile(weight * patches.share * shear, 2),
-        _turns(place),
+        _turns(at.centred),
         np.concatenate(traces[:2]),
         np.tile(ratio * area, 2),
     )

@@ -2,6 +2,7 @@
 numbers: text at a prompt, HTML in a notebook.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -16,6 +17,8 @@ from jointfmu.files import columns
 from jointfmu.files.writing import write_text
 from jointfmu.fmi import ramp
 from jointfmu.quantity import Array
+
+from ..shown import aligned
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,9 +45,7 @@ class Table:
 
     def __str__(self) -> str:
         cells = [[_cut(cell) for cell in row] for row in (self.heads, *self.rows)]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        rows = ("  ".join(f"{c:{w}}" for c, w in zip(row, widths, strict=True)).rstrip() for row in cells)
-        return "\n".join([self.title, *self.lines, *rows])
+        return "\n".join([self.title, *self.lines, *aligned(cells)])
 
     __repr__ = __str__
 
@@ -67,7 +68,21 @@ ENDS = 5
 """Rows at the begin and at the end that are printed."""
 
 
-class Frame(Mapping[str, Array]):
+class Tabled(ABC):
+    """What is printed as a table."""
+
+    @abstractmethod
+    def _table(self) -> Table: ...
+
+    def __repr__(self) -> str:
+        return str(self._table())
+
+    def _repr_html_(self) -> str:
+        """The table for a notebook."""
+        return self._table()._repr_html_()
+
+
+class Frame(Tabled, Mapping[str, Array]):
     """Columns (n) of numbers in SI units by name.
 
     units    : {name: unit}
@@ -108,13 +123,6 @@ class Frame(Mapping[str, Array]):
             rows.insert(ENDS, ["..."] * len(self))
         heads = [f"{name} [{self.units[name]}]" for name in self._columns]
         return Table(f"{count} points", heads, rows, self.messages)
-
-    def __repr__(self) -> str:
-        return str(self._table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook."""
-        return self._table()._repr_html_()
 
     @plots.style()
     def plot(self, x: str | None = None, y: str | None = None) -> "Figure":

@@ -19,7 +19,7 @@ from jointfmu.parameters import ParameterFile, dump
 
 from ..pressure import judge_file
 from ..shown import quantity, stated
-from .frame import Frame, Table
+from .frame import Frame, Table, Tabled
 from .law import Law
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ Facts = Mapping[str, tuple[float, str, str]]
 
 
 @dataclass(frozen=True, repr=False)
-class Joint:
+class Joint(Tabled):
     """A joint with its parameters. It does not change: `with_values` gives another one.
 
     file  : its parameter file, with the source of each number
@@ -95,13 +95,6 @@ class Joint:
         rows = [(name, value, unit, kind, source) for name, value, unit, _, kind, source in table.rows]
         lines = [*facts, *(f"warning: {text}" for text in self.warnings)]
         return Table(table.title, ("name", "value", "unit", "kind", "source"), rows, lines)
-
-    def __repr__(self) -> str:
-        return str(self._table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook."""
-        return self._table()._repr_html_()
 
     def with_values(self, values: Mapping[str, Any] | None = None, **more: Any) -> "Joint":
         """The joint with some numbers changed (SI units), names as in `values`.

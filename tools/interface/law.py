@@ -15,7 +15,7 @@ from jointfmu.judgement import judge, law_height
 from jointfmu.quantity import flat_fields, flatten
 
 from ..shown import quantity
-from .frame import Frame, Table
+from .frame import Frame, Table, Tabled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,7 +34,7 @@ UNITS = {
 
 
 @dataclass(frozen=True, repr=False)
-class Law:
+class Law(Tabled):
     """An interface law: load, stiffness, real area and dissipation of two rough surfaces in contact.
 
     parameters : the law's parameter set, see `values`
@@ -61,13 +61,6 @@ class Law:
             for name, value in self.values.items()
         ]
         return Table(f"law {self.name}", ("name", "value", "unit", "meaning"), rows)
-
-    def __repr__(self) -> str:
-        return str(self._table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook."""
-        return self._table()._repr_html_()
 
     def at_pressure(self, pressure: ArrayLike) -> Frame:
         """The interface under nominal pressures (n) [Pa]: F, K_N, K_T, A_r of the whole nominal area A_0.

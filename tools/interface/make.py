@@ -18,7 +18,7 @@ from ..drawing.part import Drawing, NewJoint
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures
 from ..joint_parts import Option, part
-from .frame import Table
+from .frame import Table, Tabled
 from .joint import Facts, Joint
 
 if TYPE_CHECKING:
@@ -153,7 +153,7 @@ def _meaning(option: Option) -> str:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Tabled):
     """A fit: `joint` has the fitted parameters; prints each of them with its spread.
 
     >>> import jointfmu
@@ -184,13 +184,6 @@ class Fit:
         lines = [f"warning: the fit says nothing of the joint: {doubt}"] if doubt else []
         lines += [f"note: {line}" for line in self.outcome.warnings()]
         return Table("fit", ("name", "value", "unit", "spread", "determined"), rows, lines)
-
-    def __repr__(self) -> str:
-        return str(self._table())
-
-    def _repr_html_(self) -> str:
-        """The table for a notebook."""
-        return self._table()._repr_html_()
 
     @plots.style()
     def plot(self) -> "Figure":

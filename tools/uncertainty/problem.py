@@ -1,19 +1,64 @@
-"""What a user wants to know, as a problem: parameters, distributions and a ramp of load, all checked."""
+"""What a user wants to know, as a problem: parameters, distributions, a ramp of load, a joint's fast
+curves.
+"""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from jointfmu.joints import KINDS
+from jointfmu.joints.kind import Kind
+from jointfmu.joints.model import Variable
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flat_fields, problem
 from jointfmu.quantity.refusal import Refusal
 
-from .reduced import Reduced, reduced
+from ..joint_parts import part
 from .study import Uncertain, is_relative, samples_of, split
+
+Evaluate = Callable[[type[Any], Mapping[str, Any], Array, Array], dict[str, Array]]
+
+
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """A joint's curves over a ramp of load.
+
+    load     : the ramped input
+    outputs  : what is computed along the ramp
+    to       : default end of the ramp, of the parameter set
+    most     : where the tabulated law ends, of the parameter set (numbers or samples)
+    evaluate : (class of the parameter set, values or samples (n), loads (m), factor (n, 1)) -> outputs
+        (n, m) at factor times loads
+    exact    : (parameter set, loads (m)) -> outputs (m), by the exported spring itself
+    """
+
+    load: Variable
+    outputs: Sequence[Variable]
+    to: Callable[[Any], float]
+    most: Callable[[Any], Any]
+    evaluate: Evaluate
+    exact: Callable[[Any, Array], dict[str, Array]]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """{output: unit}."""
+        return {v.name: v.unit for v in self.outputs}
+
+
+def reduced(kind: Kind) -> Reduced:
+    """What the joint's folder says.
+
+    Raises ValueError if it has no reduced evaluation.
+    """
+    found = part(kind, "reduced")
+    if found is None:
+        raise ValueError(f"joint = {kind.name!r} has no evaluation for many samples at once")
+    curves: Reduced = found.REDUCED
+    return curves
+
 
 INTERVAL = "interval"
 """Word for the interval that the parameter file states in a source."""

@@ -28,7 +28,7 @@ STILL = (0.0, 0.0, 0.0)
 @pytest.fixture(autouse=True)
 def interface_alone(monkeypatch):
     """The finite elements of the whole joint take seconds; test_bolted_plate.py looks at them."""
-    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.WholeFacts(file, {}, []))
+    monkeypatch.setattr(computed, "facts", lambda file, *arguments: computed.NewJoint(file, {}, []))
 
 
 def made(capsys, *words, path=None):

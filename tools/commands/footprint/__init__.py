@@ -14,9 +14,8 @@ from jointfmu.parameters import ParameterFile, dump
 
 from ...fields.clamped import clamping
 from .. import check_files
-from . import bodies
-from . import compute as footprint_compute
-from .finite_elements import joint_file
+from . import bodies, compute
+from .compute import joint_file
 
 if TYPE_CHECKING:
     from ...fields.nodal_result import ContactField
@@ -29,7 +28,7 @@ def add(commands: Commands) -> None:
     top = commands.add_parser("footprint", help=text, description=text)
     steps = top.add_subparsers(dest="step", required=True, metavar="STEP", parser_class=Parser)
     _import(steps)
-    footprint_compute.add(steps)
+    compute.add(steps)
 
 
 OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with"}

@@ -12,6 +12,7 @@ from ...drawing.reading import number, numbers
 from ...drawing.tables import threads
 from ...fields.clamped import clamping
 from ...fields.nodal_result import ContactField
+from .compute import check_bolts
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly
@@ -61,11 +62,8 @@ def check(args: argparse.Namespace, file: ParameterFile) -> None:
             raise ValueError(f"--{name} without --thickness: expected that of both plates")
     if args.thickness and not args.out:
         raise ValueError("--thickness without --out: expected the file for the whole joint")
-    if args.thickness and not file.flat.get("bolt_stiffness", 0.0) > 0.0:
-        raise ValueError(
-            "--thickness without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file "
-            "of --params"
-        )
+    if args.thickness:
+        check_bolts("--thickness", file)
 
 
 def places(args: argparse.Namespace, file: ParameterFile, field: ContactField) -> Array | None:

@@ -89,7 +89,7 @@ def _identify(args: argparse.Namespace) -> int:
     heights = [read(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
     from ...surfaces.identify import identify  # scipy: after what is refused at once
     from ...surfaces.joint_parameters import with_surface
-    from . import results as surface_results
+    from . import results
 
     span = tuple(args.span) if args.span else None
     identified = identify(heights, args.form, span, args.longest_wave, args.side, args.keep_spikes)
@@ -101,7 +101,7 @@ def _identify(args: argparse.Namespace) -> int:
         from ...surfaces.results import draw
 
         draw(identified, args.plot)
-    surface_results.show(identified, heights, file, args)
+    results.show(identified, heights, file, args)
     return 0
 
 

@@ -1,23 +1,146 @@
-"""What `jointfmu surface` prints: lines and a table, or JSON."""
+"""What `jointfmu surface` found: one JSON object, or lines and a table."""
 
 import argparse
 import json
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from jointfmu.commands.common import tell
+from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.laws import ROUGHNESS_LAW
-from jointfmu.contact.roughness import GAMMA, level
+from jointfmu.contact.roughness import GAMMA, height, level
+from jointfmu.joints import KINDS
+from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Number
 
 from ...pressure import judge_file
+from ...shown import aligned
 from ...surfaces.form import ScanRoughness
-from ...surfaces.heights import Heights
+from ...surfaces.heights import Areal, Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
 from ...surfaces.results import Estimate, Identification, Result
 from . import synthesize
-from .document import UNIT_PRESSURE, as_dict, joints_shown, together, warnings
+
+UNIT_PRESSURE = 1e6
+"""Pressure [Pa] at which the level of the stiffness is stated."""
+
+
+def as_dict(
+    identified: Identification,
+    heights: Sequence[Heights],
+    file: ParameterFile | None,
+    args: argparse.Namespace,
+) -> dict[str, object]:
+    """Everything, SI; `file` is the parameter file with the surface, if one is made."""
+    joints = joints_shown(args, file)
+    judged = (judge_file(file) if file else Judgement(None, ())).document()
+    return {
+        "files": list(identified.names),
+        "kind": "areal" if isinstance(heights[0], Areal) else "profile",
+        "pair": len(heights) == 2,
+        "side": identified.side,
+        "textured": identified.textured,
+        "form": args.form,
+        "roughness": _roughness_dict(identified, file),
+        "repairs": [
+            {"file": n, "repair": r.name, "count": r.count, "points": r.points, "effect": r.effect[2:]}
+            for n, r in identified.repairs
+        ],
+        "results": [_result_dict(result, args.gamma) for result in identified.results],
+        "determined": {joint: doubt(identified, joint) is None for joint in joints},
+        "not_determined": {joint: why for joint in joints if (why := doubt(identified, joint))},
+        "joints": {joint: _joint_dict(identified, joint, args) for joint in joints},
+        "law": file.law if file else None,
+        "level": judged["level"],
+        "written": str(args.out) if args.out else None,
+        "warnings": [*warnings(identified, file, args), *judged["warnings"]],
+    }
+
+
+def _joint_dict(
+    identified: Identification, joint: str, args: argparse.Namespace
+) -> Mapping[str, float | None]:
+    sure = args.force or doubt(identified, joint) is None
+    values = changes(identified, joint, args.method)
+    return {name: _number(value) if sure else None for name, (value, _) in values.items()}
+
+
+def _roughness_dict(identified: Identification, file: ParameterFile | None) -> dict[str, object]:
+    """Of every scan and of both sides together, SI; the stiffness per area under UNIT_PRESSURE."""
+    h = together(identified, file)
+    return {
+        "scans": [
+            {
+                "file": name,
+                "Sq" if scan.areal else "Rq": scan.rms,
+                "Sa" if scan.areal else "Ra": scan.mean,
+                "h": scan.h,
+                "slope": scan.slope,
+            }
+            for name, scan in zip(identified.names, identified.scans, strict=True)
+        ],
+        "longest_wave": identified.longest_wave,
+        "shortest_wave": identified.scans[0].shortest_wave,
+        "h": h,
+        "slope": identified.slope,
+        "stiffness_per_MPa": level(UNIT_PRESSURE, h),
+    }
+
+
+def _result_dict(result: Result, gamma: float) -> dict[str, object]:
+    fit = result.fit
+    return {
+        "method": result.method,
+        "direction": result.direction,
+        "range": [fit.low, fit.high],
+        "decades": fit.decades,
+        "self_affine": fit.straight,
+        "at_bound": fit.at_bound,
+        "drift_of_D": fit.drift,
+        "deviation": fit.deviation,
+        "profile": {"D": _interval(result.profile.D), "G": _interval(result.profile.G)},
+        "surface": {"D_s": _interval(result.areal.D_s), "G_s": _interval(result.areal.G_s)},
+        "G_eq30": _number(zhao_roughness(result.profile.G.value, fit.H, gamma)),
+    }
+
+
+def _interval(estimate: Estimate) -> dict[str, float | None]:
+    return {"value": _number(estimate.value), "low": _number(estimate.low), "high": _number(estimate.high)}
+
+
+def _number(value: Number) -> float | None:
+    """A number of JSON; null if it is not determined."""
+    return float(value) if math.isfinite(float(value)) else None
+
+
+def together(identified: Identification, file: ParameterFile | None) -> float:
+    """Rms height h [m] of both sides: of a parameter file with what else it knows, else of the scans."""
+    if file is None or file.law == ROUGHNESS_LAW:
+        return identified.h
+    return height(file.roughness) or identified.h
+
+
+def joints_shown(args: argparse.Namespace, file: ParameterFile | None) -> list[str]:
+    """Joints with a rough surface, or the one that is asked for."""
+    return [file.joint] if file else [name for name, kind in KINDS.items() if kind.surfaces]
+
+
+def warnings(identified: Identification, file: ParameterFile | None, args: argparse.Namespace) -> list[str]:
+    """What a user must know, of the surface and of what is written."""
+    lines = list(identified.warnings)
+    if not file or not args.out:
+        return lines
+    why = doubt(identified, file.joint)
+    names = "hurst" if file.law == ROUGHNESS_LAW else ", ".join(changes(identified, file.joint))
+    if why and not args.force:
+        lines.append(f"{names} stay as they were, since they are not determined ({why}); --force writes them")
+    elif len(identified.sides) < len({name[-1] for name in file.roughness}):
+        lines.append(
+            f"{names} are those of side {identified.side} alone; give both scans for those of the pair"
+        )
+    return lines
 
 
 def show(
@@ -50,9 +173,7 @@ def _print(
         print(f"repaired in {name}: {repair}")
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
     rows = [heads, *(_row(result) for result in identified.results)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
-    for row in rows:
-        print("  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip())
+    print("\n".join(aligned(rows)))
     print("brackets: 95 % confidence intervals")
     for joint in joints_shown(args, file):
         print(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")

@@ -4,9 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("export", "field", "fit", "laboratory", "modelica", "new", "reduced", "report", "ringing"),
+    ("export", "field", "fit", "laboratory", "modelica", "new", "reduced", "report"),
     checks="job",
     figures="job",
+    ringing="job",
     frequencies="field",
     pressure="field",
 )

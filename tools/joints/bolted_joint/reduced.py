@@ -23,7 +23,7 @@ from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
 from jointfmu.quantity import Array, flatten
 
 from ...batch.approach import columns, discrete_gauss, held, tabulate
-from ...uncertainty.reduced import Reduced
+from ...uncertainty.problem import Reduced
 from .loss import SHEAR, loss_factor, loss_factors, shear_at
 
 EQUAL = 6

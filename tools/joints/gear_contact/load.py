@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from jointfmu.joints.gear_contact import KIND
-from jointfmu.joints.gear_contact.spring import Contact, GearContact, GearContactSpring
+from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
 
 from ...export.exports import Exports, LoadCurve
 from ...laboratory.part import LaboratoryModel
-from ...pressure import NominalPressure
+from ...pressure import FLANKS
 
 if TYPE_CHECKING:
     from jointfmu.mechanics.curve import Curve
@@ -37,16 +37,6 @@ EXPORTS = Exports(
 )
 
 
-def _pressure(contact: GearContact, load: float) -> float:
-    return load / contact.A_0
-
-
-PRESSURE = NominalPressure(
-    load="f",
-    usual=lambda contact: min(3e3, 0.1 * contact.hardness * contact.A_0),
-    mean=_pressure,
-    peak=_pressure,
-)
-
+PRESSURE = FLANKS
 LABORATORY = {"GearContact": LaboratoryModel(spans={"f": (0.0, 3e3)})}
 """{FMU: what the page shows beside its variables}."""

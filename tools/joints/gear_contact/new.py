@@ -11,7 +11,7 @@ def _flanks(given: Given) -> NewJoint:
     from jointfmu.joints.gear_contact.spring import GearContactSpring
 
     from ...drawing import faces
-    from ...drawing.line_contact import patch
+    from ...drawing.faces import patch
     from ...drawing.part import Sheet
     from ...drawing.reading import number
 

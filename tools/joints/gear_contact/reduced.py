@@ -9,7 +9,7 @@ from jointfmu.joints.gear_contact.spring import Contact, GearContactSpring
 from jointfmu.quantity import Array
 
 from ...batch.approach import columns, held, tabulate
-from ...uncertainty.reduced import Reduced
+from ...uncertainty.problem import Reduced
 
 
 def evaluate(

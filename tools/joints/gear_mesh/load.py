@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.joints.gear_mesh import KIND
-from jointfmu.joints.gear_mesh.spring import GearMesh, Mesh, pair_curve
+from jointfmu.joints.gear_mesh.spring import Mesh, pair_curve
 from jointfmu.mechanics.curve import Curve, approach_curve
 
 from ...export.exports import Exports, LoadCurve
-from ...pressure import NominalPressure
+from ...pressure import FLANKS
 
 if TYPE_CHECKING:
     from ...export.tables import LoadTable
@@ -43,10 +43,4 @@ EXPORTS = Exports(
 )
 
 
-def _pressure(mesh: GearMesh, load: float) -> float:
-    return load / mesh.A_0
-
-
-PRESSURE = NominalPressure(
-    load="f", usual=lambda mesh: min(3e3, 0.1 * mesh.hardness * mesh.A_0), mean=_pressure, peak=_pressure
-)
+PRESSURE = FLANKS

@@ -9,8 +9,7 @@ from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
 from ...drawing import faces
-from ...drawing.faces import OPTIONS
-from ...drawing.line_contact import patch
+from ...drawing.faces import OPTIONS, patch
 from ...drawing.part import Drawing, Given, NewJoint, Sheet
 from ...drawing.reading import number
 from ...joint_parts import Option

@@ -14,7 +14,7 @@ from jointfmu.joints.gear_mesh.spring import GearMeshSpring, Mesh, in_series, pa
 from jointfmu.quantity import Array
 
 from ...batch.approach import Rows, columns, tabulate
-from ...uncertainty.reduced import Reduced
+from ...uncertainty.problem import Reduced
 
 RAMP_END = 0.05
 """Default end of the ramp: part of the angle at which the teeth alone carry the end of the table [1]."""

@@ -4,20 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    (
-        "catalogue",
-        "fit",
-        "interface",
-        "laboratory",
-        "modelica",
-        "new",
-        "reduced",
-        "report",
-        "ringing",
-        "transmission",
-    ),
+    ("catalogue", "fit", "interface", "laboratory", "modelica", "new", "reduced", "report", "transmission"),
     checks="job",
     figures="job",
-    export="interface",
-    pressure="interface",
+    ringing="job",
+    export="load",
+    pressure="load",
 )

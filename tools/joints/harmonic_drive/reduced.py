@@ -16,7 +16,7 @@ from jointfmu.quantity import Array
 
 from ...batch import approach
 from ...batch.approach import columns
-from ...uncertainty.reduced import Reduced
+from ...uncertainty.problem import Reduced
 
 RAMP = 33
 """Torques [1] between which K_WTS is a polynomial in asinh(T/T_s)."""

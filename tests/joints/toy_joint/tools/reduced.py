@@ -1,7 +1,7 @@
 """The spring for many samples at once: force over elongation."""
 
 import numpy as np
-from jointfmu_tools.uncertainty.reduced import Reduced
+from jointfmu_tools.uncertainty.problem import Reduced
 
 from .. import KIND
 

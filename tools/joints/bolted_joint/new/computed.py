@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
 from jointfmu.quantity import Array, flatten
 
+from ....drawing.part import NewJoint
 from ....drawing.vdi2230 import ClampedPart
 from ....fem import installed
 from . import ATTACHED
@@ -162,15 +163,7 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
 Facts = dict[str, tuple[float, str, str]]
 
 
-class WholeFacts(NamedTuple):
-    """Parameters of a joint, what is told of the whole, and warnings."""
-
-    file: ParameterFile
-    facts: Facts
-    warnings: list[str]
-
-
-def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> WholeFacts:
+def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> NewJoint:
     """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
     cannot be computed.
 
@@ -183,13 +176,13 @@ def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None)
     except ValueError as error:
         if sides == "elastic":
             raise
-        return WholeFacts(
+        return NewJoint(
             file, {}, [f"members and bolts are not computed, the FMU is the interface alone: {error}"]
         )
     parts = found.compliances
     rows = _stiffnesses(parts, attached) | _load(parts, plates.tension, attached)
     rows |= _share(parts, sides == "rigid")
-    return WholeFacts(file if sides == "rigid" else found.file, rows, [])
+    return NewJoint(file if sides == "rigid" else found.file, rows, [])
 
 
 def _stiffnesses(found: Compliances, attached: str) -> Facts:

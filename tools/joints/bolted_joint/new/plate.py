@@ -106,7 +106,7 @@ def joint(given: Given) -> NewJoint:
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
     found = computed.facts(file, plates, given["attached"] or "faces", given["sides"])
-    return NewJoint(found.file, facts | found.facts, [*warnings, *found.warnings])
+    return NewJoint(found.file, {**facts, **found.facts}, [*warnings, *found.warnings])
 
 
 def _hole(given: Given, thread: Thread) -> tuple[float, tuple[str, str]]:
