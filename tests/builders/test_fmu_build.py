@@ -483,6 +483,21 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
             assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name
 
 
+def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
+    """Near the formulas, or the job had missed; frequencies rise with the load, damping with the amplitude."""
+    found = job.outcome.ringing
+    assert len(checks.check_ringing(found)) == 3  # the column has no dashpot
+    for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
+        frequencies = [r.frequency for r in found[name]]
+        assert frequencies == sorted(frequencies)
+        assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+    assert {*found} == {*job.outcome.decays}
+    for (one,) in job.outcome.decays.values():
+        assert one.amplitude[0] > 10.0 * one.amplitude[-1]
+        assert one.frequency[0] < 0.95 * one.frequency[-1]
+        assert one.damping[0] > 3.0 * one.damping[-1]
+
+
 def test_the_main_job_fails_when_a_check_or_a_proof_misses(
     job: Job, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

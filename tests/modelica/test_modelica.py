@@ -215,16 +215,21 @@ def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload
 
 
 def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """And of another preload."""
     file = default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
     params = tmp_path / "mine.toml"
     params.write_text(dump(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
-    assert main(["modelica", "--params", str(params), "--out", str(tmp_path / "out"), "--json"]) == 0
+    loaded = ["--preload", "20e3", "--moment", "100"]
+    words = ["modelica", "--params", str(params), *loaded, "--out", str(tmp_path / "out"), "--json"]
+    assert main(words) == 0
     written = [Path(p) for p in json.loads(capsys.readouterr().out)["written"]]
     record = tmp_path / "out/JointStiffness/Data/My_drive_50_1.mo"
     assert record in written
     assert "final ratio=50," in record.read_text(encoding="utf-8")
     component = tmp_path / "out/JointStiffness/Components/HarmonicDriveSpring.mo"
     assert "JointStiffness.Data.My_drive_50_1()" in component.read_text(encoding="utf-8")
+    names = {p.name for p in (tmp_path / "out/JointStiffness/Data").glob("Box*")}
+    assert names == {"Box_specimen_of_Zhao_2018_20_kN_100_Nm.mo"}
 
 
 def test_command_takes_the_preload_of_the_file(tmp_path: Path):
@@ -244,13 +249,6 @@ def test_a_held_drive_leaves_its_states_to_the_tool():
     """`prefer` sends a tool that has no state to take into a set of states whose Jacobian divides by zero."""
     text = (COMMITTED / "JointStiffness/Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
     assert "stateSelect=if use_damping then StateSelect.prefer else StateSelect.default" in text
-
-
-def test_command_takes_another_preload(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["modelica", "--preload", "20e3", "--moment", "100", "--out", str(tmp_path)]) == 0
-    assert "files" in capsys.readouterr().out
-    names = {p.name for p in (tmp_path / "JointStiffness/Data").glob("Box*")}
-    assert names == {"Box_specimen_of_Zhao_2018_20_kN_100_Nm.mo"}
 
 
 @pytest.mark.parametrize(

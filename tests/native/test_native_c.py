@@ -212,12 +212,14 @@ def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name
     assert {file for file, text in files if "calloc(" in text} == {"instance.c", "snapshot.c"}
 
 
-@every_joint
+@pytest.mark.parametrize("name", ["GearContact", "BoltedJoint", *ALONE])
 @every_version
 @pytest.mark.parametrize("program", ["lifecycle", "modes", "refusals"])
 def test_in_order_and_out_of_order(
     sanitizing: str, builder: Builder, program: str, name: str, version: str
 ) -> None:
+    """What the runtime does, without a memory and with one; all joints are fuzzed below, and run their lives
+    without sanitizers."""
     run = builder.program(sanitizing, program, name)
     assert builder.call(builder.work, str(run), "", version, *c_of(name).arguments) == SAID[program]
 
