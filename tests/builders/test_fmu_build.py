@@ -484,7 +484,7 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
 
 
 def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
-    """Near the formulas, or the job had missed; frequencies rise with the load, damping with the amplitude."""
+    """Near the formulas, or it had missed; frequencies rise with the load, damping with the amplitude."""
     found = job.outcome.ringing
     assert len(checks.check_ringing(found)) == 3  # the column has no dashpot
     for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):

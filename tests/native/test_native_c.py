@@ -178,7 +178,7 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize(
     ("compiler", "name"),
     [
-        *(("zig", name) for name in (*MODELS, *PARTNERS, *ALONE)),
+        *(("zig", name) for name in (*MODELS, *FEW_PARTNERS, *ALONE)),
         *(("gcc", name) for name in (*MODELS, *FEW_PARTNERS, *ALONE)),
     ],
 )
@@ -239,8 +239,9 @@ def test_memory(sanitizing: str, builder: Builder, version: str) -> None:
 
 
 @every_version
-@pytest.mark.parametrize("name", [*MODELS, "passthrough"])
+@pytest.mark.parametrize("name", ["GearContact", "BoltedJoint", "passthrough"])
 def test_threads(sanitizing: str, builder: Builder, name: str, version: str) -> None:
+    """No joint has data that change, see above: what threads could share is the runtime's."""
     c, reference = c_of(name), 1 + c_of(name).inputs + c_of(name).outputs
     if model := MODELS.get(name):
         reference += list(model.parameter_fields()).index(JOINTS[model.joint].scaled)

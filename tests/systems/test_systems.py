@@ -50,9 +50,10 @@ from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
 from scipy.interpolate import CubicSpline
-from test_modelica import column_sliders, simulate, sliding, top
+from test_modelica import simulate, top
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
@@ -626,6 +627,23 @@ def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Pa
     slope = [(found.arm.tip(q + step * e)[0] - found.arm.tip(q - step * e)[0]) / (2.0 * step)
              for e in np.eye(6)[:, None, :]]  # fmt: skip
     assert np.linalg.norm(dq @ np.array(slope)) == pytest.approx(error[-1], rel=5e-3)  # of second order
+
+
+def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
+    """Rates of sliders' forces: a spring each, but none beyond its friction."""
+    held = (np.abs(force) < limit) | (force * rate < 0.0)
+    return np.where(held, stiffness * rate, 0.0)
+
+
+def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
+    """Stiffness and friction of the sliders that touch at a preload, of all patches."""
+    joint, patches = spring.joint, spring.patches
+    approach = spring.curve.inverse(pressures(joint, patches, preload, 0.0))
+    carried = spring.foundation(approach).carried(approach)
+    area = joint.A_0 * patches.share[:, None]
+    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
+    some = stiffness > 0.0
+    return stiffness[some], limit[some]
 
 
 def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:

@@ -140,7 +140,7 @@ def wound_up(path: Path, torque: float) -> float:
         return drive.get()[0]
 
 
-@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.2, 253.15), (0.2, 353.15)])
+@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.1, 253.15), (0.2, 353.15)])
 def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
     path: Path, dither: float, kelvin: float
 ) -> None:
