@@ -159,7 +159,7 @@ def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
             drive.set(phi, w, wound + phi / 100.0, w / 100.0)
             drive.step(k * step, step)
             places[k] = phi
-    assert 0.002 < places[-1] < 0.1  # it has given way to where its friction bears the load
+    assert 0.002 < places[-1] < 0.2  # it has given way to where its friction bears the load
     late = places[steps // 2 :]
     # the oscillation dies out like exp(-friction_viscous t/(2 J)), exp(-83) after half of the steps
     assert np.max(np.abs(late[period:] - late[:-period])) < 1e-12
