@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from jointfmu_fmu_src.partners.laws import GRAVITY
 from jointfmu_tools.modelica import library
 from jointfmu_tools.modelica.text import identifier
 from jointfmu_tools.systems.master import Slave
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
-from test_modelica import COMMITTED, EXACT, GRAVITY, STAND_IN, move, simulate, top
+from test_modelica import COMMITTED, EXACT, STAND_IN, move, simulate, top
 
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.friction import BRAKES, LIMITS, limits
