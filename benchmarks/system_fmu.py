@@ -1,16 +1,21 @@
 """One FMU of a whole system beside the archive of separate FMUs, both in fmpy, in one run.
 
-    python benchmarks/system_fmu.py
+    python benchmarks/system_fmu.py [--worst]
 
 For each shipped system: the largest difference of an output from model exchange (CVode, tight), over its
 largest value, of the FMU at communication steps of 1 ms and 10 ms, and of the archive at the system's
 interval. Then the times of runs: of the archive at its interval, and at the longest of its halves with which
 the outputs are within 0.5 % as well, over those of the FMU. All include loading; the archive's unpacking too.
+With `--worst`, instead: processor times of a million communication steps, each under another random load on
+the bodies, from rest again after a thousand.
 """
 
 import shutil
+import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import fmpy
@@ -30,6 +35,17 @@ WATCHED = {
 EXCHANGE = {"robot_joint": (1e-9, 1e-4), "bolted_column": (1e-8, 1e-6), "six_axis_robot": (1e-9, 1e-4)}
 """Relative tolerance, and interval [s]: fmpy tells of completed steps once in each: friction turns there."""
 STEPS = (1e-3, 1e-2)
+LOADS = {
+    "robot_joint": (1e-3, {"load.tau_in": 0.05, "link.tau_a": 5.0}),
+    "bolted_column": (5e-5, {"load.f_in": 5e3}),
+    "six_axis_robot": (
+        1e-3,
+        {f"{axis}_load.tau_in": 20.0 for axis in ("base", "shoulder", "elbow", "forearm")},
+    ),
+}
+"""{system: (step [s], {input: largest random load [N.m, N]})}: the column's period is 0.5 ms."""
+DRAWS, ROUND = 1_000_000, 1000
+"""Steps of `--worst`, and how many of them follow each other."""
 WITHIN = 5e-3
 HALVINGS = 6
 REPEATS = 3
@@ -63,35 +79,76 @@ def run_archive(path, name, one, step, expected, outputs):
     return misses(found, expected, [o for o in outputs if o in found.dtype.names], step), taken
 
 
+@contextmanager
+def unpacked(name: str, out: Path) -> Iterator[str]:
+    """The system's FMU in a folder."""
+    file = build_system(assembly(system(name)), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
+    folder = fmpy.extract(str(file))
+    yield folder
+    shutil.rmtree(folder)
+
+
+def worst(out: Path) -> None:
+    """Print the median and the longest of random steps [us]."""
+    print("system             median  1 in 1e4   longest  refused")
+    for name, (step, loads) in LOADS.items():
+        with unpacked(name, out) as folder:
+            described = fmpy.read_model_description(folder)
+            refs = {v.name: v.valueReference for v in described.modelVariables}
+            wanted = [refs[o] for o in loads]
+            fmu = fmpy.instantiate_fmu(folder, described, "CoSimulation", logger=lambda *_: None)
+            draw = np.random.default_rng(1).uniform(-1.0, 1.0, (DRAWS, len(loads))) * [*loads.values()]
+            taken, refused = np.empty(DRAWS), 0
+            for k, row in enumerate(draw.tolist()):
+                if k % ROUND == 0:
+                    fmu.reset()
+                    fmu.setupExperiment(startTime=0.0)
+                    fmu.enterInitializationMode()
+                    fmu.exitInitializationMode()
+                fmu.setReal(wanted, row)
+                before = time.thread_time()
+                try:
+                    fmu.doStep(k % ROUND * step, step)
+                except fmpy.fmi1.FMICallException:
+                    refused += 1
+                taken[k] = time.thread_time() - before
+            fmu.terminate()
+            fmu.freeInstance()
+        found = 1e6 * np.quantile(taken, [0.5, 1.0 - 1e-4, 1.0])
+        print(f"{name:16} {found[0]:8.1f} {found[1]:9.1f} {found[2]:9.1f} {refused:8}")
+
+
 def main() -> None:
     """Print the tables."""
+    if sys.argv[1:] == ["--worst"]:
+        with tempfile.TemporaryDirectory() as folder:
+            worst(Path(folder))
+        return
     times = []
     print("system           output                1 ms     10 ms   archive at its interval")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         for name, outputs in WATCHED.items():
             one = system(name)
-            file = build_system(assembly(one), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
             ssp.build_systems(out, [one])
-            unzipped = fmpy.extract(str(file))
             tolerance, interval = EXCHANGE[name]
-            common = {"filename": unzipped, "stop_time": one.stop_time, "output": outputs}
-            expected = fmpy.simulate_fmu(
-                **common,
-                fmi_type="ModelExchange",
-                solver="CVode",
-                relative_tolerance=tolerance,
-                output_interval=interval,
-            )
-            runs = [
-                fastest(
-                    lambda common=common, step=step: fmpy.simulate_fmu(
-                        **common, fmi_type="CoSimulation", step_size=step, output_interval=step
-                    )
+            with unpacked(name, out) as unzipped:
+                common = {"filename": unzipped, "stop_time": one.stop_time, "output": outputs}
+                expected = fmpy.simulate_fmu(
+                    **common,
+                    fmi_type="ModelExchange",
+                    solver="CVode",
+                    relative_tolerance=tolerance,
+                    output_interval=interval,
                 )
-                for step in STEPS
-            ]
-            shutil.rmtree(unzipped)
+                runs = [
+                    fastest(
+                        lambda common=common, step=step: fmpy.simulate_fmu(
+                            **common, fmi_type="CoSimulation", step_size=step, output_interval=step
+                        )
+                    )
+                    for step in STEPS
+                ]
             found = [misses(result, expected, outputs) for result, _ in runs]
             archive, step = out / "ssp" / f"{name}.ssp", one.interval
             far, taken = own = run_archive(archive, name, one, step, expected, outputs)

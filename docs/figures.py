@@ -19,10 +19,9 @@ from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import figures
 from jointfmu_tools.joints.harmonic_drive.fit import lines
 from jointfmu_tools.joints.harmonic_drive.fit.row import Row
-from jointfmu_tools.report import motion
 from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_tools.report.systems import SIZE, draw
-from jointfmu_tools.systems import cosimulation, ringing, ssp
+from jointfmu_tools.systems import ringing, ssp
 from jointfmu_tools.systems.system import system
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -60,7 +59,6 @@ def main() -> None:
     picture = figures.stiffness(result, validation.validate())
     write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
     resonance(IMAGES / "tutorial_resonance.png")
-    robot(IMAGES / "six_axis_robot.png")
 
 
 def elastic(path: Path) -> None:
@@ -80,16 +78,6 @@ def example(script: Path) -> None:
         subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
         picture = Path(folder) / f"{script.stem}.png"
         write_bytes(IMAGES / f"example_{picture.name}", picture.read_bytes())
-
-
-def robot(path: Path) -> None:
-    """Draw what the robot of the systems does."""
-    found = system("six_axis_robot")
-    with TemporaryDirectory() as folder:
-        ssp.build_systems(Path(folder), [found])
-        run = cosimulation.simulate(found, Path(folder) / "fmi2")
-    with plots.drawing(path, motion.SIZE) as canvas:
-        motion.draw(canvas, found, run)
 
 
 def resonance(path: Path) -> None:

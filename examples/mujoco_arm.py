@@ -29,7 +29,7 @@ mujoco.mj_loadPluginLibrary(str(plugin(fmu, "dist/mujoco")))
 model = mujoco.MjModel.from_xml_string(ARM)
 data, rows = mujoco.MjData(model), []
 while data.time < 2.0:
-    data.ctrl[0] = 100.0 * np.deg2rad(30.0) * min(data.time, 1.0)  # the motor turns the link by 30 degrees
+    data.ctrl[0] = -100.0 * np.deg2rad(30.0) * min(data.time, 1.0)  # turns the link by 30 degrees, against it
     mujoco.mj_step(model, data)
     rows.append((data.time, data.joint("elbow").qpos[0], data.sensor("drive").data[2]))
 time, elbow, wind_up = np.transpose(rows)

@@ -1,4 +1,4 @@
-"""A robot with six drives of the catalogue: the error of its tip, beside constant springs."""
+"""A robot with six drives of the catalogue: load, wind-up, error of its tip beside constant springs."""
 
 import subprocess
 import sys
@@ -30,15 +30,20 @@ def tip(angles):
 
 subprocess.run([sys.executable, "-m", "jointfmu", "system", "six_axis_robot", "--csv=robot.csv"], check=True)
 run = np.genfromtxt("robot.csv", delimiter=",", names=True, deletechars="")[::20]
-motors = [run[f"{name}_motor.phi_[rad]"] / 100.0 for name in ARM]
+motors = [-run[f"{name}_motor.phi_[rad]"] / 100.0 for name in ARM]  # against the links
 links = {"drives as FMUs": [run[f"{name}_link.phi_[rad]"] for name in ARM]}
 for K in ("K1", "K3"):
     springs = {name: jointfmu.drive(drive).values[K] for name, (*_, drive) in ARM.items()}  # N.m/rad
     wound = [-run[f"{name}_drive.tau2_[N.m]"] / k for name, k in springs.items()]
     links[f"constant springs {K}"] = [q + w for q, w in zip(motors, wound, strict=True)]
-figure, axes = plt.subplots(layout="constrained")
+figure, (load, wind_up, error) = plt.subplots(1, 3, figsize=(12.0, 4.2), layout="constrained")
+for name, motor, link in zip(ARM, motors, links["drives as FMUs"], strict=True):
+    load.plot(run["time_[s]"], run[f"{name}_drive.tau2_[N.m]"], label=name)
+    wind_up.plot(run["time_[s]"], 1e3 * (link - motor), label=name)
 for label, angles in links.items():
-    axes.plot(run["time_[s]"], 1e3 * np.linalg.norm(tip(angles) - tip(motors), axis=1), label=label)
-axes.set(xlabel="time [s]", ylabel="error of the tip [mm]")
-axes.legend(frameon=False)
+    error.plot(run["time_[s]"], 1e3 * np.linalg.norm(tip(angles) - tip(motors), axis=1), label=label)
+for axes, label in ((load, "load [N.m]"), (wind_up, "wind-up [mrad]"), (error, "error of the tip [mm]")):
+    axes.set(xlabel="time [s]", ylabel=label)
+load.legend(frameon=False)
+error.legend(frameon=False)
 figure.savefig("robot.png")

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from runpy import run_path
 
+import numpy as np
 import pytest
 from conftest import here_alone
 from PIL import Image
@@ -24,6 +25,7 @@ NEEDED = {
 ALONE = {"mujoco_arm", "sweep"}
 """Scripts in a process of their own: MuJoCo takes a plugin of a name once, and a sweep starts processes. The
 others run in this one, where bodies that other tests have solved are found."""
+IMAGES = ROOT / "docs" / "images"
 PAGE = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
 
 
@@ -57,13 +59,17 @@ def test_an_example_runs_and_writes_its_picture(
             timeout=200,
         )
         assert done.returncode == 0, done.stderr
-    low, high = Image.open(tmp_path / f"{script.stem}.png").convert("L").getextrema()
-    assert (low, high) == (0, 255)  # something is drawn on white
+    drawn, shown = (
+        np.asarray(Image.open(path).convert("L").resize((32, 24), Image.Resampling.BOX), dtype=float)
+        for path in (tmp_path / f"{script.stem}.png", IMAGES / f"example_{script.stem}.png")
+    )
+    # the guide's picture is the script's: a curve that moves by a cell takes 0.05 to 0.9, other fonts 0.01
+    assert np.corrcoef(drawn.ravel(), shown.ravel())[0, 1] > 0.98
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=stem)
 def test_an_example_is_short_and_shown(script: Path) -> None:
-    assert len(script.read_text(encoding="utf-8").splitlines()) < 45
+    assert len(script.read_text(encoding="utf-8").splitlines()) < 50
     assert f"](../examples/{script.name})" in PAGE
     assert f"](images/example_{script.stem}.png)" in PAGE
 
