@@ -545,17 +545,12 @@ def test_the_main_job_ends_with_its_processes_on_ctrl_c(tmp_path: Path) -> None:
         pytest.fail("processes are left")
 
 
-def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:
+def test_the_main_job_refuses_an_unwritable_place_with_one_line(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / "file").write_text("")
-    script = Path(__file__).parents[2] / "build_fmus.py"
-    done = subprocess.run(
-        [sys.executable, script, "--out", tmp_path / "file" / "below"],
-        capture_output=True,
-        text=True,
-        timeout=100,
-    )
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert "cannot be written" in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert pipeline.main(tmp_path / "file" / "below") == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("build_fmus.py: ")
+    assert "cannot be written" in err
+    assert err.count("\n") == 1
     assert everything(tmp_path) == [tmp_path / "file"]
