@@ -224,7 +224,7 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     assert done.returncode == 0, done.stderr
     end = os.times()
     worked = end.children_user + end.children_system - begin.children_user - begin.children_system
-    assert worked < 4.0  # 1 s on a quiet machine; the compiler works for more than 10 s
+    assert worked < 7.0  # 1 s on a quiet machine, 5 s on a busy one; the compiler works for more than 10 s
     instance = Fmu(tmp_path / "out" / "fmi3" / f"{name}.fmu").start(STATE[name])
     expected = law(name, changed.values).after(STATE[name])
     for inputs in random_inputs(name, 5, seed=61):
