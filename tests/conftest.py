@@ -209,7 +209,6 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(computed, "whole_joint", found)
-        patch.setattr(computed, "whole_joint", found)
         yield
 
 

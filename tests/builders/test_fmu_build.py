@@ -483,6 +483,21 @@ def test_the_main_job_proves_every_fmu(job: Job) -> None:
             assert purposes == {"smoke-test", "validation", "uncertainty-analysis"}, name
 
 
+def test_the_main_job_has_resonance_and_decay_of_the_working_point(job: Job) -> None:
+    """Near the formulas, or it had missed; frequencies rise with the load, damping with the amplitude."""
+    found = job.outcome.ringing
+    assert len(checks.check_ringing(found)) == 3  # the column has no dashpot
+    for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
+        frequencies = [r.frequency for r in found[name]]
+        assert frequencies == sorted(frequencies)
+        assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
+    assert {*found} == {*job.outcome.decays}
+    for (one,) in job.outcome.decays.values():
+        assert one.amplitude[0] > 10.0 * one.amplitude[-1]
+        assert one.frequency[0] < 0.95 * one.frequency[-1]
+        assert one.damping[0] > 3.0 * one.damping[-1]
+
+
 def test_the_main_job_fails_when_a_check_or_a_proof_misses(
     job: Job, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -530,17 +545,12 @@ def test_the_main_job_ends_with_its_processes_on_ctrl_c(tmp_path: Path) -> None:
         pytest.fail("processes are left")
 
 
-def test_the_script_refuses_an_unwritable_place_with_one_line(tmp_path: Path) -> None:
+def test_the_main_job_refuses_an_unwritable_place_with_one_line(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / "file").write_text("")
-    script = Path(__file__).parents[2] / "build_fmus.py"
-    done = subprocess.run(
-        [sys.executable, script, "--out", tmp_path / "file" / "below"],
-        capture_output=True,
-        text=True,
-        timeout=100,
-    )
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert "cannot be written" in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert pipeline.main(tmp_path / "file" / "below") == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("build_fmus.py: ")
+    assert "cannot be written" in err
+    assert err.count("\n") == 1
     assert everything(tmp_path) == [tmp_path / "file"]

@@ -156,8 +156,13 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("plate", ["row", "random"])
-@pytest.mark.parametrize("motion", patch_reduction.MOTIONS)
+@pytest.mark.parametrize(
+    ("plate", "motion"),
+    [
+        *(("row", motion) for motion in patch_reduction.MOTIONS),
+        *(("random", motion) for motion in ("along, moment", "turning, tilt 0.1 back", "both, tilt 0.1")),
+    ],
+)
 def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
     """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 2 %.
 

@@ -10,26 +10,21 @@ import math
 import os
 import re
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from jointfmu_fmu_src.partners.laws import ForceProfile, TorqueProfile
 from jointfmu_tools.cli import main
 from jointfmu_tools.joint_parts import part
 from jointfmu_tools.joints.bolted_joint import modelica as bolted_modelica
 from jointfmu_tools.modelica import library, records
 from jointfmu_tools.modelica.records import identifier
-from jointfmu_tools.systems.system import system
 from numpy.typing import NDArray
 from read_modelica import Read, read, solution
-from scipy.integrate import solve_ivp
 
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import Place, elastic_shear
-from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.gear_contact.spring import GearContactSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
@@ -46,7 +41,6 @@ STAND_IN = Path(__file__).parent
 MSL = Path(os.environ.get("JOINTFMU_MSL", STAND_IN))
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 EXACT = 2e-7  # twice the tolerance of the tables: the package's own is 1e-8
-GRAVITY = 9.80665
 
 
 @pytest.fixture(scope="module")
@@ -215,16 +209,21 @@ def test_a_preload_outside_the_law_is_refused(bolted: BoltedJointSpring, preload
 
 
 def test_command_writes_the_library_of_another_joint(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """And of another preload."""
     file = default("harmonic_drive").with_values({"ratio": 50.0}, "user", "test")
     params = tmp_path / "mine.toml"
     params.write_text(dump(file).replace(file.name, "my drive, 50:1"), encoding="utf-8")
-    assert main(["modelica", "--params", str(params), "--out", str(tmp_path / "out"), "--json"]) == 0
+    loaded = ["--preload", "20e3", "--moment", "100"]
+    words = ["modelica", "--params", str(params), *loaded, "--out", str(tmp_path / "out"), "--json"]
+    assert main(words) == 0
     written = [Path(p) for p in json.loads(capsys.readouterr().out)["written"]]
     record = tmp_path / "out/JointStiffness/Data/My_drive_50_1.mo"
     assert record in written
     assert "final ratio=50," in record.read_text(encoding="utf-8")
     component = tmp_path / "out/JointStiffness/Components/HarmonicDriveSpring.mo"
     assert "JointStiffness.Data.My_drive_50_1()" in component.read_text(encoding="utf-8")
+    names = {p.name for p in (tmp_path / "out/JointStiffness/Data").glob("Box*")}
+    assert names == {"Box_specimen_of_Zhao_2018_20_kN_100_Nm.mo"}
 
 
 def test_command_takes_the_preload_of_the_file(tmp_path: Path):
@@ -244,13 +243,6 @@ def test_a_held_drive_leaves_its_states_to_the_tool():
     """`prefer` sends a tool that has no state to take into a set of states whose Jacobian divides by zero."""
     text = (COMMITTED / "JointStiffness/Components/HarmonicDriveSpring.mo").read_text(encoding="utf-8")
     assert "stateSelect=if use_damping then StateSelect.prefer else StateSelect.default" in text
-
-
-def test_command_takes_another_preload(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    assert main(["modelica", "--preload", "20e3", "--moment", "100", "--out", str(tmp_path)]) == 0
-    assert "files" in capsys.readouterr().out
-    names = {p.name for p in (tmp_path / "JointStiffness/Data").glob("Box*")}
-    assert names == {"Box_specimen_of_Zhao_2018_20_kN_100_Nm.mo"}
 
 
 @pytest.mark.parametrize(
@@ -491,100 +483,6 @@ def test_joints_with_the_law_roughness_give_the_forces_of_the_package(rumoca: An
     contact = GearContactSpring.of(gear.values)
     load = contact.curve.derivatives(4e-6 * found.time - 4e-7 + contact.curve.displacement[0])[0]
     assert np.all(np.abs(found["gear.f"] + contact.joint.A_0 * load) <= EXACT * load + 1e-12)
-
-
-def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
-    """Rates of sliders' forces: a spring each, but none beyond its friction."""
-    held = (np.abs(force) < limit) | (force * rate < 0.0)
-    return np.where(held, stiffness * rate, 0.0)
-
-
-def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
-    """Stiffness and friction of the sliders that touch at a preload, of all patches."""
-    joint, patches = spring.joint, spring.patches
-    approach = spring.curve.inverse(pressures(joint, patches, preload, 0.0))
-    carried = spring.foundation(approach).carried(approach)
-    area = joint.A_0 * patches.share[:, None]
-    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
-    some = stiffness > 0.0
-    return stiffness[some], limit[some]
-
-
-def reference(
-    right: Any,
-    start: list[float],
-    edges: list[float],
-    times: np.ndarray,
-    rtol: float = 1e-9,
-    method: str = "DOP853",
-) -> np.ndarray:
-    """solve_ivp from edge to edge of the load, so that it passes over none; where sliders slip and stick a
-    method of a lower order does less in vain."""
-    out, state = [], np.array(start)
-    last = float(times[-1]) * (1.0 + 1e-12)
-    ends = [0.0, *sorted(edge for edge in edges if edge < last), last]
-    for low, high in pairwise(ends):
-        some = times[(times >= low) & (times < high)]
-        run = solve_ivp(right, (low, high), state, method, rtol=rtol, atol=1e-5 * rtol, t_eval=[*some, high])
-        out.append(run.y[:, : some.size])
-        state = run.y[:, -1]
-    return np.concatenate(out, axis=1)
-
-
-def edges_of(load: Any) -> list[float]:
-    fall = load.pulse_start + load.pulse_rise + load.pulse_hold
-    return [load.pulse_start, load.pulse_start + load.pulse_rise, fall, fall + load.pulse_rise]
-
-
-def test_robot_joint_runs_as_the_package_says(rumoca: Any, drive: HarmonicDriveSpring):
-    v = {**system("robot_joint").values, "load.pulse_start": 0.02}  # and the ramp afterwards
-    text = top("extends JointStiffness.Examples.RobotJoint(load(pulse_start=0.02));")
-    found = simulate(rumoca, text, 0.12, 1e-3, rtol=1e-7)
-    slides = HarmonicDriveSpring.of(system("robot_joint").joints["drive"].file.values).hysteresis
-    load = TorqueProfile(**{k.removeprefix("load."): x for k, x in v.items() if k.startswith("load.")})
-    ramp = [load.ramp_start, load.ramp_start + load.ramp_duration]
-
-    def right(t: float, x: np.ndarray) -> list[float]:
-        torques = drive.motion(*x[:4])
-        motor = float(load.outputs({"time": t, "tau_in": 0.0})["tau"])
-        weight = v["link.m"] * GRAVITY * v["link.l"] * math.sin(x[2])
-        return [
-            x[1],
-            (motor + float(torques["tau1"]) + x[4:].sum() / drive.joint.ratio) / v["motor.J"],
-            x[3],
-            (float(torques["tau2"]) - x[4:].sum() - weight) / v["link.J"],
-            *sliding(x[4:], slides.stiffness, slides.limit, x[3] - x[1] / drive.joint.ratio),
-        ]
-
-    edges = [*ramp, *edges_of(load)]
-    times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0] * (4 + slides.limit.size), edges, times, 1e-6, "RK45")
-    windup = exact[2] - exact[0] / drive.joint.ratio
-    assert np.ptp(windup) > 8e-4  # the pulse is seen
-    # of the layer in which a slider of the component ceases to stick, 1e-3 of its friction
-    assert np.abs(found["link.phi"][first] - exact[2]).max() <= 1e-5 * np.abs(exact[2]).max()
-    assert np.abs(found["drive.phi_rel"][first] - windup).max() <= 1e-3 * np.abs(windup).max()
-
-
-def test_bolted_column_runs_as_the_package_says(rumoca: Any, bolted: BoltedJointSpring):
-    v = system("bolted_column").values
-    stop = 0.15 * system("bolted_column").stop_time
-    text = top("extends JointStiffness.Examples.BoltedColumn;")
-    found = simulate(rumoca, text, stop, 1e-5, rtol=1e-7)
-    pulse = {k.removeprefix("load."): x for k, x in v.items() if k.startswith("load.")}
-    load = ForceProfile(ramp_height=0.0, ramp_start=0.0, ramp_duration=1.0, **pulse)
-
-    stiffness, limit = column_sliders(bolted, v["joint.preload"])
-
-    def right(t: float, x: np.ndarray) -> list[float]:
-        pushed = float(load.outputs({"time": t, "f_in": 0.0})["f"])
-        return [x[1], (pushed - x[2:].sum()) / v["column.m"], *sliding(x[2:], stiffness, limit, x[1])]
-
-    times, first = np.unique(found.time, return_index=True)
-    exact = reference(right, [0.0] * (2 + limit.size), edges_of(load), times, 1e-6, "RK45")[0]
-    assert np.abs(exact).max() > 5e-7
-    # the sliders of all patches against the component's own: what a loop loses differs by about 1 %
-    assert np.abs(found["column.s"][first] - exact).max() <= 0.02 * np.abs(exact).max()
 
 
 _BLOCK = """

@@ -208,9 +208,10 @@ sys.exit(main(["build", sys.argv[1], "--params", sys.argv[2], "--flavour", "fmi3
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [kind.models[0].name for kind in KINDS.values()])
 def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) -> None:
-    """In the bare installation, once the default FMU was built; with the numbers of the package."""
+    """In the bare installation, once the default FMU was built; with the numbers of the package. FMUs of one
+    joint have what is fixed in common."""
     kind = KINDS[MODELS[name].joint]
     tuned = ({n: v} for n, v in CASES[name].tuning.tuned.items())
     alone = [one for one in tuned if not list(kind.contradictions(of(name, one)[1].values))]
@@ -223,7 +224,7 @@ def test_a_variant_needs_no_compiler(name: str, native: Path, tmp_path: Path) ->
     assert done.returncode == 0, done.stderr
     end = os.times()
     worked = end.children_user + end.children_system - begin.children_user - begin.children_system
-    assert worked < 4.0  # 1 s on a quiet machine; the compiler works for more than 10 s
+    assert worked < 7.0  # 1 s on a quiet machine, 5 s on a busy one; the compiler works for more than 10 s
     instance = Fmu(tmp_path / "out" / "fmi3" / f"{name}.fmu").start(STATE[name])
     expected = law(name, changed.values).after(STATE[name])
     for inputs in random_inputs(name, 5, seed=61):

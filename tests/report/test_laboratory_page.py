@@ -244,6 +244,8 @@ def test_parameters_come_out_as_a_file_that_build_takes(shown: Browser, tmp_path
         }
         others = set(file.flat) - set(module.model.parameter_fields())
         assert {key: file.flat[key] for key in others} == {key: first.flat[key] for key in others}
+        if index:
+            continue  # the file is read, and builders take what is read of any law
         words = ("build", name, "--params", str(path), "--flavour", "python", "--out", str(tmp_path))
         assert cli.main(list(words)) == 0
         assert (tmp_path / "python" / f"{name}.fmu").is_file()

@@ -1,6 +1,8 @@
 """The guide: the site builds, links and anchors lead somewhere, commands parse, code and the tutorial run."""
 
+import contextlib
 import functools
+import io
 import json
 import re
 import shlex
@@ -8,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from contextlib import redirect_stdout
 from dataclasses import fields
 from html.parser import HTMLParser
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
@@ -16,7 +19,9 @@ from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from conftest import here_alone
 from jointfmu_fmu_src.joint_parts import Parts
+from jointfmu_tools import cli
 from jointfmu_tools.joint_parts import TOOLS
 from jointfmu_tools.parser import parser
 from PIL import Image
@@ -359,7 +364,7 @@ class Tutorial(NamedTuple):
 
 @pytest.fixture(scope="module")
 def tutorial(tmp_path_factory: pytest.TempPathFactory) -> Tutorial:
-    """Every command of the tutorial in an empty folder, as a user would; installing aside."""
+    """Every command of the tutorial in an empty folder, for this machine; installing aside."""
     page, folder = DOCS / "tutorial.md", tmp_path_factory.mktemp("tutorial")
     (program,) = blocks(page, "python")
     (folder / "simulate.py").write_text(program, encoding="utf-8")
@@ -368,8 +373,13 @@ def tutorial(tmp_path_factory: pytest.TempPathFactory) -> Tutorial:
         words = shlex.split(line)
         if words[:3] == ["python", "-m", "pip"]:
             continue
-        start = [sys.executable, "-m", "jointfmu_tools.cli"] if words[0] == "jointfmu" else [sys.executable]
-        done = subprocess.run([*start, *words[1:]], cwd=folder, capture_output=True, text=True, timeout=300)
+        if words[0] == "jointfmu":
+            with contextlib.chdir(folder), redirect_stdout(io.StringIO()) as out, here_alone():
+                assert cli.main(words[1:]) == 0, line
+            said[line] = out.getvalue()
+            continue
+        command = [sys.executable, *words[1:]]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, (line, done.stderr)
         said[line] = done.stdout
     return Tutorial(folder, said)

@@ -22,8 +22,9 @@ NEEDED = {
     "modelica_model": ("rumoca",),
 }
 """{script: packages beside those of the extra `build`}."""
-SHARED = {"bracket"}
-"""Scripts that run in this process, where bodies that other tests have solved are found."""
+ALONE = {"mujoco_arm", "sweep"}
+"""Scripts in a process of their own: MuJoCo takes a plugin of a name once, and a sweep starts processes. The
+others run in this one, where bodies that other tests have solved are found."""
 IMAGES = ROOT / "docs" / "images"
 PAGE = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
 
@@ -40,7 +41,7 @@ def test_an_example_runs_and_writes_its_picture(
     for package in ("matplotlib", *NEEDED.get(script.stem, ())):
         if find_spec(package) is None:
             pytest.skip(f"needs {package}")
-    if script.stem in SHARED:
+    if script.stem not in ALONE:
         import matplotlib.pyplot as plt
 
         monkeypatch.chdir(tmp_path)

@@ -38,7 +38,6 @@ from jointfmu_fmu_src.partners.laws import (
 from jointfmu_fmu_src.ssv import NUMBER
 from jointfmu_tools import cli
 from jointfmu_tools.fitting import decay
-from jointfmu_tools.job.checks import check_decays, check_ringing
 from jointfmu_tools.joints.harmonic_drive.job import LOADING
 from jointfmu_tools.report.systems import windup
 from jointfmu_tools.systems import decays, ringing, ssp
@@ -51,9 +50,10 @@ from lxml import etree
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson, solve_ivp
 from scipy.interpolate import CubicSpline
-from test_modelica import column_sliders, simulate, sliding, top
+from test_modelica import simulate, top
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import default, dump
@@ -465,6 +465,16 @@ def simulated_once(path: str, step: float, stop: float, changes: tuple[tuple[str
     return simulate_ssp(path, stop_time=stop, step_size=step, parameter_set=parameters)
 
 
+STEPS = 2000
+"""In which importers are compared: the robot's axes are on their way."""
+
+
+def in_fmpy(built: Path, name: str) -> Any:
+    """So many steps of a system's own size."""
+    step = system(name).interval
+    return simulated(built, name, step, (STEPS - 0.5) * step)
+
+
 ECOS = """
 import sys, numpy as np
 from ecospy import EcosSimulation
@@ -505,16 +515,11 @@ np.save(out, np.array(rows))
     ("client", "script"), [("ecospy", ECOS), ("libcosimpy", COSIM)], ids=["ecos", "cosim"]
 )
 @pytest.mark.parametrize(
-    ("name", "step", "count", "wanted"),
+    ("name", "wanted"),
     [
-        ("robot_joint", 2e-4, 7500, ["link::phi", "motor::phi", "load::tau"]),
-        ("bolted_column", 5e-6, 1000, ["column::s", "load::f"]),
-        (
-            "six_axis_robot",
-            1e-4,
-            4_000,  # the axes are on their way
-            [f"{axis}_{part}::phi" for axis in ROBOT_AXES for part in ("link", "motor")],
-        ),
+        ("robot_joint", ["link::phi", "motor::phi", "load::tau"]),
+        ("bolted_column", ["column::s", "load::f"]),
+        ("six_axis_robot", [f"{axis}_{part}::phi" for axis in ROBOT_AXES for part in ("link", "motor")]),
     ],
 )
 def test_other_simulators_run_the_archive_as_fmpy_does(
@@ -523,17 +528,15 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
     client: str,
     script: str,
     name: str,
-    step: float,
-    count: int,
     wanted: list[str],
 ) -> None:
     """The same equations step by step: they differ by round-off, which the motion does not amplify."""
     pytest.importorskip(client)
     out, path = tmp_path / "rows.npy", built / "ssp" / f"{name}.ssp"
-    arguments = [path, name, step, count, out, *wanted]
+    arguments = [path, name, system(name).interval, STEPS, out, *wanted]
     subprocess.run([sys.executable, "-c", script, *map(str, arguments)], check=True, timeout=100)
     rows = np.load(out)
-    other = simulated(built, name, step, (count - 0.5) * step)
+    other = in_fmpy(built, name)
     for k, column in enumerate(wanted):
         expected = other[column.replace("::", ".")]
         np.testing.assert_allclose(rows[:, k], expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
@@ -543,9 +546,8 @@ def test_other_simulators_run_the_archive_as_fmpy_does(
 def test_the_own_master_runs_an_archive_as_fmpy_does(built: Path, name: str) -> None:
     """Side by side: the same equations step by step."""
     found = system(name)
-    stop = 2000 * found.interval
-    own = simulate_system(found, built / "fmi2", stop=stop)
-    rows = simulated(built, name, found.interval, stop - 0.5 * found.interval)
+    own = simulate_system(found, built / "fmi2", stop=STEPS * found.interval)
+    rows = in_fmpy(built, name)
     for column in own.keys() - {"time"}:
         expected = rows[column]
         scale = np.max(np.abs(expected))
@@ -625,6 +627,23 @@ def test_the_tips_error_is_what_the_arms_jacobian_makes_of_the_wind_up(built: Pa
     slope = [(found.arm.tip(q + step * e)[0] - found.arm.tip(q - step * e)[0]) / (2.0 * step)
              for e in np.eye(6)[:, None, :]]  # fmt: skip
     assert np.linalg.norm(dq @ np.array(slope)) == pytest.approx(error[-1], rel=5e-3)  # of second order
+
+
+def sliding(force: Array, stiffness: Array, limit: Array, rate: float) -> Array:
+    """Rates of sliders' forces: a spring each, but none beyond its friction."""
+    held = (np.abs(force) < limit) | (force * rate < 0.0)
+    return np.where(held, stiffness * rate, 0.0)
+
+
+def column_sliders(spring: BoltedJointSpring, preload: float) -> tuple[Array, Array]:
+    """Stiffness and friction of the sliders that touch at a preload, of all patches."""
+    joint, patches = spring.joint, spring.patches
+    approach = spring.curve.inverse(pressures(joint, patches, preload, 0.0))
+    carried = spring.foundation(approach).carried(approach)
+    area = joint.A_0 * patches.share[:, None]
+    stiffness, limit = ((area * each).ravel() for each in (carried.stiffness, carried.limit))
+    some = stiffness > 0.0
+    return stiffness[some], limit[some]
 
 
 def robot(time: float, x: Array, found: Values, load: TorqueProfile) -> list[float]:
@@ -963,32 +982,7 @@ def test_the_robot_in_modelica_winds_up_as_the_fmus_do(built: Path) -> None:
         assert np.max(np.abs(found[f"{axis}_drive.phi_rel"] - expected)) < 5e-3 * scale
 
 
-# What the nonlinear joint does
-
-
-def test_resonance_and_decay_are_those_of_the_working_point(built: Path) -> None:
-    found = ringing.examples(built / "fmi2")
-    checks = check_ringing(found)
-    assert [c for c in checks if not c.passed] == []
-    assert len(checks) == 3  # the column has no dashpot
-    for name, most in (("robot_joint", 1.69), ("bolted_column", 2.79)):
-        frequencies = [r.frequency for r in found[name]]
-        assert frequencies == sorted(frequencies)
-        assert frequencies[-1] / frequencies[0] == pytest.approx(most, abs=0.02)
-
-
-@cache
-def pulled_examples(folder: Path) -> dict[str, list[decays.Decay]]:
-    return decays.examples(folder)
-
-
-def test_decays_follow_the_loops(built: Path) -> None:
-    found = pulled_examples(built / "fmi2")
-    assert [c for c in check_decays(found) if not c.passed] == []
-    for (one,) in found.values():
-        assert one.amplitude[0] > 10.0 * one.amplitude[-1]
-        assert one.frequency[0] < 0.95 * one.frequency[-1]
-        assert one.damping[0] > 3.0 * one.damping[-1]
+# What the nonlinear joint does; its resonance and decays are looked at beside the main job's tests
 
 
 def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
@@ -999,7 +993,8 @@ def test_the_struck_column_rings_down_by_its_friction(built: Path) -> None:
     assert 0.45 * limit < np.max(np.abs(rows["joint.f_x"])) < 0.6 * limit
     free = rows["time"] > 1.3e-3
     struck = decay.points(rows["time"][free], rows["column.s"][free])
-    (pulled,) = pulled_examples(built / "fmi2")["bolted_column"]
+    column = ringing.vibrating_joints()["bolted_column"]
+    (pulled,) = decays.decays(column, built / "fmi2", column.body.pull.deflection, [column.body.pull.load])
     order = np.argsort(pulled.amplitude)
     seen = struck.amplitude > 1.2e-7
     assert np.count_nonzero(seen) >= 3

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -283,7 +284,7 @@ def test_a_ring_down_loses_what_the_loop_does(native: Path) -> None:
 # Zhao's box specimen
 
 
-COARSE = 0.14
+COARSE = 0.2
 """Refinement at which a frequency is still within some percent: enough for how it varies."""
 
 
@@ -327,11 +328,13 @@ def test_what_is_no_box_is_refused():
         box.specimen(plates, box.lengths_of(shipped).tolist())
 
 
-def test_identification_finds_the_lengths_of_a_known_box():
+def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
     """Frequencies of a box that differs in what they determine best, length and overhang, are met again.
 
-    One step of the least squares must do it: the slopes of all five lengths decide its direction.
+    One step of the least squares must do it: the slopes of all five lengths decide its direction. An even
+    pressure of the contact is enough.
     """
+    monkeypatch.setattr(box, "frequencies", partial(box.frequencies, even=True))
     lengths = box.lengths_of(box.shipped())
     known = lengths * np.array([1.03, 1.0, 1.0, 1.0, 0.97])
     target = ringing(known.tolist())

@@ -158,8 +158,8 @@ def test_layouts():
     [
         ["--bolts", "M12"],
         ["--bolts", "2xM12", "--at", "-50,-10", "50,10"],
-        ["--bolts", "6xM8", "--circle", "60"],
-        ["--bolts", "6xM10", "--at", "160x60", "--grid", "3x2"],
+        pytest.param(["--bolts", "6xM8", "--circle", "60"], marks=pytest.mark.slow),
+        pytest.param(["--bolts", "6xM10", "--at", "160x60", "--grid", "3x2"], marks=pytest.mark.slow),
     ],
 )
 def test_any_layout_makes_a_file_that_loads(capsys, tmp_path, layouts):
@@ -232,6 +232,7 @@ def test_every_option_changes_its_number(capsys, words, name, value):
         assert changed[name] == (expected if isinstance(expected, str) else pytest.approx(expected))
 
 
+@pytest.mark.slow  # friction of six plates
 def test_options_of_the_bolts(capsys):
     base = facts_of(capsys, *PLATE, *FACES, *LOAD)
     socket = facts_of(capsys, *PLATE, *FACES, *LOAD, "--head", "socket")

@@ -220,29 +220,6 @@ def test_the_default_coefficient_is_that_of_a_light_machine_oil():
     assert (round(min(found.values()), 3), round(max(found.values()), 3)) == (0.02, 0.042)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kelvin", [253.15, 353.15])
-def test_a_drive_in_the_cold_and_in_the_warm_holds_what_it_bears(kelvin):
-    """1e5 steps under 0.7 of the limit there, shaken by 0.1 of it: not 1e-12 rad of drift.
-
-    The oscillation dies out by viscous friction, of which a sixth is left in the warm.
-    """
-    law, inertia, step = spring(friction_coulomb=0.05, friction_viscous=3e-3, **THINNING), 3e-5, 1e-4
-    most = float(limits(law.joint, 0.0, 0.0, kelvin)[0])
-    brake, joint = law.friction, law.joint
-    phi, w, memory = 0.0, 0.0, MEMORY.rest()
-    places = np.empty(100_000)
-    for k in range(places.size):
-        held = brake.moved(memory, phi, w, (most, most))
-        torque = 0.7 * most + 0.1 * most * math.sin(2.0 * math.pi * k / 500)
-        w += step / inertia * (torque - float(held.traction) - float(viscous(joint, w, kelvin)))
-        memory = brake.after(held, phi, (most, most))
-        phi += step * w
-        places[k] = phi
-    late = places[places.size // 2 :]
-    assert np.max(np.abs(late[500:] - late[:-500])) < 1e-12
-
-
 def stored(law, memory, out):
     """Energy (n) [J] of the spring, of the sliders of the hysteresis and of those of the friction."""
     parts = STATES.split(memory)

@@ -34,10 +34,17 @@ def drive(tmp_path):
 # round trips
 
 
+@pytest.fixture(autouse=True)
+def shorter(monkeypatch):
+    """Half of the script's minute, nine periods of the slowest wave."""
+    monkeypatch.setattr(log_round_trips, "TIME", 30.0)
+
+
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * ("arm" in n)) for n in CASES])
 def test_a_log_gives_its_friction_back(name):
-    """The fit begins 40 % off. Four standard deviations: one in 16 000 by chance."""
-    for seed in (0, 1):
+    """The fit begins 40 % off. Four standard deviations: one in 16 000 by chance. The arm's log of another
+    seed is fitted in the next test."""
+    for seed in (0,) if "arm" in name else (0, 1):
         found = trip(*CASES[name], seed)
         assert found.doubt() is None
         assert not any("--motor-inertia" in note for note in found.notes)
@@ -52,7 +59,7 @@ def test_a_log_gives_its_friction_back(name):
 @pytest.mark.slow
 def test_inertias_and_gravity_come_beside():
     """The rotor's, which nobody states, from the wind-up."""
-    found = trip(log_round_trips.moving, {"torque_constant": log_round_trips.CONSTANT}, 0)
+    found = trip(log_round_trips.moving, {"torque_constant": log_round_trips.CONSTANT}, 1)
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["motor_inertia"][0] == pytest.approx(log_round_trips.ROTOR, rel=0.05)
     for label, deviation in found.solution.deviations.items():

@@ -140,7 +140,7 @@ def wound_up(path: Path, torque: float) -> float:
         return drive.get()[0]
 
 
-@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.2, 353.15)])
+@pytest.mark.parametrize(("dither", "kelvin"), [(0.0, 253.15), (0.1, 253.15), (0.2, 353.15)])
 def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
     path: Path, dither: float, kelvin: float
 ) -> None:
@@ -159,7 +159,7 @@ def test_a_drive_at_rest_holds_a_torque_below_its_limit_without_drift(
             drive.set(phi, w, wound + phi / 100.0, w / 100.0)
             drive.step(k * step, step)
             places[k] = phi
-    assert 0.002 < places[-1] < 0.1  # it has given way to where its friction bears the load
+    assert 0.002 < places[-1] < 0.2  # it has given way to where its friction bears the load
     late = places[steps // 2 :]
     # the oscillation dies out like exp(-friction_viscous t/(2 J)), exp(-83) after half of the steps
     assert np.max(np.abs(late[period:] - late[:-period])) < 1e-12
