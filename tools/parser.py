@@ -20,7 +20,7 @@ GROUPS = {
 """{heading: commands}; each is declared by the module of its name, which `commands` has."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
-KERNEL = ("law", "parameters", "ramp")
+KERNEL = ("law", "parameters")
 """Those that lie in the kernel, as they need no tool."""
 
 

@@ -4,11 +4,11 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu import plots
 from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files import columns
 from jointfmu.files.writing import check_folder, check_writable, write_text
 
+from .. import plots
 from ..systems.system import names, system
 
 

@@ -65,7 +65,7 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         check_writable(args.csv)
     if args.plot:
-        from jointfmu import plots
+        from .. import plots
 
         plots.check(args.plot)
     given = study.settings(args.study, args.settings)

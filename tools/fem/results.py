@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu import plots
 from jointfmu.files.writing import check_writable, write_bytes, write_text
 
+from .. import plots
 from ..fields import csvfile
 from .bolted_contact import JointSolution
 from .vtu import packed

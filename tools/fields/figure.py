@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu import plots
-
+from .. import plots
 from .contact import ContactField
 from .reduction import Reduction
 

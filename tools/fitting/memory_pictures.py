@@ -4,8 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from jointfmu.plots import shown
-
+from ..plots import shown
 from .branches import Loops
 from .hysteresis import HysteresisLaw
 from .least_squares import Array

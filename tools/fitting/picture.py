@@ -2,8 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from jointfmu import plots
-
+from .. import plots
 from .outcome import FitResult
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.fmi import ramp
-
+from ..ramps import ramp
 from .frame import Frame
 
 

@@ -7,10 +7,11 @@ import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
 from numpy.typing import NDArray
 
-from jointfmu.fmi.loops import HysteresisLoops, Swing, conjugate, of
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
+
+from ..ramps.loops import HysteresisLoops, Swing, conjugate, of
+from ..ramps.ramp import RampResult
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from jointfmu.plots import BLUE, GREEN, GREY, RED
 from jointfmu.published.reference import PROVES_NOTHING, ROLES, Point
+
+from ..plots import BLUE, GREEN, GREY, RED
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 
 from jointfmu_fmu_src.native.page import panels
 
-from jointfmu.fmi.loops import HysteresisLoops
 from jointfmu.joints import KINDS
 
+from ..ramps.loops import HysteresisLoops
 from ..shown import Stated, quantity
 from .course import Course
 

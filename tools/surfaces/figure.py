@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointfmu import plots
 from jointfmu.contact.fractal import second_difference
 
+from .. import plots
 from .heights import Array
 from .results import Identification, Result
 from .structure import power_law

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu import plots
-
+from .. import plots
 from .propagate import QUANTILES, Bands
 from .sensitivity import Sensitivity
 

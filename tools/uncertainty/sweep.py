@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from jointfmu.files import columns
 from jointfmu.files.writing import write_text
-from jointfmu.fmi import ramp
 from jointfmu.fmi.host import unpacked
 from jointfmu.progress import track
 from jointfmu.quantity.refusal import Refusal
 
+from ..ramps import ramp
 from . import journal
 from .cluster import client
 from .journal import Journal

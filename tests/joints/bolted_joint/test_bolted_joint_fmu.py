@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from conftest import Fmu
 from joint_cases import RANGES, SAME, STATE, TABLE, parameters, random_inputs
+from jointfmu_tools.ramps import ramp
 from natives import SAME as SAME_FLAVOURS
 from natives import jacobian, near, package
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.fmi import ramp
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 

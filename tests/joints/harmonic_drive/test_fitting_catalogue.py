@@ -10,8 +10,8 @@ from conftest import here_alone, refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, lines
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+from jointfmu_tools.ramps import ramp
 
-from jointfmu.fmi import ramp
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import load
 

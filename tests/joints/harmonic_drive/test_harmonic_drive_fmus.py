@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from conftest import Fmu
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
+from jointfmu_tools.ramps import ramp
 from scipy.integrate import cumulative_simpson, quad
 
-from jointfmu.fmi import ramp
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 
 Host = Callable[..., Fmu]

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from scipy.integrate import cumulative_simpson
 
-from jointfmu.fmi import ramp
 from jointfmu.published.reference import Point
 
 from ...job.checks import deviation
+from ...ramps import ramp
 
 _FMU = "BoltedJoint"
 

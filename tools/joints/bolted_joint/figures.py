@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.parameters import default
 
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 from .picture import plan
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.published.validation import ValidatedPoint
 
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series, published
 from . import efficiency
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import columns
-from ..progress import track
-from .host import opened, unpacked
+from jointfmu.files import columns
+from jointfmu.fmi.host import opened, unpacked
+from jointfmu.progress import track
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
