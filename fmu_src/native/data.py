@@ -11,19 +11,16 @@ from typing import Any, NamedTuple
 from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import Array, flat_fields
 
 from ..folders import parts_of
 from ..joint_parts.c_text import number, string
 from ..joint_parts.data import NO_TABLES, DataTable, Split, Tables
 from ..naming import LONGEST
-
-Array = NDArray[np.float64]
 
 MAGIC = "jointfmu data 1"
 """What the block begins with."""

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointfmu.files import columns
-from jointfmu.files.columns import Array
 from jointfmu.fmi.host import unpacked
-from jointfmu.quantity import units
+from jointfmu.quantity import Array, units
 
 from . import ramp
 

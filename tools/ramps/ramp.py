@@ -6,16 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.files import columns
 from jointfmu.fmi.host import opened, unpacked
 from jointfmu.progress import track
+from jointfmu.quantity import Array
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,12 @@
 """The one place where a physical field declares its SI unit, open or closed interval and meaning."""
 
 from .declaration import Checked, check, choice, group, problem, quantity, series
-from .interval import Interval, Number, erf, where
+from .interval import Array, Interval, Number, erf, where
 from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
 from .smooth import smooth_step, smooth_step_integral, smooth_step_slopes
 
 __all__ = [
+    "Array",
     "Checked",
     "Interval",
     "Limit",

@@ -7,7 +7,9 @@ from math import inf, nextafter
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
+Array: TypeAlias = NDArray[np.float64]
 Number: TypeAlias = Any
 """A float, an array of floats, or a symbol of a computer-algebra tool: what a law accepts."""
 
