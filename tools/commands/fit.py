@@ -8,13 +8,12 @@ from functools import partial
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
-from jointfmu.files import columns
 from jointfmu.files.writing import check_writable
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.progress import step
 
-from .. import plots
+from .. import columns, plots
 from ..drawing.reading import number
 from ..fitting.outcome import percent
 from ..fitting.procedure import FitOption, Procedure, procedures

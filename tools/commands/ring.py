@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from jointfmu.commands.common import Commands, command, settings, without_package
-from jointfmu.files import columns
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.steps import stable_steps
 
-from .. import plots
+from .. import columns, plots
 from ..systems.system import names, system
 
 

@@ -5,10 +5,9 @@ import json
 from pathlib import Path
 
 from jointfmu.commands.common import Commands, command, without_package
-from jointfmu.files import columns
 from jointfmu.files.writing import check_folder, check_writable, write_text
 
-from .. import plots
+from .. import columns, plots
 from ..systems.system import names, system
 
 

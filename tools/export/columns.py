@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.columns import Column, rows, text
-
+from ..columns import Column, rows, text
 from .placing import Placing, header
 from .springs import Springs
 from .tables import LoadTable

@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.columns import Columns, read
 from jointfmu.quantity.units import Sizes, sizes
+
+from ..columns import Columns, read
 
 Array = NDArray[np.float64]
 

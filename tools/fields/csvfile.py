@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.quantity.units import Sizes, sizes
 
+from .. import columns
 from .contact import ContactField
 from .nodal_result import LENGTHS, PRESSURES, NodalResult
 

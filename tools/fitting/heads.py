@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.quantity.units import Sizes, sizes
 
+from .. import columns
 from .least_squares import Array
 
 LEAST = 8

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from jointfmu.files import columns
 from jointfmu.files.writing import write_text
 
-from .. import plots
+from .. import columns, plots
 from .table import Table
 
 if TYPE_CHECKING:

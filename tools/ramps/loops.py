@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.fmi.host import unpacked
 from jointfmu.quantity import Array, units
 
+from .. import columns
 from . import ramp
 
 if TYPE_CHECKING:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.fmi.host import opened, unpacked
 from jointfmu.progress import track
 from jointfmu.quantity import Array
+
+from .. import columns
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription

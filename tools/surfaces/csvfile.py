@@ -12,7 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.columns import (
+from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.units import measured, sizes
+
+from ..columns import (
     Head,
     cells,
     check_length,
@@ -23,9 +26,6 @@ from jointfmu.files.columns import (
     separator,
     text_lines,
 )
-from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import measured, sizes
-
 from . import grid
 from .heights import Areal, Array, Heights, Profile
 

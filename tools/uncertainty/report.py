@@ -4,8 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files import columns
-
+from .. import columns
 from .problem import Problem
 from .propagate import QUANTILES, Bands
 from .sensitivity import Sensitivity

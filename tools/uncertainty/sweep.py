@@ -13,12 +13,12 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files import columns
 from jointfmu.files.writing import write_text
 from jointfmu.fmi.host import unpacked
 from jointfmu.progress import track
 from jointfmu.quantity.refusal import Refusal
 
+from .. import columns
 from ..ramps import ramp
 from . import journal
 from .cluster import client

@@ -20,7 +20,6 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.files import columns
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -28,6 +27,7 @@ from jointfmu.mechanics.footprint.shape import MergedShape
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.units import Sizes, factor, sizes
 
+from .... import columns
 from ....fitting.least_squares import Array, Solution, Unknown, solve
 from ....fitting.outcome import FitResult, Picture, fitted, unknowns
 

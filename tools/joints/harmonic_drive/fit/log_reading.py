@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity.units import KELVIN_AT_ZERO, Sizes, sizes
 
+from .... import columns
 from ....fitting.least_squares import Array
 from .log_samples import Samples, moving, smoothed, steady, window
 

@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, sizes
 
+from .... import columns
 from ....fitting import loop
 from ....fitting.least_squares import Array, Solution, solve
 from ....fitting.outcome import FitResult, Picture, fitted, model, unknowns

@@ -19,8 +19,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity import Array
-from ..quantity.units import Sizes, measured
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import Sizes, measured
 
 Column: TypeAlias = NDArray[Any]
 """Real or whole numbers."""
