@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu import __version__
-from jointfmu.commands.common import IMPLIED, Parser, nearest
+
+from .command_line.common import IMPLIED, Parser, nearest
 
 GROUPS = {
     "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
@@ -20,8 +21,6 @@ GROUPS = {
 """{heading: commands}; each is declared by the module of its name, which `commands` has."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
-KERNEL = ("law", "parameters")
-"""Those that lie in the kernel, as they need no tool."""
 
 
 class CommandLine(Parser):
@@ -109,6 +108,5 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
-        package = "jointfmu.commands" if name in KERNEL else "jointfmu_tools.commands"
-        import_module(f"{package}.{name}").add(commands)
+        import_module(f"jointfmu_tools.commands.{name}").add(commands)
     return top

@@ -3,7 +3,7 @@
 import argparse
 import json
 
-from jointfmu.commands.common import Commands, command, without_package
+from ..command_line.common import Commands, command, without_package
 
 
 def add(commands: Commands) -> None:

@@ -6,11 +6,11 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
+from ..command_line.common import Commands, command
 from ..joint_parts import part
 
 

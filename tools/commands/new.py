@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import Commands, Parser, command, flag, tell
 from jointfmu.files.writing import check_writable
 from jointfmu.joints import KINDS
 
+from ..command_line.common import Commands, Parser, command, flag, tell
 from ..drawing.part import Drawing, Option
 from ..interface.joint import Joint
 from ..interface.make import made

@@ -5,11 +5,11 @@ import json
 import sys
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 
+from ..command_line.common import Commands, command
 from ..proof import listing, report
 from ..proof.importers import IMPORTERS
 from ..proof.run import Expected, prove

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.commands.common import Commands, command, flag, settings
 from jointfmu.files.writing import check_writable, write_text
 
 from .. import plots
+from ..command_line.common import Commands, command, flag, settings
 from ..ramps import loops, ramp
 
 if TYPE_CHECKING:

@@ -5,8 +5,7 @@ import json
 import sys
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command, settings
-
+from ..command_line.common import Commands, command, settings
 from .uncertainty import SYNTAX
 
 

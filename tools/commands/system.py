@@ -4,10 +4,10 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files.writing import check_folder, check_writable, write_text
 
 from .. import columns, plots
+from ..command_line.common import Commands, command, without_package
 from ..systems.system import names, system
 
 

@@ -5,12 +5,12 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command, settings, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
+from ..command_line.common import Commands, command, settings, tell
 from ..pressure import judge_file
 
 SYNTAX = (

@@ -4,9 +4,9 @@ import argparse
 import json
 from dataclasses import asdict
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.published import validation
 
+from ..command_line.common import Commands, command
 from ..fem import installed
 from ..fem.validation import natural_frequencies
 

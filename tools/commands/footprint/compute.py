@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, dump
 
 from ... import plots
+from ...command_line.common import Commands, command, tell
 from ...fem import installed
 from ...fields.clamped import clamping
 from .finite_elements import assembly_arguments, joint_file, judge_assembly, with_assembly

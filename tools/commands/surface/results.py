@@ -6,11 +6,11 @@ import math
 import sys
 from collections.abc import Sequence
 
-from jointfmu.commands.common import tell
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.parameters import ParameterFile
 
+from ...command_line.common import tell
 from ...pressure import judge_file
 from ...surfaces.heights import Heights
 from ...surfaces.joint_parameters import changes, doubt, meaning
