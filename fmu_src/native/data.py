@@ -115,12 +115,17 @@ def block(
     return Data(token, members, counts)
 
 
-def data_of(model: Model, parameters: ParameterFile, given: Split, sources: Mapping[str, str]) -> Data:
-    """The block of an FMU, whose token follows from its sources, parameters and name."""
+def data_of(
+    model: Model, parameters: ParameterFile, given: Split, sources: Mapping[str, str], of_file: bool = True
+) -> Data:
+    """The block of an FMU, whose token follows from its sources, start values, name and parameter file.
+
+    of_file : whether there is a file; a system has none of its own
+    """
     start = _start(model, parameters)
     fixed = list(given.fixed.values())
     content = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(sources.items())).encode())
-    content.update(dump(parameters).encode())
+    content.update(dump(parameters).encode() if of_file else b"")
     content.update(block(model.title, "", start, fixed, given.tables).content)
     uuid = uuid5(NAMESPACE_URL, f"jointfmu/{model.title}/{content.hexdigest()}")
     return block(model.title, f"{{{uuid}}}", start, fixed, given.tables)
