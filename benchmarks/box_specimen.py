@@ -13,10 +13,10 @@ from pathlib import Path
 
 import box_specimen_lengths as box
 import numpy as np
+from jointfmu_tools import plots
 from numpy.typing import NDArray
 from published_marks import published_mark
 
-from jointfmu import plots
 from jointfmu.parameters import default
 from jointfmu.published.reference import points
 

@@ -12,10 +12,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from jointfmu_tools import columns
 from jointfmu_tools.joints.harmonic_drive.fit import log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 

@@ -7,9 +7,9 @@ inversion alone, the inversion with all quantities, brentq, and the ratio of the
 from time import perf_counter
 
 import numpy as np
+from jointfmu_tools.laws import LAWS, law_parameters
 from scipy.optimize import brentq
 
-from jointfmu.commands.law import LAWS, law_parameters
 from jointfmu.contact.interface import at_pressure, largest_spot
 
 POINTS, OBVIOUS, REPEATS = 1_000_000, 300, 5

@@ -17,8 +17,8 @@ from elastic_ring.forms import (
     opposite_forces_in_elements,
 )
 from elastic_ring.ring import Ring
+from jointfmu_tools import plots
 
-from jointfmu import plots
 from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.progress import track

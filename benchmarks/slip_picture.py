@@ -3,9 +3,8 @@
 import numpy as np
 import slip_cases as cases
 import slip_theory as theory
+from jointfmu_tools import plots
 from validity_pictures import IMAGES
-
-from jointfmu import plots
 
 STATIONS = np.polynomial.legendre.leggauss(12)
 """On the branches of the loops that are drawn."""

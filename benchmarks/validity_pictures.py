@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import interface_laws as compare
 import numpy as np
+from jointfmu_tools import plots
 from measured_joints import measured
 from validity_tables import IMAGES
 
-from jointfmu import plots
 from jointfmu.contact.interface import stiffness_curve
 
 GAMMA = 0.48

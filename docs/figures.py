@@ -14,7 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from jointfmu_fmu_src.python.build import runtime_sources
-from jointfmu_tools import cli
+from jointfmu_tools import cli, plots
 from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
@@ -27,7 +27,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from jointfmu import plots
 from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.joints import KINDS
 from jointfmu.published import validation

@@ -14,17 +14,14 @@ def checked_name(name: str) -> str:
     """
     allowed = f"allowed are at most {LONGEST} letters, digits and _, no digit first, no word of C or Python"
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) or len(name) > LONGEST or reserved(name):
-        raise ValueError(f"name {_short(name)!r} is no model identifier, {allowed}")
+        shown = name if len(name) <= 80 else f"{name[:77]}..."
+        raise ValueError(f"name {shown!r} is no model identifier, {allowed}")
     return name
 
 
 def reserved(name: str) -> bool:
     """Whether a language keeps the name for itself."""
     return iskeyword(name) or name in _C
-
-
-def _short(name: str) -> str:
-    return name if len(name) <= 80 else f"{name[:77]}..."
 
 
 _WORDS = """auto break case char const continue default do double else enum extern float for goto if

@@ -42,9 +42,10 @@ def _interrupted(error: BaseException | None) -> bool:
 
 def _run(args: Any, name: str) -> int:
     """Run the command; what it refuses is one line."""
-    from jointfmu.commands.common import option
     from jointfmu.progress import told
     from jointfmu.quantity.refusal import Refusal
+
+    from .command_line.common import option
 
     try:
         with told(name):

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from jointfmu import __version__
-from jointfmu.commands.common import IMPLIED, Parser, nearest
+
+from .command_line.common import IMPLIED, Parser, nearest
 
 GROUPS = {
     "make a parameter file": ("new", "catalogue", "surface", "fit", "footprint", "parameters"),
@@ -20,8 +21,6 @@ GROUPS = {
 """{heading: commands}; each is declared by `add` of the module of its name, which `commands` has."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
-KERNEL = ("law", "parameters", "ramp")
-"""Those that lie in the kernel, as they need no tool."""
 BESIDE = {"cache": "build", "catalogue": "new", "sweep": "uncertainty", "validate": "prove"}
 """{command: that in whose module it is declared, by `add_COMMAND`}."""
 
@@ -111,7 +110,6 @@ def parser(words: Sequence[str] = ()) -> CommandLine:
     top.add_argument("--completion", action=Completion, choices=SHELLS, metavar="SHELL", help=text)
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name in words[:1] if {*words[:1]} & {*COMMANDS} else COMMANDS:
-        package = "jointfmu.commands" if name in KERNEL else "jointfmu_tools.commands"
-        module = import_module(f"{package}.{BESIDE.get(name, name)}")
+        module = import_module(f"jointfmu_tools.commands.{BESIDE.get(name, name)}")
         (getattr(module, f"add_{name}") if name in BESIDE else module.add)(commands)
     return top

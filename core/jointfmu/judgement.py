@@ -9,14 +9,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .contact.interface import InterfaceLaw, beyond, stiffness_curve
 from .contact.roughness import GAMMA, ROUGHEST, height, level
 from .joints import KINDS
 from .parameters import ParameterFile
-
-Array = NDArray[np.float64]
+from .quantity import Array
 
 FACTOR = 3.0
 """Ratio to p/(GAMMA h), either way, beyond which a law's level is doubtful [1] (docs/validity.md)."""

@@ -4,12 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from jointfmu.quantity import flatten
-
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array, flatten
 
 
 class DataTable(NamedTuple):

@@ -11,19 +11,16 @@ from typing import Any, NamedTuple
 from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
-from jointfmu.quantity import flat_fields
+from jointfmu.quantity import Array, flat_fields
 
 from ..folders import parts_of
 from ..joint_parts.c_text import number, string
 from ..joint_parts.data import NO_TABLES, DataTable, Split, Tables
 from ..naming import LONGEST
-
-Array = NDArray[np.float64]
 
 MAGIC = "jointfmu data 1"
 """What the block begins with."""
@@ -118,12 +115,17 @@ def block(
     return Data(token, members, counts)
 
 
-def data_of(model: Model, parameters: ParameterFile, given: Split, sources: Mapping[str, str]) -> Data:
-    """The block of an FMU, whose token follows from its sources, parameters and name."""
+def data_of(
+    model: Model, parameters: ParameterFile, given: Split, sources: Mapping[str, str], of_file: bool = True
+) -> Data:
+    """The block of an FMU, whose token follows from its sources, start values, name and parameter file.
+
+    of_file : whether there is a file; a system has none of its own
+    """
     start = _start(model, parameters)
     fixed = list(given.fixed.values())
     content = sha256("\0".join(f"{k}\0{v}" for k, v in sorted(sources.items())).encode())
-    content.update(dump(parameters).encode())
+    content.update(dump(parameters).encode() if of_file else b"")
     content.update(block(model.title, "", start, fixed, given.tables).content)
     uuid = uuid5(NAMESPACE_URL, f"jointfmu/{model.title}/{content.hexdigest()}")
     return block(model.title, f"{{{uuid}}}", start, fixed, given.tables)

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from jinja2 import Template
 
 from jointfmu import __version__
 from jointfmu.joints.model import Model, Spring
@@ -55,15 +54,10 @@ class _StableSteps(NamedTuple):
 
 def documentation(model: Model, parameters: ParameterFile) -> dict[str, bytes]:
     """{path: content} of the folder documentation, the same for FMI 2.0 and 3.0."""
-    page = _partner_page if model.moves else _page
-    return {
-        "index.html": page(model, parameters).encode(),
-        "licenses/license.txt": licence().encode(),
-    }
-
-
-def _partner_page(model: Model, parameters: ParameterFile) -> str:
-    return plain_page(model, parameters, asset(model, "page.html"), terminals(model))
+    own = asset(model, "page.html")
+    given = model, parameters, own
+    page = plain_page(*given, terminals(model)) if model.moves else _page(*given)
+    return {"index.html": page.encode(), "licenses/license.txt": licence().encode()}
 
 
 def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Sequence[Terminal] = ()) -> str:
@@ -76,18 +70,14 @@ def plain_page(model: Model, parameters: ParameterFile, page: Path, flanges: Seq
     )
 
 
-def _template(model: Model) -> Template:
-    """The page in the folder of the FMU's joint; it may extend and import what lies beside this file."""
-    return template(asset(model, "page.html"), Path(__file__).parent)
-
-
-def _page(model: Model, parameters: ParameterFile) -> str:
+def _page(model: Model, parameters: ParameterFile, page: Path) -> str:
+    """That of a joint; the template `page` may extend and import what lies beside this file."""
     spring = model.spring(parameters.values)
     rest = {v.name: parameters.start(v.name) for v in model.inputs}
     variables = listed(model, parameters)
     exposed = model.parameter_fields()
     rows = _rows(parameters)
-    return _template(model).render(
+    return template(page, Path(__file__).parent).render(
         model=model,
         spring=spring,
         fmu=True,

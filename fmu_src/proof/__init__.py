@@ -1,8 +1,5 @@
 """The proof inside an FMU: manifest, experiments, inputs and reference results after FMI-LS-REF."""
 
-from dataclasses import dataclass, field
-from functools import lru_cache
-
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
 
@@ -10,6 +7,10 @@ from .experiments import ReferenceExperiment, experiments, models, study
 from .files import archive
 
 __all__ = ["computed", "proof"]
+
+_MOST_KEPT = 16
+_kept: dict[tuple[str, str], tuple[ReferenceExperiment, ...]] = {}
+"""{(FMU, text of its parameter file): its experiments}, the latest last."""
 
 
 def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[str, bytes]:
@@ -23,19 +24,9 @@ def proof(model: Model, parameters: ParameterFile, native: bool = True) -> dict[
 
 def computed(model: Model, parameters: ParameterFile) -> tuple[ReferenceExperiment, ...]:
     """All experiments, computed once for the flavours of an FMU."""
-    return _computed(_Given(model.name, dump(parameters), model, parameters))
-
-
-@dataclass(frozen=True)
-class _Given:
-    """What experiments depend on: name and text of the parameter file; with the objects behind it."""
-
-    name: str
-    text: str
-    model: Model = field(compare=False)
-    parameters: ParameterFile = field(compare=False)
-
-
-@lru_cache(maxsize=16)
-def _computed(given: _Given) -> tuple[ReferenceExperiment, ...]:
-    return tuple(experiments(given.model, given.parameters))
+    key = model.name, dump(parameters)
+    if key not in _kept:
+        _kept[key] = tuple(experiments(model, parameters))
+        for old in [*_kept][:-_MOST_KEPT]:
+            del _kept[old]
+    return _kept[key]

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
@@ -20,8 +19,6 @@ from jointfmu.quantity import changed
 
 from .neighbours import neighbours
 from .reference import Stimulus, results, rounded, start_of
-
-Array = NDArray[np.float64]
 
 RAMP, FEW, LEAST = 20, 4, 2
 """Levels of the load ramp [1], of the smoke test and shipped models, of neighbours and samples."""

@@ -8,13 +8,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.joints.model import Model, Outputs, Spring
 from jointfmu.parameters import ParameterFile
 from jointfmu.proof.series import TimeSeries
-
-Array = NDArray[np.float64]
+from jointfmu.quantity import Array
 
 DIGITS = 10
 """Of a reference result: their rounding [1] is far below the tolerance."""

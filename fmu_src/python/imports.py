@@ -25,15 +25,11 @@ def imported(start: Sequence[str], roots: Collection[str]) -> dict[str, Path]:
         if spec is None or spec.origin is None:
             continue
         files[name] = Path(spec.origin)
-        waiting += _parents(name)
+        parts = name.split(".")
+        waiting += [".".join(parts[:k]) for k in range(1, len(parts))]
         package = name if spec.submodule_search_locations else name.rpartition(".")[0]
         waiting += _imports(files[name].read_text(encoding="utf-8"), package)
     return files
-
-
-def _parents(name: str) -> list[str]:
-    parts = name.split(".")
-    return [".".join(parts[:k]) for k in range(1, len(parts))]
 
 
 def _imports(text: str, package: str) -> Iterator[str]:

@@ -93,9 +93,6 @@ class JointSlave(Fmi2Slave):  # type: ignore[misc]
         self._spring: Spring | None = None
         self._outputs: dict[str, float] | None = None
         self._memory: Memory | None = None
-        self._register()
-
-    def _register(self) -> None:
         for item in self.listed:
             self.register_variable(self._variable(item), nested=False)
 

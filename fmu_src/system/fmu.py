@@ -31,7 +31,7 @@ def build_system(
     model = assembly.model()
     parameters = assembly.parameters(model)
     files = sources(assembly)
-    data = data_of(model, parameters, Split((), {}, {}, model.parameters, NO_TABLES), files)
+    data = data_of(model, parameters, Split((), {}, {}, model.parameters, NO_TABLES), files, of_file=False)
     files |= {"data.h": data.header(), "data.c": data.source(f" from the system {assembly.name!r}")}
     page = plain_page(model, parameters, Path(__file__).with_name("page.html")).encode()
     pages = {"documentation/index.html": page, "documentation/licenses/license.txt": licence().encode()}

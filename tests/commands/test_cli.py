@@ -10,9 +10,10 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from jointfmu_tools.cli import main
+from jointfmu_tools.laws import LAWS, ROW, law_parameters
+from jointfmu_tools.laws import first_joint as _first
 
 from jointfmu import __version__
-from jointfmu.commands.law import LAWS, ROW, _first, law_parameters
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.published import PUBLISHED

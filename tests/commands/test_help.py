@@ -14,10 +14,10 @@ from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.native.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
+from jointfmu_tools.command_line.examples import EXAMPLES
 from jointfmu_tools.parser import parser
 from test_readme import commands
 
-from jointfmu.commands.examples import EXAMPLES
 from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from jointfmu_tools.columns import read, rows, text
 
-from jointfmu.files.columns import read, rows, text
 from jointfmu.quantity.units import sizes
 
 SPEC = {"load": sizes("N", "kN"), "angle": sizes("rad", "deg", "arcmin")}

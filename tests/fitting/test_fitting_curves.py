@@ -8,14 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli
+from jointfmu_tools import cli, columns
 from jointfmu_tools.fitting.least_squares import Unknown, solve
 from jointfmu_tools.fitting.loop import backbone
 from jointfmu_tools.joints.bolted_joint.fit import preload
 from jointfmu_tools.joints.harmonic_drive.fit import torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
 
-from jointfmu.files import columns
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default, dump, load
 

@@ -8,8 +8,8 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.fit import loop as shear
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis
+from jointfmu_tools.ramps import loops, ramp
 
-from jointfmu.fmi import loops, ramp
 from jointfmu.parameters import default
 
 HYSTERESIS = {"hysteresis_loss": 3.5e-4, "hysteresis_stiffness": 6000.0}

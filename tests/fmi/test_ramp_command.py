@@ -5,9 +5,7 @@ import sys
 
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli
-
-from jointfmu import plots
+from jointfmu_tools import cli, plots
 
 pytestmark = pytest.mark.slow
 

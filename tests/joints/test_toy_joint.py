@@ -68,7 +68,7 @@ def test_every_flavour_is_valid_and_gives_hookes_law(built, flavour):
 
 
 def test_a_stiffness_that_is_none_is_refused_by_the_fmu(built):
-    from jointfmu.fmi import ramp
+    from jointfmu_tools.ramps import ramp
 
     with pytest.raises(ValueError, match=r"c = -1 N/m is outside \(0, inf\): stiffness"):
         ramp.run(built / "fmi3" / "ToySpring.fmu", "s_rel", 1e-3, 1e-3, {"c": -1.0})

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.ramps import ramp
 
-from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 
 pytestmark = pytest.mark.slow

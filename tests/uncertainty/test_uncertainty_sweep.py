@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
+from jointfmu_tools.ramps import ramp
 from jointfmu_tools.uncertainty import journal
 from jointfmu_tools.uncertainty.problem import pose
 from jointfmu_tools.uncertainty.sweep import plan, sweep
 from jointfmu_tools.uncertainty.worker import LoadRamp
 
-from jointfmu.fmi import ramp
 from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow

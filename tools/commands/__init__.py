@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from jointfmu import plots
-from jointfmu.commands.common import flag
 from jointfmu.files.writing import check_writable
 
+from .. import plots
+from ..command_line.common import flag
 from ..joint_parts import Option
 
 

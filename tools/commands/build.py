@@ -8,12 +8,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
-from jointfmu.commands.common import Commands, command, tell, without_package
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
+from ..command_line.common import Commands, command, tell, without_package
 from ..pressure import judge_file
 
 SHOWN = 3

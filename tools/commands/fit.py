@@ -7,13 +7,12 @@ from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 
-from jointfmu import plots
-from jointfmu.commands.common import Commands, Parser, command, flag, tell, written
-from jointfmu.files import columns
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.progress import step
 
+from .. import columns, plots
+from ..command_line.common import Commands, Parser, command, flag, tell, written
 from ..drawing.reading import number
 from ..fitting.outcome import percent
 from ..fitting.procedure import Procedure, procedures

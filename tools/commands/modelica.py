@@ -4,13 +4,13 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command, flag, tell, without_package
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
+from ..command_line.common import Commands, command, flag, tell, without_package
 from ..pressure import judge_file
 
 

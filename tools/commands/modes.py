@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
+from ..command_line.common import Commands, command, tell
 from ..fem import installed
 from ..fields.clamped import clamping
 from .footprint.compute import assembly_arguments, joint_file, judge_assembly, with_assembly

@@ -9,11 +9,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from jointfmu.commands.common import Commands, Parser, command, tell
 from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
+from ..command_line.common import Commands, Parser, command, tell
 from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made

@@ -6,12 +6,12 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.published import validation
 
+from ..command_line.common import Commands, command
 from ..fem import installed
 from ..fem.validation import natural_frequencies
 from ..proof import listing, report

@@ -4,9 +4,9 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_writable
 
+from ..command_line.common import Commands, command
 from ..interface.make import load
 
 

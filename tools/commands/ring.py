@@ -9,12 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu import plots
-from jointfmu.commands.common import Commands, command, settings, without_package
-from jointfmu.files import columns
 from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
+from .. import columns, plots
+from ..command_line.common import Commands, command, settings, without_package
 from ..systems.system import names, system
 from . import check_files
 

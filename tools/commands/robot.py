@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from jointfmu import plots
-from jointfmu.commands.common import Commands, command, without_package
 from jointfmu.files.writing import check_folder, write_text
 from jointfmu.parameters import dump
+
+from .. import plots
+from ..command_line.common import Commands, command, without_package
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""

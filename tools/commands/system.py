@@ -4,11 +4,10 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu import plots
-from jointfmu.commands.common import Commands, command, without_package
-from jointfmu.files import columns
 from jointfmu.files.writing import check_folder, write_text
 
+from .. import columns, plots
+from ..command_line.common import Commands, command, without_package
 from ..systems.system import names, system
 from . import check_files
 

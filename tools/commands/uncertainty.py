@@ -6,12 +6,12 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command, settings, tell
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
+from ..command_line.common import Commands, command, settings, tell
 from ..pressure import judge_file
 from . import check_files
 

@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files.columns import Columns, read
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
+
+from ..columns import Columns, read
 
 COLUMNS: Mapping[str, Sizes] = {
     "node_1": sizes("1"),

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from jointfmu.files.columns import Column, rows, text
 from jointfmu.mechanics.curve import Curve
 from jointfmu.quantity import Array
 
+from ..columns import Column, rows, text
 from ..thinning import kept
 from .placing import Placing, Springs, Units, header
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu import plots
 from jointfmu.files.writing import check_writable, write_bytes, write_text
 from jointfmu.quantity import Array
 
+from .. import plots
 from ..fields import nodal_result
 from .bolted_contact import JointSolution
 from .elasticity import ElasticBody, Index

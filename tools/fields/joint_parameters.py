@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu import plots
 from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.shape import (
     BOLT_MEANS,
@@ -20,6 +19,7 @@ from jointfmu.parameters import ORIGINS, ParameterFile
 from jointfmu.quantity import Array, build
 from jointfmu.quantity.refusal import Refusal
 
+from .. import plots
 from .clamped import BoltedInterface, clamping
 from .nodal_result import ContactField
 from .reduction import MOST, Reduction, reduce

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.files import columns
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
+
+from .. import columns
 
 
 def read_lines(path: Path, what: str) -> list[str]:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
 
+from .. import columns
 from .branches import Loops, cut
 from .decay import Points, points
 from .hysteresis import Free, Response

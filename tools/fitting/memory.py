@@ -6,10 +6,10 @@ from itertools import product
 
 import numpy as np
 
-from jointfmu.plots import shown
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
+from ..plots import shown
 from .branches import Loops, ordered
 from .hysteresis import Free, HysteresisLaw, Oscillator, Response
 from .least_squares import Exchange, Residuals, Solution, Unknown, solve

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu import plots
 from jointfmu.contact.roughness import ROUGHEST
 from jointfmu.files.timestamp import build_time
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, Interval, flat_fields
 
+from .. import plots
 from .least_squares import Solution, Unknown
 
 if TYPE_CHECKING:

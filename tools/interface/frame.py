@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu import plots
-from jointfmu.files import columns
 from jointfmu.files.writing import write_text
-from jointfmu.fmi import ramp
 from jointfmu.quantity import Array
 
+from .. import columns, plots
+from ..ramps import ramp
 from ..shown import aligned
 
 if TYPE_CHECKING:

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu import plots
-from jointfmu.commands.common import without_package
 from jointfmu.files.writing import write_text
-from jointfmu.fmi.ramp import broadcast
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import ParameterFile, dump
 
+from .. import plots
+from ..command_line.common import without_package
 from ..pressure import judge_file
+from ..ramps.ramp import broadcast
 from ..shown import quantity, stated
 from .frame import Frame, Table, Tabled
 from .law import Law

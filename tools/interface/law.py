@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu import plots
-from jointfmu.commands.law import ROW, law_parameters
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
 from jointfmu.judgement import judge, law_height
 from jointfmu.quantity import flat_fields, flatten
 
+from .. import plots
+from ..laws import ROW, law_parameters
 from ..shown import quantity
 from .frame import Frame, Table, Tabled
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu import plots
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.parameters import load as load_file
 
+from .. import plots
 from ..drawing.part import Drawing, NewJoint
 from ..fitting.outcome import FitResult, draw, percent, size
 from ..fitting.procedure import procedures

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.fmi import ramp
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.published.reference import Point, points
 from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..joint_parts import part
+from ..ramps import ramp
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
 from ..systems.decays import FREQUENCY_TOLERANCE, Decay
 from ..systems.ringing import DAMPING_TOLERANCE, RESONANCE_TOLERANCE, Ringing

@@ -8,7 +8,6 @@ from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import FLAVOURS, build
 
 from jointfmu.files.writing import write_text
-from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 from jointfmu.progress import processes, track
 from jointfmu.published import validation
@@ -17,6 +16,7 @@ from jointfmu.quantity import Array
 from ..laboratory.assemble import write_laboratory
 from ..proof.outcome import Proof
 from ..proof.run import prove
+from ..ramps import ramp
 from ..report.figure import Figure
 from ..report.page import drawn, write_report
 from ..systems import cosimulation, decays

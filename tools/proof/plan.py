@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.proof.manifest import MODEL_EXCHANGE, Experiment
 from jointfmu.proof.task import FLOOR, SOLVER
+from jointfmu.quantity import Array
 
 from .outcome import Outcome, WorstPoint
 from .values import course, kind, setting
@@ -17,7 +17,6 @@ from .values import course, kind, setting
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-3
 """Where an experiment states no tolerance [1]."""

@@ -2,17 +2,14 @@
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from jointfmu.proof.manifest import Setting
 from jointfmu.proof.series import TimeSeries
 from jointfmu.proof.task import REAL
+from jointfmu.quantity import Array
 
 if TYPE_CHECKING:
     from fmpy.model_description import ScalarVariable
 
-Array = NDArray[np.float64]
 
 KINDS = {
     **dict.fromkeys(REAL, "real"),

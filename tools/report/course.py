@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 from jointfmu_fmu_src.native.page import evaluated
 
-from jointfmu.fmi.loops import HysteresisLoops, Swing, conjugate, of
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import Array
+
+from ..ramps.loops import HysteresisLoops, Swing, conjugate, of
+from ..ramps.ramp import RampResult
 
 _POINTS = 101
 _SWING = Swing(points=80)

@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from jointfmu.plots import BLUE, GREEN, GREY, RED, STYLE
+from ..plots import BLUE, GREEN, GREY, RED, STYLE
 
 __all__ = ["BLUE", "GREEN", "GREY", "RED", "labels", "short", "svg"]
 

@@ -13,7 +13,6 @@ from jointfmu_fmu_src.templates import FRAME, law_terms, template
 
 from jointfmu import __version__
 from jointfmu.files.writing import write_text
-from jointfmu.fmi.loops import HysteresisLoops
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ORIGINS, ParameterFile
@@ -22,6 +21,7 @@ from jointfmu.quantity.units import factor
 
 from ..joint_parts import part
 from ..pressure import judge_file
+from ..ramps.loops import HysteresisLoops
 from ..shown import Stated, quantity, shown_unit, spelled, stated
 from .course import Course
 from .figure import Beside, Figure, Panel, Series, script, style

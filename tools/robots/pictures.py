@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu import plots
-
+from .. import plots
 from .elastic import ElasticAxis
 from .poses import frequencies, sag
 

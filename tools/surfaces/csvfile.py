@@ -12,7 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files.columns import (
+from jointfmu.quantity import Array
+from jointfmu.quantity.refusal import Refusal
+from jointfmu.quantity.units import measured, sizes
+
+from ..columns import (
     Head,
     cells,
     check_length,
@@ -23,10 +27,6 @@ from jointfmu.files.columns import (
     separator,
     text_lines,
 )
-from jointfmu.quantity import Array
-from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import measured, sizes
-
 from . import heights as grid
 from .heights import Areal, Heights, Profile
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from jointfmu.files.columns import cells, number, separator
 from jointfmu.quantity.refusal import Refusal
 
+from ..columns import cells, number, separator
 from . import csvfile
 from . import heights as sift
 from .heights import Areal, Heights, Profile

@@ -9,12 +9,12 @@ import numpy as np
 from jointfmu_fmu_src.partners import PARTNERS
 from scipy.interpolate import CubicSpline
 
-from jointfmu.fmi import loops
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 
 from ..fitting import decay
 from ..fitting.hysteresis import HysteresisLaw
+from ..ramps import loops
 from .master import Slave, motion
 from .ringing import PER_PERIOD, Body, Rest, VibratingJoint, vibrating_joints
 

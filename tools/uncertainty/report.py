@@ -5,9 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointfmu import plots
-from jointfmu.files import columns
-
+from .. import columns, plots
 from .problem import Problem
 from .propagate import QUANTILES, Bands, Sensitivity
 

@@ -12,14 +12,14 @@ from uuid import uuid4
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.files.writing import write_text
-from jointfmu.fmi import ramp
 from jointfmu.fmi.host import unpacked
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
+from .. import columns
+from ..ramps import ramp
 from . import journal
 from .cluster import client
 from .journal import Journal

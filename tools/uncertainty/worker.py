@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.fmi import ramp
 from jointfmu.fmi.host import runs
+
+from ..ramps import ramp
 
 
 @dataclass(frozen=True, slots=True)

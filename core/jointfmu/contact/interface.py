@@ -3,12 +3,10 @@
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..quantity import Number
+from ..quantity import Array, Number
 from .powerlaw import Spots
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-13
 """Relative residual of the load at which the inversion stops [1]."""

@@ -1,1 +1,1 @@
-"""Files: columns of numbers, and the date in what is written."""
+"""Files: written whole or not at all, and the date in what is written."""

@@ -1,1 +1,1 @@
-"""Running FMUs: host, ramp and loops."""
+"""Running FMUs: the host."""

@@ -15,9 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..contact.interface import CLOSE, MOST_STEPS, SIDE, InterfaceLaw, checked_spots, largest_spot
 from ..contact.powerlaw import Spots
-from ..quantity import Number
-
-Array = NDArray[np.float64]
+from ..quantity import Array, Number
 
 MAX_ERROR = 1e-8
 """Largest relative interpolation error of load and stiffness [1] that a table may have."""

@@ -6,9 +6,9 @@ from itertools import accumulate
 from math import prod
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from ..quantity import Array
 
 
 @dataclass(frozen=True, slots=True)

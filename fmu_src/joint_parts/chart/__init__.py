@@ -1,6 +1,6 @@
 """Charts of all pages, drawn by one script: of an FMU's documentation, the report and the laboratory.
 
-A page holds curves as JSON beside the script; pictures in files are matplotlib's (`jointfmu.plots`).
+A page holds curves as JSON beside the script; pictures in files are matplotlib's (`jointfmu_tools.plots`).
 No plotting package is needed to build an FMU, and its bytes are the same everywhere.
 """
 

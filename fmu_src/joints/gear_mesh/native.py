@@ -27,8 +27,6 @@ def _functions(g: Graph, model: Model) -> None:
     g.add_with_seed("outputs", doc, x, [out[o.name] for o in model.outputs], fixed=1)
 
 
-def _definitions(g: Graph, model: Model) -> Definitions:
-    return Definitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS})
-
-
-PART = NativePart(_functions, APPROACH, _definitions)
+PART = NativePart(
+    _functions, APPROACH, lambda g, model: Definitions({"PAIR_CLOSING_STEPS": spring.CLOSING_STEPS})
+)

@@ -14,6 +14,7 @@ from jointfmu_tools.joints.bolted_joint.field import PlaneLayout
 from jointfmu_tools.joints.bolted_joint.picture import plan
 from jointfmu_tools.joints.bolted_joint.report import pictured
 from jointfmu_tools.laboratory.describe import modules
+from jointfmu_tools.ramps import ramp
 from jointfmu_tools.report.course import Course
 from natives import SAME as SAME_FLAVOURS
 from natives import Host, close, jacobian, near, package
@@ -21,7 +22,6 @@ from scipy.integrate import cumulative_simpson
 from webassembly import Instance
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points

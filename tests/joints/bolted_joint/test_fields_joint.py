@@ -7,16 +7,15 @@ import patch_reduction
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.building import build
-from jointfmu_tools import PARTS, cli
+from jointfmu_tools import PARTS, cli, plots
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
 from jointfmu_tools.fields.sums import PRELOADS, PRESSED, Load, Sums
 from jointfmu_tools.modelica import library
+from jointfmu_tools.ramps import ramp
 
-from jointfmu import plots
-from jointfmu.fmi import ramp
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures

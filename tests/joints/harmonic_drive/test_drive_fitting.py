@@ -16,9 +16,9 @@ from jointfmu_tools.fitting.hysteresis import Oscillator
 from jointfmu_tools.fitting.loop import Backbone
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue, hysteresis, torque_angle
 from jointfmu_tools.joints.harmonic_drive.fit.drive import windup
+from jointfmu_tools.ramps import ramp
 from memory_measurements import save
 
-from jointfmu.fmi import ramp
 from jointfmu.joints.harmonic_drive.hysteresis import MEMORY
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.parameters import default, dump, load

@@ -8,12 +8,11 @@ import log_round_trips
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli
+from jointfmu_tools import cli, columns
 from jointfmu_tools.joints.harmonic_drive.fit import hysteresis, log
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from log_round_trips import CASES, TRUE, trip
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.parameters import dump, load
 

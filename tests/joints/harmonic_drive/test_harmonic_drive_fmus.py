@@ -13,11 +13,11 @@ from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
 from jointfmu_tools.joints.harmonic_drive.laboratory import LABORATORY
 from jointfmu_tools.laboratory.assemble import write_laboratory
+from jointfmu_tools.ramps import ramp
 from jointfmu_tools.systems.master import Slave
 from natives import Host, close, jacobian
 from scipy.integrate import cumulative_simpson, quad
 
-from jointfmu.fmi import ramp
 from jointfmu.joints import MODELS
 from jointfmu.joints.harmonic_drive.law import drive_stiffness
 from jointfmu.parameters import default

@@ -6,12 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Commands, Parser, command, tell
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
+from ...command_line.common import Commands, Parser, command, tell
 from ...fields.clamped import clamping
 from .. import check_files
 from . import bodies, compute

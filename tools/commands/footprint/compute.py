@@ -9,13 +9,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.commands.common import Commands, command, tell
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default, dump, load
 
+from ...command_line.common import Commands, command, tell
 from ...drawing.vdi2230 import proof_load
 from ...fem import installed
 from ...fields.clamped import clamped, clamping

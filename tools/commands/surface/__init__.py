@@ -4,13 +4,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.commands.common import IMPLIED, Commands, Parser, command, joint_name, written
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
+from ...command_line.common import IMPLIED, Commands, Parser, command, joint_name, written
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.spectrum import METHODS, SIDES

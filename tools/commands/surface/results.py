@@ -6,7 +6,6 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 
-from jointfmu.commands.common import tell
 from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import GAMMA, height, level
@@ -15,6 +14,7 @@ from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
+from ...command_line.common import tell
 from ...pressure import judge_file
 from ...shown import aligned
 from ...surfaces.form import ScanRoughness

@@ -4,9 +4,9 @@ import argparse
 import json
 from pathlib import Path
 
-from jointfmu.commands.common import Commands, command
 from jointfmu.files.writing import check_writable, write_text
 
+from ...command_line.common import Commands, command
 from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights
 

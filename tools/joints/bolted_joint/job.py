@@ -8,12 +8,12 @@ from typing import Any
 
 from scipy.integrate import cumulative_simpson
 
-from jointfmu.fmi import ramp
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.parameters import default
 from jointfmu.published.reference import Point
 
 from ...job.checks import deviation
+from ...ramps import ramp
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 from ...systems.master import Slave
 from ...systems.ringing import Axis, Body, Pull, Rest

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.integrate import quad
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.gear_contact.spring import GearContact
 from jointfmu.parameters import default
 
 from ...job.checks import deviation
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 
 

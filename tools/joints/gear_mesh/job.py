@@ -8,11 +8,11 @@ import numpy as np
 from scipy.integrate import cumulative_simpson, quad
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.joints.gear_mesh.spring import GearMesh, GearMeshSpring, pairs
 from jointfmu.parameters import default
 
 from ...job.checks import deviation
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 
 _CLOSED = 10.0

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
-from jointfmu.fmi import ramp
-from jointfmu.fmi.ramp import RampResult
 from jointfmu.published.reference import Point
 from jointfmu.published.validation import ValidatedPoint
 
 from ...job.checks import deviation
+from ...ramps import ramp
+from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series, published
 from ...systems.master import Slave
 from ...systems.ringing import Axis, Body, Pull, Rest

@@ -8,11 +8,8 @@ bodies is the sum of stiffness a^2/2.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...quantity import check, choice, quantity, series
-
-Array = NDArray[np.float64]
+from ...quantity import Array, check, choice, quantity, series
 
 MODES = 24
 """Most modes of the bodies [1]."""

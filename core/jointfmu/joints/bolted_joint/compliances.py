@@ -3,14 +3,13 @@
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...quantity import Array
 from .law import pressures
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
 
-Array = NDArray[np.float64]
 
 DIRECTIONS = {"x": "N/m", "y": "N/m", "z": "N/m", "rx": "N.m/rad", "ry": "N.m/rad", "rz": "N.m/rad"}
 """{force along or moment about an axis: unit of its stiffness}."""

@@ -5,18 +5,15 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...contact.laws.roughness import Roughness
 from ...contact.laws.zhao2018 import Zhao2018
 from ...mechanics.footprint.bolts import BoltPattern, PressureSource
 from ...mechanics.footprint.plate import BoltedPlate
 from ...mechanics.footprint.shape import MergedShape, NodalField, PressureShape
-from ...quantity import Interval, Limit, Number, check, check_limits, choice, group, quantity, where
+from ...quantity import Array, Interval, Limit, Number, check, check_limits, choice, group, quantity, where
 from .bodies import ElasticBodies, RigidBodies
-
-Array = NDArray[np.float64]
-
 
 ELASTIC_NEEDS = {
     "memory": "elastic sides go with friction that remembers",

@@ -29,10 +29,6 @@ def _evolve(spring: BoltedJointSpring, v: Values, memory: Any) -> tuple[Mapping[
     return spring.evolve(v["preload"], v["moment"], place, rates, memory)
 
 
-def _evaluate(spring: BoltedJointSpring, v: Values) -> Mapping[str, float]:
-    return _evolve(spring, v, spring.at_rest())[0]
-
-
 def _row_moment(joint: Any, preload: Number) -> Number:
     """The largest moment [N.m] that both bolt rows carry without a negative bolt force."""
     return working_preload(joint, preload) * joint.row_distance * joint.row_bolts
@@ -109,7 +105,7 @@ MODELS = (
             Variable("C_loop", "N.s/m", "its viscous equivalent, as C_xx is that of eta_t", 1e4),
             *(Variable(name, "s", f"{doc}: along x, y or z, with `mass` on it", 1e-4) for name, doc in STEPS),
         ),
-        evaluate=_evaluate,
+        evaluate=lambda s, v: _evolve(s, v, s.at_rest())[0],
         rest=BoltedJointSpring.at_rest,
         evolve=_evolve,
         outside=(

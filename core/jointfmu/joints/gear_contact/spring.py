@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...contact.interface import at_pressure
 from ...contact.laws.roughness import Roughness
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, approach_curve
-from ...quantity import Number
-
-Array = NDArray[np.float64]
+from ...quantity import Array, Number
 
 
 @dataclass(frozen=True, kw_only=True)

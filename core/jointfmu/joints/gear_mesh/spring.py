@@ -6,15 +6,13 @@ from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...contact.laws.roughness import Roughness
 from ...contact.laws.yu2022 import Yu2022
 from ...mechanics.curve import Curve, approach_curve, assemble, refined
 from ...mechanics.steps import mobility, stable_steps
-from ...quantity import Number, quantity, smooth_step, smooth_step_integral, smooth_step_slopes
-
-Array = NDArray[np.float64]
+from ...quantity import Array, Number, quantity, smooth_step, smooth_step_integral, smooth_step_slopes
 
 CLOSING_STEPS = 96
 """Steps of a pair's table while the contact closes, doubled until it is accurate enough."""

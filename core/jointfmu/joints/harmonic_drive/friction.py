@@ -23,16 +23,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...mechanics.jenkins import Moved, Sliders
 from ...mechanics.memory import Layout
-from ...quantity import Number
+from ...quantity import Array, Number
 from .drive import Drive
 from .hysteresis import shares
 from .lost_motion import WIDTH
-
-Array = NDArray[np.float64]
 
 BRAKES = 8
 """How many sliders: friction from rest within 1 % of M."""

@@ -10,13 +10,10 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...quantity import Interval, Limit, Number, check, group, quantity, series, where
+from ...quantity import Array, Interval, Limit, Number, check, group, quantity, series, where
 from .drive import Drive
 from .lost_motion import WIDTH, play
-
-Array = NDArray[np.float64]
 
 CORNER = 0.04
 """Usual half-width of a corner over its wind-up [1]: at the corners of catalogue drives the angle then is

@@ -15,18 +15,16 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...contact.interface import MOST_STEPS
 from ...contact.powerlaw import exprel
 from ...mechanics.curve import Curve
 from ...mechanics.jenkins import Moved, Sliders
 from ...mechanics.memory import Layout
-from ...quantity import Number
+from ...quantity import Array, Number
 from .drive import Drive
 from .law import PairDrive, pair_log_area
-
-Array = NDArray[np.float64]
 
 SLIDERS = 44
 """How many: torque from rest within 0.2 % of M_f, area of a loop within 1 % from a tenth of M_f on."""

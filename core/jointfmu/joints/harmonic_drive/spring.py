@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ...mechanics.curve import Curve, assemble, refined
 from ...mechanics.steps import mobility, stable_steps
-from ...quantity import Number, check_limits
+from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
 from .drive import Drive
 from .friction import REFERENCE, Friction, limits, viscous
@@ -17,8 +17,6 @@ from .hysteresis import Hysteresis
 from .kinematic_error import kinematic_error
 from .law import PairDrive
 from .lost_motion import stiffness_with_play
-
-Array = NDArray[np.float64]
 
 STEPS = 160
 """Steps of the torque curve, doubled until it is accurate enough."""

@@ -5,13 +5,10 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...quantity import check, quantity
+from ...quantity import Array, check, quantity
 from .plate import EDGE, BoltedPlate
 from .shape import Means, NodalField, PressureShape, means
-
-Array = NDArray[np.float64]
 
 CELLS_ACROSS = 7
 """Cells across the flange: 1000 nodes for the default frame, as in Zhao's mesh of 1019."""

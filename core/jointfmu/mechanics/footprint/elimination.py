@@ -8,9 +8,9 @@ place away: the steps of the simplex method. Its choices are the same on every p
 import numpy as np
 from numpy.typing import NDArray
 
+from ...quantity import Array
 from .reproducible import combined, length, over, product
 
-Array = NDArray[np.float64]
 Nodes = NDArray[np.intp]
 
 LEAST = 1e-11

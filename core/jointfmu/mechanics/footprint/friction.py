@@ -12,14 +12,12 @@ on every processor. benchmarks/patch_reduction.py prints how far friction is fro
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...quantity import Array
 from .elimination import changes, solved
 from .patches import balanced, few_points, largest_moment
 from .reproducible import cleared, length, over, powers, product, root, rounded, to_power
 from .shape import PressureShape
-
-Array = NDArray[np.float64]
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
 """Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""

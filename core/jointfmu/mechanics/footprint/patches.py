@@ -11,7 +11,8 @@ sums of a law are from those of all nodes.
 
 import numpy as np
 
-from .elimination import Array, Nodes, changes, eliminated, independent
+from ...quantity import Array
+from .elimination import Nodes, changes, eliminated, independent
 from .reproducible import cleared, over, powers, product, root, rounded, to_power
 from .shape import PressureShape
 

@@ -3,12 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...quantity import check, quantity, series
+from ...quantity import Array, check, quantity, series
 from .shape import Means, PressureShape, growing, means
-
-Array = NDArray[np.float64]
 
 ACROSS = 5
 """Cells from a bolt's axis to the edge of its pressure."""

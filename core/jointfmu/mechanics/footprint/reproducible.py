@@ -7,11 +7,9 @@ searches take rounded numbers, combine them by the functions of this module, and
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...quantity import Array
 from .shape import PressureShape
-
-Array = NDArray[np.float64]
 
 DIGITS = 20
 """Binary digits to which numbers are rounded before they decide: 1e-6, far above what processors differ by

@@ -6,9 +6,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ...quantity import check, quantity, series
-
-Array = NDArray[np.float64]
+from ...quantity import Array, check, quantity, series
 
 BALANCE = 1e-6
 """Largest error of a field's sums [1]: what the reduction of a field keeps."""

@@ -20,7 +20,6 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.contact.interface import stiffness_curve
-from jointfmu.files import columns
 from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import PressureSource, pressure_shape
@@ -29,6 +28,7 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, factor, sizes
 
+from .... import columns
 from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.outcome import FitResult, Picture, fitted, unknowns
 

@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import savgol_coeffs, savgol_filter
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO, Sizes, sizes
+
+from .... import columns
 
 Places: TypeAlias = NDArray[np.int_]
 WINDOW, ORDER = 0.04, 4

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.files import columns
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive
@@ -15,6 +14,7 @@ from jointfmu.quantity import Array, build, flat_fields
 from jointfmu.quantity.refusal import Refusal
 from jointfmu.quantity.units import Sizes, sizes
 
+from .... import columns
 from ....fitting import loop
 from ....fitting.least_squares import NOTHING, Solution, solve
 from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns

@@ -6,16 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..files import columns
-from ..progress import track
-from .host import opened, unpacked
+from jointfmu.fmi.host import opened, unpacked
+from jointfmu.progress import track
+from jointfmu.quantity import Array
+
+from .. import columns
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

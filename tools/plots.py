@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .files.writing import check_writable, write_bytes
-from .quantity.units import UNITS, display_unit
+from jointfmu.files.writing import check_writable, write_bytes
+from jointfmu.quantity.units import UNITS, display_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

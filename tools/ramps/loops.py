@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..files import columns
-from ..files.columns import Array
-from ..quantity import units
+from jointfmu.fmi.host import unpacked
+from jointfmu.quantity import Array, units
+
+from .. import columns
 from . import ramp
-from .host import unpacked
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription

@@ -19,9 +19,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantity.units import Sizes, measured
+from jointfmu.quantity import Array
+from jointfmu.quantity.units import Sizes, measured
 
-Array = NDArray[np.float64]
 Column: TypeAlias = NDArray[Any]
 """Real or whole numbers."""
 Head: TypeAlias = tuple[str, str | None]

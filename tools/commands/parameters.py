@@ -8,13 +8,14 @@ from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
-from ..contact.laws import LAWS, ROUGHNESS_LAW
-from ..contact.roughness import DECLARED
-from ..joints import KINDS, MODELS
-from ..parameters import ParameterFile, default, load
-from ..quantity import flat_fields, flatten
-from .common import Commands, command
-from .law import law_file, law_parameters
+from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
+from jointfmu.contact.roughness import DECLARED
+from jointfmu.joints import KINDS, MODELS
+from jointfmu.parameters import ParameterFile, default, load
+from jointfmu.quantity import flat_fields, flatten
+
+from ..command_line.common import Commands, command
+from ..laws import law_file, law_parameters
 
 _HEAD = ("name", "default", "unit", "allowed", "meaning")
 

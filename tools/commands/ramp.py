@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from jointfmu.files.writing import check_writable, write_text
+
 from .. import plots
-from ..files.writing import check_writable, write_text
-from ..fmi import loops, ramp
-from .common import Commands, command, flag, settings
+from ..command_line.common import Commands, command, flag, settings
+from ..ramps import loops, ramp
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,45 +1,25 @@
-"""`jointfmu law`: one interface law at pressures or largest spots."""
+"""Interface laws on their own: the parameter set of one, out of a joint's parameter file and settings."""
 
-import argparse
-import json
 import math
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ..contact import fractal
-from ..contact.interface import at_largest_spot, at_pressure
-from ..contact.laws import LAWS, ROUGHNESS_LAW
-from ..contact.roughness import DECLARED, check, height
-from ..joints import KINDS
-from ..judgement import judge, known_height, law_height
-from ..parameters import ParameterFile, default, load
-from ..quantity import build, flat_fields, flatten
-from .common import Commands, command, settings, tell
+from jointfmu.contact import fractal
+from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
+from jointfmu.contact.roughness import DECLARED, check, height
+from jointfmu.joints import KINDS
+from jointfmu.judgement import known_height
+from jointfmu.parameters import ParameterFile, default, load
+from jointfmu.quantity import build, flat_fields, flatten
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""
 
 
-def add(commands: Commands) -> None:
-    """Declare the command."""
-    law = command(commands, "law", _law, "evaluate one interface law at pressures or largest spots")
-    laws = [name for name in LAWS if _joints(name)]
-    law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
-    at = law.add_mutually_exclusive_group(required=True)
-    at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
-    at.add_argument(
-        "--largest-spot", type=float, nargs="+", metavar="A", help="area of the largest spot [m2]"
-    )
-    law.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
-    settings(law)
-
-
 def law_parameters(law: str, file: ParameterFile | None, settings: dict[str, Any]) -> Any:
-    """The law's parameter set from a joint's parameter file (default: `_first`)
+    """The law's parameter set from a joint's parameter file (default: `first_joint`)
     and settings."""
-    file = file or default(_first(law), law)
+    file = file or default(first_joint(law), law)
     names = {name for name, _ in flat_fields(LAWS[law])}
     law_of = KINDS[file.joint].law_of
     own, other = law_of(file.values), file.law != law
@@ -82,14 +62,14 @@ def fractal_surfaces(known: dict[str, Any]) -> list[tuple[float, float, bool]]:
     return [(known[f"{p}.D"], known[f"{p}.G"], known[f"{p}.D"] > 2.0) for p in prefixes if f"{p}.G" in known]
 
 
-def _joints(law: str) -> list[str]:
+def joints_of(law: str) -> list[str]:
     """The joints that have a law."""
     return [name for name, kind in KINDS.items() if law in kind.laws]
 
 
-def _first(law: str) -> str:
+def first_joint(law: str) -> str:
     """The joint of whose default file a law is taken: one whose parameter set is the law's, if any."""
-    joints = _joints(law)
+    joints = joints_of(law)
     own = [name for name in joints if issubclass(KINDS[name].laws[law], LAWS[law])]
     return (own or joints)[0]
 
@@ -98,49 +78,10 @@ def law_file(path: Path, law: str) -> ParameterFile:
     """A parameter file of a joint that has the law."""
     file = load(path)
     if law not in KINDS[file.joint].laws:
-        expected = " or ".join(repr(name) for name in _joints(law))
+        expected = " or ".join(repr(name) for name in joints_of(law))
         raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {expected}")
     if KINDS[file.joint].law_of(file.values) is None:
         raise ValueError(
             f"{path}: law = {file.law!r} is of no interface; expected a file with an interface law"
         )
     return file
-
-
-def _law(args: argparse.Namespace) -> int:
-    file = law_file(args.params, args.law) if args.params else None
-    law = law_parameters(args.law, file, dict(args.settings))
-    with np.errstate(over="ignore"):
-        if args.pressure is not None:
-            state = at_pressure(law, np.array(args.pressure))
-        else:
-            state = at_largest_spot(law, np.array(args.largest_spot))
-    names = [*ROW, *(name for name in state if name not in ROW)]
-    count = len(args.pressure or args.largest_spot)
-    rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
-    found = judge(law, np.ravel(state["pressure"]).tolist(), _height(args, law, file))
-    if args.json:
-        shown = {"law": args.law, "parameters": flatten(law), "rows": rows}
-        print(json.dumps(shown | found.document()))
-        return 0
-    print("  ".join(f"{name:>12}" for name in names))
-    for row in rows:
-        cells = ("-" if row[n] is None else f"{row[n]:.6g}" for n in names)
-        print("  ".join(f"{cell:>12}" for cell in cells))
-    tell(found)
-    return 0
-
-
-def _height(args: argparse.Namespace, law: Any, file: ParameterFile | None) -> float | None:
-    """Rms height h [m] that is known of the surfaces; what the default file states is that of its own."""
-    if (h := law_height(law)) is not None:
-        return h
-    others = any(name.startswith("surface") for name, _ in args.settings)
-    if file is None and others:
-        return None
-    return known_height(file or default(_first(args.law), args.law))
-
-
-def _json_number(column: Any, i: int) -> float | None:
-    value = float(np.broadcast_to(column, (i + 1,) if np.ndim(column) == 0 else np.shape(column))[i])
-    return value if math.isfinite(value) else None

@@ -1,1 +1,0 @@
-"""The commands of `jointfmu`, one module each: `add(commands)` declares it, the rest does it."""

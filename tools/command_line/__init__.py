@@ -1,0 +1,1 @@
+"""What the commands of `jointfmu` share: parser, options, examples."""

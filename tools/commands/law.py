@@ -1,0 +1,71 @@
+"""`jointfmu law`: one interface law at pressures or largest spots."""
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointfmu.contact.interface import at_largest_spot, at_pressure
+from jointfmu.contact.laws import LAWS
+from jointfmu.judgement import judge, known_height, law_height
+from jointfmu.parameters import ParameterFile, default
+from jointfmu.quantity import flatten
+
+from ..command_line.common import Commands, command, settings, tell
+from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
+
+
+def add(commands: Commands) -> None:
+    """Declare the command."""
+    law = command(commands, "law", _law, "evaluate one interface law at pressures or largest spots")
+    laws = [name for name in LAWS if joints_of(name)]
+    law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
+    at = law.add_mutually_exclusive_group(required=True)
+    at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
+    at.add_argument(
+        "--largest-spot", type=float, nargs="+", metavar="A", help="area of the largest spot [m2]"
+    )
+    law.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    settings(law)
+
+
+def _law(args: argparse.Namespace) -> int:
+    file = law_file(args.params, args.law) if args.params else None
+    law = law_parameters(args.law, file, dict(args.settings))
+    with np.errstate(over="ignore"):
+        if args.pressure is not None:
+            state = at_pressure(law, np.array(args.pressure))
+        else:
+            state = at_largest_spot(law, np.array(args.largest_spot))
+    names = [*ROW, *(name for name in state if name not in ROW)]
+    count = len(args.pressure or args.largest_spot)
+    rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
+    found = judge(law, np.ravel(state["pressure"]).tolist(), _height(args, law, file))
+    if args.json:
+        shown = {"law": args.law, "parameters": flatten(law), "rows": rows}
+        print(json.dumps(shown | found.document()))
+        return 0
+    print("  ".join(f"{name:>12}" for name in names))
+    for row in rows:
+        cells = ("-" if row[n] is None else f"{row[n]:.6g}" for n in names)
+        print("  ".join(f"{cell:>12}" for cell in cells))
+    tell(found)
+    return 0
+
+
+def _height(args: argparse.Namespace, law: Any, file: ParameterFile | None) -> float | None:
+    """Rms height h [m] that is known of the surfaces; what the default file states is that of its own."""
+    if (h := law_height(law)) is not None:
+        return h
+    others = any(name.startswith("surface") for name, _ in args.settings)
+    if file is None and others:
+        return None
+    return known_height(file or default(first_joint(args.law), args.law))
+
+
+def _json_number(column: Any, i: int) -> float | None:
+    value = float(np.broadcast_to(column, (i + 1,) if np.ndim(column) == 0 else np.shape(column))[i])
+    return value if math.isfinite(value) else None

@@ -1,0 +1,1 @@
+"""FMUs driven along ramps and loops of an input."""
