@@ -118,7 +118,7 @@ def test_loops_inside_have_the_area_of_the_fmus(name, share):
     own = transmission(jointfmu.drive(name, hysteresis=1.0).file)
     torques, x = own.loop(share * own.rated_torque)
     found = fit(own, own.rated_torque).along(x)
-    assert area(x, found) == pytest.approx(area(x, torques), rel=0.03)
+    assert area(x, found) == pytest.approx(area(x, torques), rel=0.05)
 
 
 @pytest.mark.parametrize(("speed", "since"), [(0.01, 0.0), (5.0, 0.045), (60.0, 0.045)])

@@ -10,7 +10,7 @@ from .transmission import LOOP, RAMP, Transmission, area
 
 Array = NDArray[np.float64]
 
-YIELDS = np.geomspace(0.01, 0.4, 6)
+YIELDS = np.geomspace(0.02, 0.4, 6)
 """Wind-ups at which the springs may yield, over that at the largest torque of the fit [1]: all yield on
 the way there, so beyond it none holds a set that the fit has not seen."""
 LOSSLESS = 1e-6
