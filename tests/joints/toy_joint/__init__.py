@@ -5,17 +5,14 @@ from dataclasses import dataclass
 
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model, Ramp, Variable
-from jointfmu.quantity import Number, check, quantity
+from jointfmu.quantity import Checked, Number, quantity
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinearSpring:
+class LinearSpring(Checked):
     """A spring that obeys Hooke's law."""
 
     c: float = quantity("N/m", "stiffness", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     def motion(self, v: Mapping[str, Number]) -> dict[str, Number]:
         """Force [N] and stiffness [N/m] at s_rel [m]."""
