@@ -42,7 +42,7 @@ static void lay_range(Foundation *f, int i)
 {
     const double width = f->height[i + 1] - f->height[i];
     f->springs[i] = fmax(f->stiffness[i + 1] - f->stiffness[i], 0.0);
-    f->normal[i] = f->load[i + 1] - f->load[i] - f->stiffness[i] * width;
+    f->normal[i] = fmax(f->load[i + 1] - f->load[i] - f->stiffness[i] * width, 0.0);
     f->apart[i] = fmin(f->springs[i] * (SLIDER_SPREAD * width), f->normal[i]);
     for (int late = 0; late < 2; late++) {
         const int k = 2 * i + late;
@@ -152,6 +152,14 @@ static inline void entered(const Foundation *f, int i, const Point *p, double *x
     x[X_BEND] = p->y[2];
 }
 
+/* Of a slider whose springs all touch, one number wherever it is asked for; where they have just come to touch
+ * round-off would leave less than nothing. */
+static inline double limit_at(double limit, double K, double to)
+{
+    const double grown = limit + K * to;
+    return grown > 0.0 ? grown : 0.0;
+}
+
 /* Those of a range at a point, see `Foundation.carried`. */
 static inline Pair pair_at(const Foundation *f, int i, const Point *p)
 {
@@ -160,9 +168,8 @@ static inline Pair pair_at(const Foundation *f, int i, const Point *p)
     if (p->approach < f->height[i])
         return pair;
     if (i < p->full) {
-        const double *limit = f->limit + 2 * i, K = f->K[2 * i];
-        const double grown = K * (f->mu / f->ratio * p->approach); /* rounded as in `move_full`: a limit is one number */
-        return (Pair){.K = K, .limit = {limit[0] + grown, limit[1] + grown}};
+        const double *limit = f->limit + 2 * i, K = f->K[2 * i], to = f->mu / f->ratio * p->approach;
+        return (Pair){.K = K, .limit = {limit_at(limit[0], K, to), limit_at(limit[1], K, to)}};
     }
     entered(f, i, p, x);
     touching(x, NULL, &pair.K);
@@ -329,8 +336,8 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, bool al
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
     for (int k = 0; k < n; k++) {
-        work->before[k] = f->limit[k] + f->K[k] * from;
-        work->after[k] = f->limit[k] + f->K[k] * to;
+        work->before[k] = limit_at(f->limit[k], f->K[k], from);
+        work->after[k] = limit_at(f->limit[k], f->K[k], to);
     }
     const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
     move_steady(n, &s, f->stick, path, along, moved, work, shear);
@@ -540,7 +547,7 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
     const double *u = path->shift, *du = rates->shift, least = least_limit(path);
     for (int k = 0; k < n; k++) {
-        const double K = f->K[k], before = least * (f->limit[k] + K * from), after = least * (f->limit[k] + K * to);
+        const double K = f->K[k], before = least * limit_at(f->limit[k], K, from), after = least * limit_at(f->limit[k], K, to);
         const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
                             0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
         const double trial[] = {x[0], x[1], 1.0, K, u[0], u[1], after};
