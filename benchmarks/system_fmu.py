@@ -10,12 +10,9 @@ With `--worst`, instead: processor times of a million communication steps, each 
 the bodies, from rest again after a thousand.
 """
 
-import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import fmpy
@@ -26,6 +23,8 @@ from jointfmu_fmu_src.system.fmu import build_system
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.assembly import assembly
 from jointfmu_tools.systems.system import system
+
+from jointfmu.fmi.host import unpacked
 
 WATCHED = {
     "robot_joint": ("link.phi", "link.w", "drive.tau2", "drive.E_loss"),
@@ -79,21 +78,16 @@ def run_archive(path, name, one, step, expected, outputs):
     return misses(found, expected, [o for o in outputs if o in found.dtype.names], step), taken
 
 
-@contextmanager
-def unpacked(name: str, out: Path) -> Iterator[str]:
-    """The system's FMU in a folder."""
-    file = build_system(assembly(system(name)), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
-    folder = fmpy.extract(str(file))
-    yield folder
-    shutil.rmtree(folder)
+def whole(name: str, out: Path) -> Path:
+    """The system's FMU."""
+    return build_system(assembly(system(name)), out / "whole", ("2",), (fmpy.platform_tuple,))[0]
 
 
 def worst(out: Path) -> None:
     """Print the median and the longest of random steps [us]."""
     print("system             median  1 in 1e4   longest  refused")
     for name, (step, loads) in LOADS.items():
-        with unpacked(name, out) as folder:
-            described = fmpy.read_model_description(folder)
+        with unpacked(whole(name, out)) as (folder, described):
             refs = {v.name: v.valueReference for v in described.modelVariables}
             wanted = [refs[o] for o in loads]
             fmu = fmpy.instantiate_fmu(folder, described, "CoSimulation", logger=lambda *_: None)
@@ -132,7 +126,7 @@ def main() -> None:
             one = system(name)
             ssp.build_systems(out, [one])
             tolerance, interval = EXCHANGE[name]
-            with unpacked(name, out) as unzipped:
+            with unpacked(whole(name, out)) as (unzipped, _):
                 common = {"filename": unzipped, "stop_time": one.stop_time, "output": outputs}
                 expected = fmpy.simulate_fmu(
                     **common,

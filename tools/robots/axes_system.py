@@ -4,16 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis
 from .names import identifier
 from .plugged import spring_of
 from .poses import inertia, torques
-
-Array = NDArray[np.float64]
 
 SETTLING, STOP = 0.5, 2.0
 """Time [s] over which the weight comes, and of the experiment."""

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from jointfmu.quantity import Array
 
 from . import bristles
 from .fitted import FittedTendons, fit
 from .mjcf import check_version
 from .transmission import Transmission
-
-Array = NDArray[np.float64]
 
 MOTOR = "_motor"
 """What the motor's coordinate has after the name of the joint."""

@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from .transmission import LOOP, RAMP, Transmission, area
+from jointfmu.quantity import Array
 
-Array = NDArray[np.float64]
+from .transmission import LOOP, RAMP, Transmission, area
 
 YIELDS = np.geomspace(0.02, 0.4, 6)
 """Wind-ups at which the springs may yield, over that at the largest torque of the fit [1]: all yield on

@@ -10,15 +10,13 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from numpy.typing import NDArray
 
 from jointfmu import __version__
+from jointfmu.quantity import Array
 
 from .bristles import element, presliding
 from .fitted import FittedTendons, fit
 from .transmission import RAMP, Transmission, area
-
-Array = NDArray[np.float64]
 
 LOCKED = 1e12
 """Armature [kg.m2] of hinges that are led: their speed stays whatever the torque."""

@@ -5,13 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from jointfmu.quantity import Array
 
 from .. import plots
 from .elastic import ElasticAxis
 from .poses import frequencies, sag
-
-Array = NDArray[np.float64]
 
 POINTS, LOADS = 21, 11
 """Angles of an axis in the grid, and payloads."""

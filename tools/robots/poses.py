@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from jointfmu.quantity import Array
 
 from .elastic import ElasticAxis, mass_matrix
-
-Array = NDArray[np.float64]
 
 
 def dofs(model: Any, axes: Sequence[ElasticAxis]) -> list[int]:

@@ -4,14 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 from ..joint_parts import part
-
-Array = NDArray[np.float64]
 
 RAMP, LOOP = 200, 800
 """Points of the ramp to the largest torque, and of the loop after it."""

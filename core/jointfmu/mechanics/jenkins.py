@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..quantity import Number, where
+from ..quantity import Array, Number, where
 
-Array = NDArray[np.float64]
 Vector = Sequence[Number]
 ROUND_OFF = 1e-14
 """By which a force that came back to its limit may be beyond it [1]: it sticks where nothing moves."""

@@ -17,12 +17,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..quantity import Number, where
+from ..quantity import Array, Number, where
 from .curve import Curve
 from .footprint.reproducible import to_digits
 from .jenkins import Moved, Slid, Vector, compliance, slide
-
-Array = NDArray[np.float64]
 
 SMALL = 1e-3
 """Change of the approach over the height of a slider [1] below which its mean stiffness is integrated by the

@@ -4,13 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanics.footprint.shape import PressureShape
 from ...mechanics.sliders import Foundation
-from ...quantity import Number, where
-
-Array = NDArray[np.float64]
+from ...quantity import Array, Number, where
 
 
 @dataclass(frozen=True, slots=True)

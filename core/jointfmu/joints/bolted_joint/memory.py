@@ -3,13 +3,12 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import SLIDERS
+from ...quantity import Array
 from .bodies import MODES
 
-Array = NDArray[np.float64]
 Memory = Mapping[str, Array]
 
 UNKNOWN, RESTING, ALONG, FREE = range(4)

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...contact.interface import largest_spot
 from ...mechanics.curve import Curve, approach_curve
@@ -16,7 +15,7 @@ from ...mechanics.footprint.shape import PATCHES, NodalField, PressureShape
 from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import Foundation, around, lowered, offsets
-from ...quantity import Number
+from ...quantity import Array, Number
 from .bodies import MODES, Modes, RigidBodies
 from .compliances import Compliances
 from .contact import (
@@ -33,8 +32,6 @@ from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on
 from .outputs import STRETCHES, bolt_force, outputs
 from .trials import Trial, Trials, Way, told
 from .whole import Whole
-
-Array = NDArray[np.float64]
 
 POINTS = 120
 """Points that carry the normal force [1], where a pattern has more nodes."""

@@ -4,16 +4,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanics.jenkins import Moved
+from ...quantity import Array
 from .contact import Place, along
 from .memory import Memory
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
 
-Array = NDArray[np.float64]
 DIFFERENCE = 1e-7
 """Part of the largest approach [1] by which patches move to find the slopes of their tractions."""
 

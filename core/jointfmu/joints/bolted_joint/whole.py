@@ -17,13 +17,11 @@ from itertools import pairwise
 from typing import Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...mechanics.footprint.shape import PressureShape
+from ...quantity import Array
 from .bodies import Modes
 from .contact import Place, along
-
-Array = NDArray[np.float64]
 
 CLOSE = 1e-13
 """Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""

@@ -163,7 +163,7 @@ def fit_lines(
     ratio: float | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """The law of a row's lines; arguments as those of `catalogue.fit`, but that nothing is free.
+    """The law of a row's lines; arguments as those of `fit_pair`, but that nothing is free.
 
     Raises ValueError for a name to fit and for numbers outside their intervals.
     """
