@@ -17,12 +17,12 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-from jointfmu_fmu_src.system.fmu import build_system
 from jointfmu_tools.interface import drive, load
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.robots import axes_system, elastic
 from jointfmu_tools.robots.transmission import transmission
-from jointfmu_tools.systems.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import read, system
 from scipy.interpolate import CubicSpline
 

@@ -177,7 +177,7 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 def here_alone() -> Iterator[None]:
     """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
     from jointfmu_fmu_src.native import kept
-    from jointfmu_fmu_src.system import fmu as system
+    from jointfmu_tools.systems.fmu import build as system
 
     def here(*files: Any, **options: Any) -> dict[str, bytes]:
         return libraries(*files[:3], [platform_tuple], **options)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from joint_cases import CASES
 from jointfmu_fmu_src.native import compiler
-from jointfmu_fmu_src.system.fmu import build_system
-from jointfmu_tools.systems.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import system
 
 from jointfmu.joints import MODELS

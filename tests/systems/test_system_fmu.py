@@ -9,9 +9,9 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
-from jointfmu_fmu_src.system.fmu import build_system
 from jointfmu_tools.proof.run import prove
-from jointfmu_tools.systems.assembly import assembly
+from jointfmu_tools.systems.fmu.assembly import assembly
+from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import read, system, systems
 from proofs import copy, replaced
 from scipy.interpolate import CubicSpline

@@ -127,11 +127,10 @@ def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list
 
 def _system(args: argparse.Namespace, model: Any, axes: Any, files: Any, pose: Any, tip: int) -> list[Path]:
     """The axes' file, those of its drives, and its FMUs."""
-    from jointfmu_fmu_src.system.fmu import build_system
-
     from ..robots import axes_system
     from ..robots.names import identifier
-    from ..systems.assembly import assembly
+    from ..systems.fmu.assembly import assembly
+    from ..systems.fmu.build import build_system
     from ..systems.system import read
 
     written = args.out / f"{identifier(args.robot.stem)}_axes.toml"

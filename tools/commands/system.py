@@ -38,13 +38,13 @@ def _system(args: argparse.Namespace) -> int:
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
-        from ..systems.assembly import assembly
+        from ..systems.fmu.assembly import assembly
 
         whole = assembly(found) if args.fmu else None
         model = library.system_text(found)
         built = ssp.build_systems(args.out, [found])
         if whole:
-            from jointfmu_fmu_src.system.fmu import build_system
+            from ..systems.fmu.build import build_system
 
             built += build_system(whole, args.out)
     except ImportError as error:

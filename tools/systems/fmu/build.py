@@ -3,15 +3,16 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..archive import pack, workshop
-from ..joint_parts.data import NO_TABLES, Split
-from ..native.build import core
-from ..native.compiler import TARGETS, exported, libraries
-from ..native.data import data_of
-from ..native.licence import licence
-from ..native.page import plain_page
-from .assembly import SystemModel
+from jointfmu_fmu_src.archive import pack, workshop
+from jointfmu_fmu_src.joint_parts.data import NO_TABLES, Split
+from jointfmu_fmu_src.native.build import core
+from jointfmu_fmu_src.native.compiler import TARGETS, exported, libraries
+from jointfmu_fmu_src.native.data import data_of
+from jointfmu_fmu_src.native.licence import licence
+from jointfmu_fmu_src.native.page import plain_page
+
 from .code import sources
+from .model import SystemModel
 from .proof import proof
 
 

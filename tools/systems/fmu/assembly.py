@@ -1,12 +1,12 @@
-"""A system's file as the builders of one FMU take it."""
+"""A system's file as a system of models, in the order of their evaluation."""
 
 from dataclasses import replace
 
 from jointfmu_fmu_src.partners import parameters as partner_parameters
-from jointfmu_fmu_src.system.assembly import LAGS, Feed, SystemComponent, SystemModel
 
-from .system import System
-from .wiring import ends, model_of, wires
+from ..system import System
+from ..wiring import ends, model_of, wires
+from .model import LAGS, Feed, SystemComponent, SystemModel
 
 LEAST_INTERVAL = 1e-3
 """Communication step [s] of the default experiment, where the system's own is shorter: it need not be."""

@@ -4,12 +4,13 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..joint_parts.c_text import array, string
-from ..native.data import block, split
-from ..native.elementary import tables
-from ..native.generate import RUNTIME, code, native_part, runtime
-from ..native.variables_c import variables_c
-from .assembly import SystemComponent, SystemModel
+from jointfmu_fmu_src.joint_parts.c_text import array, string
+from jointfmu_fmu_src.native.data import block, split
+from jointfmu_fmu_src.native.elementary import tables
+from jointfmu_fmu_src.native.generate import RUNTIME, code, native_part, runtime
+from jointfmu_fmu_src.native.variables_c import variables_c
+
+from .model import SystemComponent, SystemModel
 
 _COMMON = runtime(("elementary",))
 _LAYERS = {path.stem for path in _COMMON} - {"joint", "variables"} | {"elementary_tables"}

@@ -1,4 +1,4 @@
-"""A system as the builders take it: components in the order of their evaluation, and what feeds them."""
+"""A system as its FMU is made of it: components in the order of their evaluation, and what feeds them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, make_dataclass, replace

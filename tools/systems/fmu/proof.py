@@ -9,6 +9,8 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
+from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, manifest_xml
+from jointfmu_fmu_src.xml_parts import serialized
 
 from jointfmu import __version__
 from jointfmu.fmi.host import unpacked
@@ -17,9 +19,6 @@ from jointfmu.proof import exchange, manifest
 from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu.proof.series import TimeSeries, text
 from jointfmu.proof.task import Task
-
-from ..proof.files import TEXT, RelatedFile, manifest_xml
-from ..xml_parts import serialized
 
 TOLERANCE, SOLVER = 5e-3, 1e-9
 """Of an output [1], over its scale: what docs/systems.md promises of any step; of the references' solver."""
