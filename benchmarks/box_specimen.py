@@ -14,11 +14,11 @@ from pathlib import Path
 import box_specimen_lengths as box
 import numpy as np
 from jointfmu_tools import plots
+from jointfmu_tools.published.reference import points
 from numpy.typing import NDArray
 from published_marks import published_mark
 
 from jointfmu.parameters import default
-from jointfmu.published.reference import points
 
 Array = NDArray[np.float64]
 STATES = [(9e3, 0.0), (15e3, 0.0), (15e3, 4500.0)]

@@ -23,11 +23,11 @@ from jointfmu_fmu_src.native import compiler, generate
 from jointfmu_fmu_src.native.build import build_fmi3
 from jointfmu_tools.fem.elastic_sides import Cells, States
 from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
+from jointfmu_tools.host import Instance, opened, unpacked
 from jointfmu_tools.joints.bolted_joint.new import NEW, computed
 from numpy.typing import NDArray
 from whole_joint import EXAMPLE
 
-from jointfmu.fmi.host import Instance, opened, unpacked
 from jointfmu.joints import MODELS
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring

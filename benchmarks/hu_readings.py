@@ -8,12 +8,12 @@ corrected law for the reading P = F_r/A_0, and the drives at the end.
 from dataclasses import replace
 
 import numpy as np
+from jointfmu_tools.published.reference import points
 from scipy.optimize import brentq
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive.law import drive_stiffness, pair_stiffness
 from jointfmu.parameters import default
-from jointfmu.published.reference import points
 
 HU = {point.id: float(point.value) for point in points("hu2023")}
 D, G, GAMMA, NU, E_BODY = 2.5304, 2.4248e-7, 1.5, (0.295, 0.3), (2.09e11, 2.19e11)

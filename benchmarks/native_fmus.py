@@ -25,8 +25,8 @@ import fmpy
 import numpy as np
 from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import compiler, data, generate
+from jointfmu_tools.host import Instance
 
-from jointfmu.fmi.host import Instance
 from jointfmu.joints import MODELS
 from jointfmu.parameters import default
 

@@ -1,6 +1,6 @@
 """How published numbers are drawn."""
 
-from jointfmu.published.reference import ROLES
+from jointfmu_tools.published.reference import ROLES
 
 _MARKERS = {
     "calibration": {"marker": "o", "mfc": "white"},

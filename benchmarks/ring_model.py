@@ -18,11 +18,11 @@ from elastic_ring.forms import (
 )
 from elastic_ring.ring import Ring
 from jointfmu_tools import plots
+from jointfmu_tools.published.reference import points
 
 from jointfmu.joints.harmonic_drive.law import pair_stiffness, peak_pressure
 from jointfmu.parameters import default
 from jointfmu.progress import track
-from jointfmu.published.reference import points
 
 DRIVE = default("harmonic_drive").values
 HU = {point.id: float(point.value) for point in points("hu2023")}

@@ -11,12 +11,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from jointfmu_tools.host import unpacked
+from jointfmu_tools.proof.manifest import Related
 from jointfmu_tools.proof.plan import ExperimentPlan
 from jointfmu_tools.proof.run import _answers, _executed, _offered
 from validity_tables import heading, row
-
-from jointfmu.fmi.host import unpacked
-from jointfmu.proof.manifest import Related
 
 SAME = 1e-12
 """Largest difference, of an output's scale [1]."""

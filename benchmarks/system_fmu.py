@@ -19,12 +19,11 @@ import fmpy
 import numpy as np
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
+from jointfmu_tools.host import unpacked
 from jointfmu_tools.systems import ssp
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import system
-
-from jointfmu.fmi.host import unpacked
 
 WATCHED = {
     "robot_joint": ("link.phi", "link.w", "drive.tau2", "drive.E_loss"),

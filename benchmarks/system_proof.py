@@ -18,6 +18,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 from jointfmu_tools.interface import drive, load
+from jointfmu_tools.proof.manifest import Related
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.robots import axes_system, elastic
 from jointfmu_tools.robots.transmission import transmission
@@ -27,7 +28,6 @@ from jointfmu_tools.systems.system import read, system
 from scipy.interpolate import CubicSpline
 
 from jointfmu.parameters import dump
-from jointfmu.proof.manifest import Related
 
 ROBOT = Path(__file__).parents[1] / "models/robots/six_axis.xml"
 SIZES = ("CSG-32-100", "CSG-40-100", "CSG-25-100", "CSG-20-100", "CSG-17-100", "CSG-14-100")

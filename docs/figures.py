@@ -19,6 +19,7 @@ from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
+from jointfmu_tools.published import validation
 from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
 from jointfmu_tools.report.systems import SIZE, draw
 from jointfmu_tools.systems import ringing, ssp
@@ -29,7 +30,6 @@ from matplotlib.patches import Rectangle
 
 from jointfmu.files.writing import write_bytes, write_text
 from jointfmu.joints import KINDS
-from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"

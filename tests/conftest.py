@@ -19,8 +19,7 @@ from fmpy import platform_tuple
 from hypothesis import settings
 from jointfmu_fmu_src.native.cache import CACHE, COMPILER, compiler_cache, parts
 from jointfmu_fmu_src.native.compiler import TARGETS, libraries
-
-from jointfmu.fmi.host import Instance
+from jointfmu_tools.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
 settings.load_profile("jointfmu")

@@ -28,6 +28,7 @@ TOOLS = (
     "modelica",
     "new",
     "pressure",
+    "published",
     "reduced",
     "report",
     "ringing",

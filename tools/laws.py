@@ -8,9 +8,10 @@ from jointfmu.contact import fractal
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import DECLARED, check, height
 from jointfmu.joints import KINDS
-from jointfmu.judgement import known_height
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build, flat_fields, flatten
+
+from .judgement import known_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")
 """Columns of every law; a law that does not define one gives null."""

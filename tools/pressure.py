@@ -6,10 +6,10 @@ from typing import Any
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
-from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile
 
 from .joint_parts import part
+from .judgement import Judgement, judge, known_height
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

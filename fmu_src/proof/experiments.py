@@ -14,11 +14,11 @@ import numpy as np
 from jointfmu.joints import KINDS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, load, read_document
-from jointfmu.proof.series import TimeSeries
 from jointfmu.quantity import changed
 
 from .neighbours import neighbours
 from .reference import Stimulus, results, rounded, start_of
+from .series import TimeSeries
 
 RAMP, FEW, LEAST = 20, 4, 2
 """Levels of the load ramp [1], of the smoke test and shipped models, of neighbours and samples."""

@@ -9,15 +9,15 @@ from xml.etree.ElementTree import Element, SubElement
 from jointfmu import __version__
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump
-from jointfmu.proof import manifest
-from jointfmu.proof.series import text
-from jointfmu.proof.task import FLOOR, SOLVER
 from jointfmu.quantity import flatten
 
 from ..ssv import Value, parameter_set
 from ..xml_parts import serialized
+from . import standard
 from .experiments import ReferenceExperiment
 from .reference import DIGITS
+from .series import text
+from .standard import FLOOR, SOLVER
 
 TOLERANCE = 1e-5
 """Of a reference result [1]. An importer that prints six digits rounds by 5e-6; the rest is for what differs
@@ -26,8 +26,8 @@ rounding of the files. Platforms differ by 1e-12; a solver adds 4e-10 where ther
 TEXT = "documentation/fmi-ls-ref.txt"
 """Where an FMU says what its experiments are."""
 _INTERFACES = {
-    manifest.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
-    manifest.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
+    standard.CO_SIMULATION: "steps of stepSize; each takes the inputs of its begin or of its end",
+    standard.MODEL_EXCHANGE: f"a solver with {SOLVER:g} times the tolerance of the experiment as its own; "
     "a completed integrator step at each row of inputs and results",
 }
 """{interface: how an experiment is run in it}."""
@@ -97,7 +97,7 @@ def archive(
 
     def add(source: str, kind: str, role: str, doc: str, content: bytes) -> None:
         members[source] = content
-        labels = offered if kind == manifest.EXPERIMENTS else {}
+        labels = offered if kind == standard.EXPERIMENTS else {}
         related.append(RelatedFile(source, kind, role, doc, labels))
 
     own, exposed = slug(parameters.name), model.parameter_fields()
@@ -118,7 +118,7 @@ def archive(
     for file, _ in models:
         values = {name: value for name, value in flatten(file.values).items() if name in exposed}
         content = _parameter_set(model, file.name, values)
-        add(f"parameters/{slug(file.name)}.ssv", manifest.SSV, "parameter", file.name, content)
+        add(f"parameters/{slug(file.name)}.ssv", standard.SSV, "parameter", file.name, content)
     if study:
         lines = [f"{json.dumps(name)} = {json.dumps(law)}" for name, law in study.items()]
         content = "\n".join(["schema = 1", "", "[parameters]", *lines, ""]).encode()
@@ -131,13 +131,13 @@ def archive(
         for i, one in chosen:
             series |= _experiment(model, root, f"{i:02d}", one, members | series)
         content = serialized(root)
-        add(f"{purpose}.exp", manifest.EXPERIMENTS, f"experiment/{purpose}", _TITLES[purpose], content)
+        add(f"{purpose}.exp", standard.EXPERIMENTS, f"experiment/{purpose}", _TITLES[purpose], content)
         members |= series
         for path in series:
             if path.endswith("_ref.csv"):
-                related.append(RelatedFile(path, manifest.CSV, "result", "reference result of the package"))
+                related.append(RelatedFile(path, standard.CSV, "result", "reference result of the package"))
     members["fmi-ls-manifest.xml"] = manifest_xml(related)
-    found = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
+    found = {f"{standard.FOLDER}/{path}": content for path, content in members.items()}
     return found | {TEXT: _text(own, experiments, native).encode()}
 
 
@@ -164,7 +164,7 @@ def _experiment(
         "stopTime": float(one.drive.instants[-1]),
         "stepSize": 0.5 * one.drive.interval,
     }
-    SubElement(node, manifest.TRANSIENT, {name: repr(time) for name, time in times.items()})
+    SubElement(node, standard.TRANSIENT, {name: repr(time) for name, time in times.items()})
     for tag, path in files.items():
         SubElement(node, tag, source=path)
     return {path: content for path, content in written.items() if path not in there}
@@ -179,22 +179,22 @@ def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> byt
 
 def manifest_xml(related: Sequence[RelatedFile]) -> bytes:
     """The manifest of FMI-LS-REF."""
-    head = {"name": manifest.NAME, "version": manifest.VERSION, "description": manifest.DESCRIPTION}
-    root = Element("fmiReferences", {"xmlns:fmi-ls": manifest.ATTRIBUTES})
+    head = {"name": standard.NAME, "version": standard.VERSION, "description": standard.DESCRIPTION}
+    root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTES})
     root.attrib |= {f"fmi-ls:fmi-ls-{name}": value for name, value in head.items()}
     for line in related:
         attributes = {"type": line.type, "source": line.source, "role": line.role, "description": line.doc}
         node = SubElement(root, "Related", attributes)
         for interface, doc in line.labels.items():
-            SubElement(node, "Label", name=manifest.LABELS[interface], description=doc)
+            SubElement(node, "Label", name=standard.LABELS[interface], description=doc)
     return serialized(root)
 
 
 def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
-    counts = {p: sum(one.purpose == p for one in experiments) for p in manifest.PURPOSES}
+    counts = {p: sum(one.purpose == p for one in experiments) for p in standard.PURPOSES}
     return _PAGE.format(
-        standard=manifest.NAME,
-        version=manifest.VERSION,
+        standard=standard.NAME,
+        version=standard.VERSION,
         own=__version__,
         counts="\n".join(f"{count:4d} {purpose}" for purpose, count in counts.items() if count),
         tolerance=TOLERANCE,

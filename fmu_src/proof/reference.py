@@ -11,8 +11,9 @@ import numpy as np
 
 from jointfmu.joints.model import Model, Outputs, Spring
 from jointfmu.parameters import ParameterFile
-from jointfmu.proof.series import TimeSeries
 from jointfmu.quantity import Array
+
+from .series import TimeSeries
 
 DIGITS = 10
 """Of a reference result: their rounding [1] is far below the tolerance."""

@@ -31,6 +31,7 @@ from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools import cli
 from jointfmu_tools.job import checks, pipeline
+from jointfmu_tools.published import validation
 from jointfmu_tools.ramps import ramp
 from jointfmu_tools.report.page import write_report
 from jointfmu_tools.systems import system as systems
@@ -41,7 +42,6 @@ from pythonfmu import FmuBuilder
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default, dump
-from jointfmu.published import validation
 
 pytestmark = pytest.mark.slow
 

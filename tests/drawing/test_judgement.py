@@ -9,13 +9,13 @@ from jointfmu_tools.drawing.tables import threads
 from jointfmu_tools.drawing.vdi2230 import proof_load, stress_area
 from jointfmu_tools.fem.convergence import unlike_holes
 from jointfmu_tools.fields.nodal_result import ContactField
+from jointfmu_tools.judgement import FACTOR, judge, known_height
 from jointfmu_tools.pressure import judge_file, nominal_pressure
 
 from jointfmu.contact.interface import at_pressure, beyond
 from jointfmu.contact.roughness import GAMMA, level
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.judgement import FACTOR, judge, known_height
 from jointfmu.parameters import default, dump, load
 
 BOLTED = default("bolted_joint")

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from conftest import refused_line
-
-from jointfmu.proof.checksum import ALGORITHMS
-from jointfmu.proof.manifest import FOLDER, MANIFEST, Related
+from jointfmu_fmu_src.proof.standard import FOLDER, MANIFEST
+from jointfmu_tools.proof.checksum import ALGORITHMS
+from jointfmu_tools.proof.manifest import Related
 
 EXPERIMENTS = b'<Experiments><Experiment name="rest" stopTime="1.0"/></Experiments>'
 HEAD = (

@@ -17,18 +17,18 @@ from joint_cases import NAMES, law, parameters
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from jointfmu_fmu_src.proof import computed, proof
+from jointfmu_fmu_src.proof import computed, proof, standard
 from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, models, study
 from jointfmu_fmu_src.proof.files import TOLERANCE
 from jointfmu_fmu_src.proof.reference import Stimulus, results
+from jointfmu_fmu_src.proof.series import TimeSeries, parse, text
+from jointfmu_tools.proof import manifest
 from jointfmu_tools.uncertainty import study as study_files
 from lxml import etree
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, default, load
-from jointfmu.proof import manifest
-from jointfmu.proof.series import TimeSeries, parse, text
 from jointfmu.quantity import changed
 
 SCHEMAS = Path(str(files("fmpy") / "schema" / "fmi3"))
@@ -69,9 +69,9 @@ def schema(path: Path) -> etree.XMLSchema:
 @pytest.mark.parametrize("name", EVERY)
 def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None:
     own = Path(__file__).parent / "standards" / "fmi3LayeredStandardReferenceManifest.xsd"
-    data = members(name)[manifest.MANIFEST]
+    data = members(name)[standard.MANIFEST]
     schema(own).assertValid(etree.fromstring(data))
-    below = {path.removeprefix(f"{manifest.FOLDER}/") for path in members(name)}
+    below = {path.removeprefix(f"{standard.FOLDER}/") for path in members(name)}
     named = [related.get("source", "") for related in ElementTree.fromstring(data)]
     outside = {"../../documentation/index.html", "../../documentation/fmi-ls-ref.txt"}
     assert set(named) - outside <= below
@@ -81,7 +81,7 @@ def test_the_manifest_is_valid_and_all_that_it_names_is_there(name: str) -> None
     used = {
         child.get("source")
         for path in experiments
-        for child in ElementTree.fromstring(members(name)[f"{manifest.FOLDER}/{path}"]).iter()
+        for child in ElementTree.fromstring(members(name)[f"{standard.FOLDER}/{path}"]).iter()
     }
     assert {path for path in below if path.startswith("experiments/")} <= used
 
@@ -101,8 +101,8 @@ def test_parameter_sets_are_valid_and_have_every_parameter(name: str) -> None:
 
 @pytest.mark.parametrize("name", EVERY)
 def test_every_experiment_states_times_and_tolerance(name: str) -> None:
-    for purpose in manifest.PURPOSES:
-        root = ElementTree.fromstring(members(name)[f"{manifest.FOLDER}/{purpose}.exp"])
+    for purpose in standard.PURPOSES:
+        root = ElementTree.fromstring(members(name)[f"{standard.FOLDER}/{purpose}.exp"])
         for one in root.iter("Experiment"):
             assert one[0].tag == "TransientSimulation"
             assert float(one.get("tolerance", "nan")) == TOLERANCE
@@ -187,7 +187,7 @@ def test_one_shipped_model_at_least_is_carried_by_the_fmu_of_another() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_the_uncertainty_experiment_can_be_read_as_a_study(name: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
-    path.write_bytes(members(name)[f"{manifest.FOLDER}/parameters/study.toml"])
+    path.write_bytes(members(name)[f"{standard.FOLDER}/parameters/study.toml"])
     assert study_files.read(path) == study(*given(name))
     samples = [one for one in made(name) if one.purpose == "uncertainty-analysis"]
     assert len(samples) == 6

@@ -19,6 +19,7 @@ from fmpy.util import read_csv, read_ref_opt_file
 from jointfmu_fmu_src.native.build import build as native_build
 from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.proof.importers import VERSIONS as KNOWN
 from natives import VERSIONS
@@ -26,7 +27,6 @@ from proofs import BOTH, MEASURED, copy, needs, other_manifest, proved, replaced
 
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import default
-from jointfmu.proof.manifest import FOLDER
 
 pytestmark = pytest.mark.slow
 

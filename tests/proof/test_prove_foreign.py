@@ -9,10 +9,9 @@ import fmpy
 import numpy as np
 import pytest
 from conftest import RELEASED, refused_line
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER, MANIFEST, MODEL_EXCHANGE
 from numpy.typing import NDArray
 from proofs import BOTH, copy, needs, other_manifest, proved, replaced
-
-from jointfmu.proof.manifest import CO_SIMULATION, FOLDER, MANIFEST, MODEL_EXCHANGE
 
 pytestmark = pytest.mark.slow
 

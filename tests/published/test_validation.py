@@ -6,27 +6,35 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from jointfmu_tools.published import calibration
+from jointfmu_tools.published import validation as comparison
+from jointfmu_tools.published.calibration import calibrate
+from jointfmu_tools.published.computed import published
+from jointfmu_tools.published.reference import (
+    CALIBRATION_TOLERANCE,
+    GUESSED,
+    ROLES,
+    Guess,
+    Point,
+    guesses,
+    points,
+)
+from jointfmu_tools.published.validation import compare, counts, missed, summary, table, validate
 from matplotlib.lines import Line2D
 from published_marks import published_mark
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.published import published
 from jointfmu.parameters import default
-from jointfmu.published import calibration
-from jointfmu.published import validation as comparison
-from jointfmu.published.calibration import calibrate
-from jointfmu.published.reference import CALIBRATION_TOLERANCE, GUESSED, ROLES, Guess, Point, guesses, points
-from jointfmu.published.validation import compare, counts, missed, summary, table, validate
 from jointfmu.quantity import flat_fields, flatten
 
 REPRODUCED = 1e-6
 """Relative tolerance of a value fitted again [1]: the fit stops at residuals of 1e-8, and the worst of
 its parameters moves about ten times as much."""
 
-PAPERS = [paper for kind in KINDS.values() for paper in kind.papers]
+PAPERS = [paper for kind in KINDS.values() for paper in published(kind).papers]
 OBSERVABLES = {q: f for kind in KINDS.values() for q, f in published(kind).observables.items()}
 FITS = {
-    name: (kind.papers[0], published(kind).calibration)
+    name: (published(kind).papers[0], published(kind).calibration)
     for name, kind in KINDS.items()
     if published(kind).calibration
 }

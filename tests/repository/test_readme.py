@@ -16,10 +16,10 @@ from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField
+from jointfmu_tools.published import validation
 
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
-from jointfmu.published import validation
 
 ROOT = Path(__file__).resolve().parents[2]
 ASSEMBLY = "models/assemblies/box_specimen.toml"

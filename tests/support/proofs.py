@@ -8,9 +8,8 @@ from typing import Any
 
 import pytest
 from conftest import importable
+from jointfmu_fmu_src.proof.standard import ATTRIBUTES, FOLDER, MANIFEST, NAME
 from jointfmu_tools import cli
-
-from jointfmu.proof.manifest import ATTRIBUTES, FOLDER, MANIFEST, NAME
 
 Change = Callable[[str, bytes], bytes | None]
 BOTH = ["co-simulation", "model exchange"]

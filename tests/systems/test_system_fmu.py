@@ -9,6 +9,9 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from jointfmu_fmu_src.proof.standard import FOLDER
+from jointfmu_tools.host import opened, unpacked
+from jointfmu_tools.proof.manifest import Related
 from jointfmu_tools.proof.run import prove
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
@@ -17,8 +20,6 @@ from proofs import copy, replaced
 from scipy.interpolate import CubicSpline
 
 import jointfmu
-from jointfmu.fmi.host import opened, unpacked
-from jointfmu.proof.manifest import FOLDER, Related
 
 pytestmark = pytest.mark.slow  # builds FMUs
 

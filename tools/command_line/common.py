@@ -8,9 +8,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
-from jointfmu.judgement import Judgement
 from jointfmu.parameters import parse_setting
 
+from ..judgement import Judgement
 from .examples import BEFORE, EXAMPLES
 
 Run = Callable[[argparse.Namespace], int]

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
-from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
 from ..command_line.common import Commands, command, flag, joint_name, tell, without_package
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
+from ..judgement import Judgement, judge, known_height
 from ..pressure import judge_file, nominal_pressure
 
 if TYPE_CHECKING:

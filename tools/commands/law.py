@@ -10,11 +10,11 @@ import numpy as np
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.judgement import judge, known_height, law_height
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flatten
 
 from ..command_line.common import Commands, command, settings, tell
+from ..judgement import judge, known_height, law_height
 from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
 
 

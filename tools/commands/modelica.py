@@ -7,10 +7,10 @@ from pathlib import Path
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
-from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
 from ..command_line.common import Commands, command, flag, tell, without_package
+from ..judgement import Judgement
 from ..pressure import judge_file
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
-from jointfmu.published import validation
 
 from ..command_line.common import Commands, command
 from ..fem import installed
@@ -17,6 +16,7 @@ from ..fem.validation import natural_frequencies
 from ..proof import listing, report
 from ..proof.importers import IMPORTERS
 from ..proof.run import Expected, prove
+from ..published import validation
 
 
 def add(commands: Commands) -> None:
@@ -73,7 +73,7 @@ def _expected(fmu: Path, path: Path) -> Expected:
     """
     from jointfmu_fmu_src.proof import proof
 
-    from jointfmu.fmi.host import unpacked
+    from ..host import unpacked
 
     file = load(path)
     with unpacked(fmu, exchange=True) as (_, description):

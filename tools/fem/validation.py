@@ -6,11 +6,11 @@ from pathlib import Path
 
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default
-from jointfmu.published.reference import guesses, points
-from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..fields.clamped import clamping
 from ..joint_parts import part
+from ..published.reference import guesses, points
+from ..published.validation import ValidatedPoint, compare
 
 
 @dataclass(frozen=True, slots=True)

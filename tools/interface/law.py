@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import at_largest_spot, at_pressure
 from jointfmu.contact.laws import LAWS
-from jointfmu.judgement import judge, law_height
 from jointfmu.quantity import flat_fields, flatten
 
 from .. import plots
+from ..judgement import judge, law_height
 from ..laws import ROW, law_parameters
 from ..shown import quantity
 from .frame import Frame, Table, Tabled

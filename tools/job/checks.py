@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from jointfmu.joints import KINDS, MODELS
-from jointfmu.published.reference import Point, points
-from jointfmu.published.validation import ValidatedPoint, compare
 
 from ..joint_parts import part
+from ..published.computed import published
+from ..published.reference import Point, points
+from ..published.validation import ValidatedPoint, compare
 from ..ramps import ramp
 from ..systems.decays import DAMPING_TOLERANCE as LOOP_DAMPING_TOLERANCE
 from ..systems.decays import FREQUENCY_TOLERANCE, Decay
@@ -106,7 +107,7 @@ def published_through_fmus(folder: Path) -> list[ValidatedPoint]:
         through: ThroughFmu | None = getattr(part(kind, "checks"), "through_fmu", None)
         if through is None:
             continue
-        for point in (p for paper in kind.papers for p in points(paper)):
+        for point in (p for paper in published(kind).papers for p in points(paper)):
             value = through(point, folder)
             if value is not None:
                 rows.append(compare(point, value))

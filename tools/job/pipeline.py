@@ -10,12 +10,12 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu.files.writing import write_text
 from jointfmu.joints import MODELS
 from jointfmu.progress import processes, track
-from jointfmu.published import validation
 from jointfmu.quantity import Array
 
 from ..laboratory.assemble import write_laboratory
 from ..proof.outcome import Proof
 from ..proof.run import prove
+from ..published import validation
 from ..ramps import ramp
 from ..report.figure import Figure
 from ..report.page import drawn, write_report

@@ -19,10 +19,11 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile, dump, load
-from jointfmu.published.reference import ROLES, points
 from jointfmu.quantity import units
 
 from ..joint_parts import part
+from ..published.computed import published
+from ..published.reference import ROLES, points
 from ..shown import shown_unit
 from .part import LaboratoryModel
 
@@ -241,7 +242,7 @@ def _set(file: ParameterFile, model: Model) -> dict[str, object]:
 def _points(model: Model, bench: LaboratoryModel) -> Iterator[dict[str, object]]:
     outputs = {v.name: v for v in model.outputs}
     known = {v.name for v in model.inputs} | set(model.parameter_fields())
-    for paper in KINDS[model.joint].papers:
+    for paper in published(KINDS[model.joint]).papers:
         for point in points(paper):
             shown = bench.points.get(point.quantity)
             if shown is None or not set(point.where) <= set(shown.arguments):

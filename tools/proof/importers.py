@@ -6,10 +6,11 @@ In co-simulation a step holds the inputs of its begin; outputs are read at its e
 from collections.abc import Mapping
 from typing import Any
 
-from jointfmu.fmi.host import description, opened
-from jointfmu.proof import exchange
-from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
-from jointfmu.proof.task import Execute, Rows, Task, reader
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
+
+from ..host import description, opened
+from . import exchange
+from .task import Execute, Rows, Task, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:

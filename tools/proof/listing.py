@@ -9,11 +9,13 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jointfmu.files.writing import made_folder, write_bytes
-from jointfmu.fmi import host
-from jointfmu.proof.manifest import CO_SIMULATION, FOLDER, Experiment
-from jointfmu.proof.series import TimeSeries, text
+from jointfmu_fmu_src.proof.series import TimeSeries, text
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, FOLDER
 
+from jointfmu.files.writing import made_folder, write_bytes
+
+from .. import host
+from .manifest import Experiment
 from .outcome import Outcome, Proof
 from .plan import TOLERANCE
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.proof.manifest import Experiment
+from .manifest import Experiment
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from jointfmu_fmu_src.proof.standard import FLOOR, MODEL_EXCHANGE, SOLVER
 
-from jointfmu.proof.manifest import MODEL_EXCHANGE, Experiment
-from jointfmu.proof.task import FLOOR, SOLVER
 from jointfmu.quantity import Array
 
+from .manifest import Experiment
 from .outcome import Outcome, WorstPoint
 from .values import course, kind, setting
 

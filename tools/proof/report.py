@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from jointfmu.proof.manifest import PURPOSES
+from jointfmu_fmu_src.proof.standard import PURPOSES
 
 from .outcome import Outcome, Proof, WorstPoint
 

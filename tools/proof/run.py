@@ -10,11 +10,13 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.fmi.host import unpacked
-from jointfmu.progress import track
-from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE, Experiment, Related
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
+from jointfmu.progress import track
+
+from ..host import unpacked
 from .importers import PACKAGES, VERSIONS, interfaces
+from .manifest import Experiment, Related
 from .outcome import Proof
 from .plan import ExperimentPlan, task
 from .values import has_start, start

@@ -2,10 +2,12 @@
 
 from typing import TYPE_CHECKING, Any
 
-from jointfmu.proof.manifest import Setting
-from jointfmu.proof.series import TimeSeries
-from jointfmu.proof.task import REAL
+from jointfmu_fmu_src.proof.series import TimeSeries
+
 from jointfmu.quantity import Array
+
+from .manifest import Setting
+from .task import REAL
 
 if TYPE_CHECKING:
     from fmpy.model_description import ScalarVariable

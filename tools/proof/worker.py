@@ -12,9 +12,8 @@ import sys
 import tempfile
 from typing import Any, TextIO
 
-from jointfmu.proof.task import Task
-
 from . import importers
+from .task import Task
 
 _REFUSED = re.compile(r"fmi[23](?:Error|Fatal|Discard)\s+(?P<reason>\S.*)")
 """How ecos logs what an FMU refuses."""

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.fmi.host import unpacked
 from jointfmu.quantity import Array, units
 
 from .. import columns
+from ..host import unpacked
 from . import ramp
 
 if TYPE_CHECKING:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.fmi.host import opened, unpacked
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 
 from .. import columns
+from ..host import opened, unpacked
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription

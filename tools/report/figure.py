@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from jointfmu_fmu_src.joint_parts import chart
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 
-from jointfmu.published.reference import PROVES_NOTHING, ROLES, Point
-
 from ..laboratory.assemble import web_file
 from ..plots import BLUE, GREEN, GREY, RED
+from ..published.reference import PROVES_NOTHING, ROLES, Point
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas

@@ -12,10 +12,10 @@ from jointfmu.files.timestamp import build_time
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
-from jointfmu.published.reference import ROLES
-from jointfmu.published.validation import shown_claim, shown_error, shown_tolerance, summary
 
 from ..joint_parts import part
+from ..published.reference import ROLES
+from ..published.validation import shown_claim, shown_error, shown_tolerance, summary
 from ..systems.system import systems
 from .figure import Figure, script, style
 from .systems import motions, resonances, ring_downs

@@ -9,8 +9,9 @@ from typing import Self, TypeVar
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from jointfmu.fmi.host import opened, unpacked
 from jointfmu.quantity import Array
+
+from ..host import opened, unpacked
 
 T = TypeVar("T")
 

@@ -13,12 +13,12 @@ from uuid import uuid4
 import numpy as np
 
 from jointfmu.files.writing import write_text
-from jointfmu.fmi.host import unpacked
 from jointfmu.progress import track
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
 from .. import columns
+from ..host import unpacked
 from ..ramps import ramp
 from . import journal
 from .cluster import client

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointfmu.fmi.host import runs
-
+from ..host import runs
 from ..ramps import ramp
 
 

@@ -47,7 +47,6 @@ class Kind:
     working_point : names of inputs that its linearisations need (preload, ...), the first always
     contradictions : of a parameter set: a line for each parameter that contradicts another; what a parameter
                     file must not have
-    papers        : files of published numbers in models/reference/ that it is compared with
     """
 
     name: str
@@ -59,7 +58,6 @@ class Kind:
     surfaces: Sequence[RoughSurface] = ()
     working_point: Sequence[str] = ()
     contradictions: Callable[..., Iterable[str]] = none
-    papers: Sequence[str] = ()
 
     @property
     def title(self) -> str:

@@ -13,13 +13,13 @@ from jointfmu_tools.fields.joint_parameters import pressure_shape, with_field
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.fields.reduction import DIGITS, TOLERANCE, reduce
 from jointfmu_tools.fields.sums import PRELOADS, PRESSED, Load, Sums
+from jointfmu_tools.joints.bolted_joint.published import p_between
 from jointfmu_tools.modelica import library
 from jointfmu_tools.ramps import ramp
 
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint import KIND
 from jointfmu.joints.bolted_joint.law import bolt_pattern, pressures
-from jointfmu.joints.bolted_joint.published import p_between
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.reproducible import rounded

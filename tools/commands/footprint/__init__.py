@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
 from ...command_line.common import Commands, Parser, command, tell
 from ...fields.clamped import clamping
+from ...judgement import judge, known_height
 from .. import check_files
 from . import bodies, compute
 from .compute import joint_file

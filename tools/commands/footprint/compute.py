@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default, dump, load
 
@@ -19,6 +18,7 @@ from ...command_line.common import Commands, command, tell
 from ...drawing.vdi2230 import proof_load
 from ...fem import installed
 from ...fields.clamped import clamped, clamping
+from ...judgement import Judgement, judge, known_height
 from ...pressure import overload
 from .. import check_files
 

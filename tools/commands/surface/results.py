@@ -10,11 +10,11 @@ from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import GAMMA, height, level
 from jointfmu.joints import KINDS
-from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ...command_line.common import tell
+from ...judgement import Judgement
 from ...pressure import judge_file
 from ...shown import aligned
 from ...surfaces.form import ScanRoughness

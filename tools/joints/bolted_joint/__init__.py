@@ -4,7 +4,7 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("export", "field", "fit", "laboratory", "modelica", "new", "reduced", "report"),
+    ("export", "field", "fit", "laboratory", "modelica", "new", "published", "reduced", "report"),
     checks="job",
     figures="job",
     ringing="job",

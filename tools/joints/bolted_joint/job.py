@@ -9,9 +9,9 @@ from typing import Any
 from scipy.integrate import cumulative_simpson
 
 from jointfmu.parameters import default
-from jointfmu.published.reference import Point
 
 from ...job.checks import deviation
+from ...published.reference import Point
 from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series

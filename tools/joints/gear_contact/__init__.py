@@ -4,7 +4,7 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("modelica", "new", "reduced"),
+    ("modelica", "new", "published", "reduced"),
     checks="job",
     figures="job",
     export="load",

@@ -4,7 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("catalogue", "fit", "interface", "laboratory", "modelica", "new", "reduced", "report", "transmission"),
+    (
+        *("catalogue", "fit", "interface", "laboratory", "modelica", "new"),
+        *("published", "reduced", "report", "transmission"),
+    ),
     checks="job",
     figures="job",
     ringing="job",

@@ -10,10 +10,9 @@ import numpy as np
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq
 
-from jointfmu.published.reference import Point
-from jointfmu.published.validation import ValidatedPoint
-
 from ...job.checks import deviation
+from ...published.reference import Point
+from ...published.validation import ValidatedPoint
 from ...ramps import ramp
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series, published

@@ -9,16 +9,18 @@ from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
+from jointfmu_fmu_src.proof import standard
 from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, manifest_xml
+from jointfmu_fmu_src.proof.series import TimeSeries, text
+from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialized
 
 from jointfmu import __version__
-from jointfmu.fmi.host import unpacked
 from jointfmu.joints.model import Model
-from jointfmu.proof import exchange, manifest
-from jointfmu.proof.manifest import CO_SIMULATION, MODEL_EXCHANGE
-from jointfmu.proof.series import TimeSeries, text
-from jointfmu.proof.task import Task
+
+from ...host import unpacked
+from ...proof import exchange
+from ...proof.task import Task
 
 TOLERANCE, SOLVER = 5e-3, 1e-9
 """Of an output [1], over its scale: what docs/systems.md promises of any step; of the references' solver."""
@@ -84,7 +86,7 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         ),
         RelatedFile(f"../../{TEXT}", "text/plain", "document", "experiments and tolerance"),
         *(
-            RelatedFile(path, manifest.CSV, "result", "by model exchange at a tight tolerance")
+            RelatedFile(path, standard.CSV, "result", "by model exchange at a tight tolerance")
             for path in members
         ),
     ]
@@ -92,11 +94,11 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         path = f"{interface.replace(' ', '-')}.exp"
         members[path] = _experiments(model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
-        related.append(RelatedFile(path, manifest.EXPERIMENTS, "experiment/validation", model.doc, labels))
+        related.append(RelatedFile(path, standard.EXPERIMENTS, "experiment/validation", model.doc, labels))
     members["fmi-ls-manifest.xml"] = manifest_xml(related)
     page = _PAGE.format(
-        standard=manifest.NAME,
-        version=manifest.VERSION,
+        standard=standard.NAME,
+        version=standard.VERSION,
         own=__version__,
         short=step,
         long=LONGER * step,
@@ -106,7 +108,7 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         small=SMALL,
         near=FINE * NEAR * fine,
     )
-    placed = {f"{manifest.FOLDER}/{path}": content for path, content in members.items()}
+    placed = {f"{standard.FOLDER}/{path}": content for path, content in members.items()}
     return placed | {TEXT: page.encode()}
 
 
@@ -162,9 +164,9 @@ def _experiments(
         name = f"steps of {1e3 * step:g} ms"
         node = SubElement(root, "Experiment", name=name, description=model.doc, tolerance=repr(TOLERANCE))
         times = {"startTime": 0.0, "stopTime": stop, "stepSize": step}
-        SubElement(node, manifest.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
+        SubElement(node, standard.TRANSIENT, {key: f"{value:.12g}" for key, value in times.items()})
         SubElement(node, "References", source=path)
-        given = SubElement(SubElement(node, "Annotations"), "Annotation", type=manifest.SCALES)
+        given = SubElement(SubElement(node, "Annotations"), "Annotation", type=standard.SCALES)
         for output, scale in scales.items():
             SubElement(given, "Scale", name=output, value=f"{scale:.{DIGITS}g}")
     return serialized(root)

@@ -13,5 +13,4 @@ KIND = Kind(
     surfaces=(RoughSurface("surface"),),
     working_point=("preload", "moment"),
     contradictions=contradictions,
-    papers=("zhao2018",),
 )

@@ -38,5 +38,4 @@ KIND = Kind(
     laws={"yu2022": GearContact, "roughness": RoughGearContact},
     models=MODELS,
     surfaces=(RoughSurface("surface1", direction="x"), RoughSurface("surface2", direction="y")),
-    papers=("yu2022",),
 )

@@ -18,5 +18,4 @@ KIND = Kind(
     law_of=lambda drive: drive.law,
     models=MODELS,
     surfaces=(RoughSurface("surface", areal=True),),
-    papers=("hu2023",),
 )

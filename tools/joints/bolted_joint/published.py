@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.fractal import height
-from ...contact.laws import mindlin
-from ...contact.laws import zhao2018 as zhao
-from ...contact.surface import domain_extension
-from ...mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
-from ..published import CalibrationFit, Published
-from .law import BoltedJoint, bolt_pattern, pressures, row_forces
+from jointfmu.contact.fractal import height
+from jointfmu.contact.laws import mindlin
+from jointfmu.contact.laws import zhao2018 as zhao
+from jointfmu.contact.surface import domain_extension
+from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, pressures, row_forces
+from jointfmu.mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
+
+from ...published.computed import CalibrationFit, Published
 
 
 def p_max(joint: BoltedJoint, preload: float) -> float:
@@ -67,6 +68,7 @@ def frequency_error(joint: BoltedJoint, predicted: float, measured: float) -> fl
 
 
 PUBLISHED = Published(
+    papers=("zhao2018",),
     observables={
         "p_max": p_max,
         "p_between": p_between,

@@ -3,15 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ..fmi.host import Instance
+from ..host import Instance
 
 REAL = ("Real", "Float64")
 """Types of real numbers."""
-FLOOR = 1e-6
-"""Part of an output's nominal value [1] below which its round-off counts, not its own size."""
-SOLVER = 1e-3
-"""Relative tolerance of a solver over that of the experiment [1]: its errors add up along the way, and
-what was large may be small after an event."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +14,7 @@ class Task:
     """An experiment, ready to be executed.
 
     fmu, folder : path of the FMU, and of the folder where it is unpacked
-    interface : one of manifest.INTERFACES
+    interface : one of INTERFACES
     settings : {variable: start value}
     times    : (n) communication points [s]
     inputs   : {variable: (n) values}, where one jumps the later

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.interface import at_largest_spot
-from ...contact.laws import hu2023 as hu
-from ...contact.laws import kogut_etsion
-from ...contact.surface import hardness_coefficient
-from ..published import CalibrationFit, Published
-from .law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+from jointfmu.contact.interface import at_largest_spot
+from jointfmu.contact.laws import hu2023 as hu
+from jointfmu.contact.laws import kogut_etsion
+from jointfmu.contact.surface import hardness_coefficient
+from jointfmu.joints.harmonic_drive.law import HarmonicDrive, drive_stiffness, pair_stiffness, peak_pressure
+
+from ...published.computed import CalibrationFit, Published
 
 
 def K_TS(
@@ -76,6 +77,7 @@ def least_mean_pressure(drive: HarmonicDrive) -> float:
 
 
 PUBLISHED = Published(
+    papers=("hu2023",),
     observables={
         "K_TS": K_TS,
         "K_TS_least": K_TS_least,

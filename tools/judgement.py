@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from .contact.interface import InterfaceLaw, beyond, stiffness_curve
-from .contact.roughness import GAMMA, ROUGHEST, height, level
-from .joints import KINDS
-from .parameters import ParameterFile
-from .quantity import Array
+from jointfmu.contact.interface import InterfaceLaw, beyond, stiffness_curve
+from jointfmu.contact.roughness import GAMMA, ROUGHEST, height, level
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Array
 
 FACTOR = 3.0
 """Ratio to p/(GAMMA h), either way, beyond which a law's level is doubtful [1] (docs/validity.md)."""

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jointfmu_fmu_src.proof.standard import FLOOR
 
-from ..fmi.host import Instance, description, opened
-from .task import FLOOR, Rows, Task, reader
+from ..host import Instance, description, opened
+from .task import Rows, Task, reader
 
 MOST_STEPS = 100_000
 """Of the solver between two communication points."""

@@ -12,32 +12,27 @@ from urllib.parse import unquote, urlsplit
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from . import checksum
-from .series import TimeSeries, parse
+from jointfmu_fmu_src.proof.series import TimeSeries, parse
+from jointfmu_fmu_src.proof.standard import (
+    ATTRIBUTES,
+    CSV,
+    EXPERIMENTS,
+    INTERFACES,
+    LABELS,
+    MANIFEST,
+    NAME,
+    PURPOSES,
+    SCALES,
+    SSV,
+    TRANSIENT,
+)
 
-NAME = "org.fmi-standard.fmi-ls-ref"
-"""Of the layered standard."""
-VERSION = "1.0.0-alpha.1"
-DESCRIPTION = "Layered Standard providing information on related files included in an FMU."
-FOLDER = f"extra/{NAME}"
-MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"
-ATTRIBUTES = "http://fmi-standard.org/fmi-ls-manifest"
-"""Namespace of the manifest's own attributes."""
+from . import checksum
+
 VALUES = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 """Namespace of SSV files."""
-EXPERIMENTS, SSV, CSV = "application/x-ma-hs-experiments", "application/x-ssp-parameter-set", "text/csv"
-"""Types of related files that are read."""
 _OTHER_NAMES = ("application/x-ma-ls-experiments", "application/octet-stream")
 """Of the type of experiments: in the standard's example, and its default."""
-TRANSIENT = "TransientSimulation"
-CO_SIMULATION, MODEL_EXCHANGE = INTERFACES = ("co-simulation", "model exchange")
-"""Interfaces of FMUs."""
-LABELS = {name: f"interface:{name.replace(' ', '-')}" for name in INTERFACES}
-"""{interface: label of a file of experiments for it}; without such a label it is for all."""
-SCALES = "org.jointfmu.scales"
-"""Type of an experiment's annotation: the size of each output by which its tolerance counts."""
-PURPOSES = ("smoke-test", "validation", "uncertainty-analysis")
-"""What an experiment is for; the first where a manifest does not say."""
 
 
 @dataclass(frozen=True, slots=True)

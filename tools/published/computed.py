@@ -1,10 +1,11 @@
-"""What a joint's file `published.py` gives: OBSERVABLES and CALIBRATION."""
+"""How the published numbers of a joint are computed: `PUBLISHED` of its part `published`."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib import import_module
 
-from .kind import Kind
+from jointfmu.joints.kind import Kind
+
+from ..joint_parts import part
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,21 +19,21 @@ class CalibrationFit:
     points: Sequence[str]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Published:
-    """How published numbers of a joint are computed.
+    """The published numbers that a joint is compared with, and how they are computed.
 
+    papers      : files of them in models/reference/
     observables : {quantity of a reference file: function of the parameter set and the point's arguments}
     calibration : fits to calibration points, one after the other
     """
 
+    papers: Sequence[str] = ()
     observables: Mapping[str, Callable[..., float | bool]] = field(default_factory=dict)
     calibration: Sequence[CalibrationFit] = ()
 
 
 def published(kind: Kind) -> Published:
-    """What the joint's module `published` says; nothing if no paper is about it."""
-    if not kind.papers:
-        return Published()
-    own: Published = import_module(f"{kind.package}.published").PUBLISHED
+    """What the joint's part says; nothing if no paper is about it."""
+    own: Published = getattr(part(kind, "published"), "PUBLISHED", Published())
     return own

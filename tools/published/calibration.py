@@ -1,8 +1,8 @@
 """From published calibration points to the unpublished parameters, by scipy's least squares.
 
 Each fit has as many points as unknowns, so every point is met exactly; the points' role says that
-they were used. Validation points are never read here. `python -m jointfmu.published.calibration JOINT` prints
-the default parameter file with its calibrated values fitted anew.
+they were used. Validation points are never read here. `python -m jointfmu_tools.published.calibration JOINT`
+prints the default parameter file with its calibrated values fitted anew.
 """
 
 import sys
@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..joints import KINDS
-from ..joints.published import CalibrationFit, published
-from ..parameters import ParameterFile, default, dump
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, default, dump
+
+from .computed import CalibrationFit, published
 from .reference import Point, points
 
 
@@ -24,12 +25,12 @@ def calibrate(start: ParameterFile) -> ParameterFile:
     Raises ValueError if the joint has no calibration points, RuntimeError if a point is not met.
     """
     kind = KINDS[start.joint]
-    fits = published(kind).calibration
-    if not fits:
+    own = published(kind)
+    if not own.calibration:
         some = [name for name in KINDS if published(KINDS[name]).calibration]
         raise ValueError(f"joint = {start.joint!r} has no calibration points; allowed are {', '.join(some)}")
-    known = {p.id: p for paper in kind.papers for p in points(paper) if p.role == "calibration"}
-    for fit in fits:
+    known = {p.id: p for paper in own.papers for p in points(paper) if p.role == "calibration"}
+    for fit in own.calibration:
         start = _solve(start, fit, [known[name] for name in fit.points])
     return start
 

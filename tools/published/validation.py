@@ -6,9 +6,10 @@ from dataclasses import asdict, dataclass
 from math import isfinite
 from typing import Any
 
-from ..joints import KINDS
-from ..joints.published import published
-from ..parameters import ParameterFile, default
+from jointfmu.joints import KINDS
+from jointfmu.parameters import ParameterFile, default
+
+from .computed import published
 from .reference import PROVES_NOTHING, ROLES, Point, guesses, points
 
 _HEAD = (
@@ -76,10 +77,10 @@ def validate(sets: Mapping[str, ParameterFile] | None = None) -> list[ValidatedP
     """Compute every published point with the default parameter sets, or those given by joint."""
     given, rows = sets or {}, []
     for kind in KINDS.values():
-        for paper in kind.papers:
+        own = published(kind)
+        for paper in own.papers:
             values = (given.get(kind.name) or default(kind.name)).values
-            observables = published(kind).observables
-            known = points(paper)
+            observables, known = own.observables, points(paper)
             guessed = guesses(known)
             rows += [compare(p, observables[p.quantity](values, **p.where), guessed.get(p.id)) for p in known]
     return rows

@@ -115,7 +115,7 @@ class Instance:
     def rates(self) -> Callable[..., Any]:
         """What gives the derivatives of the continuous states."""
         two = self.version == 2
-        return self.fmu.getDerivatives if two else self.fmu.getContinuousStateDerivatives  # type: ignore[no-any-return]
+        return self.fmu.getDerivatives if two else self.fmu.getContinuousStateDerivatives
 
     def update(self) -> tuple[Any, ...]:
         """One event iteration: whether another is needed, whether to end, ... the next event's time."""

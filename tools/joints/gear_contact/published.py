@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from ...contact.interface import at_largest_spot
-from ...contact.laws.yu2022 import Yu2022
-from ..published import Published
-from .spring import GearContact
+from jointfmu.contact.interface import at_largest_spot
+from jointfmu.contact.laws.yu2022 import Yu2022
+from jointfmu.joints.gear_contact.spring import GearContact
+
+from ...published.computed import Published
 
 
 def claim(contact: GearContact, of: str, over: str) -> bool:
@@ -77,6 +78,7 @@ def _below_majumdar_bhushan(contact: GearContact) -> bool:
 
 
 PUBLISHED = Published(
+    papers=("yu2022",),
     observables={
         "claim": claim,
     },

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..quantity import Array
+from jointfmu.quantity import Array
 
 TIME = "time"
 

@@ -1,1 +1,0 @@
-"""Running FMUs: the host."""
