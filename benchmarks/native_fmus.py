@@ -24,7 +24,9 @@ from time import perf_counter
 import fmpy
 import numpy as np
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native import compiler, data, generate
+from jointfmu_fmu_src.native import data
+from jointfmu_fmu_src.native.code import generate
+from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.host import Instance
 
 from jointfmu.joints import MODELS

@@ -17,8 +17,8 @@ import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
-from jointfmu_fmu_src.native.cache import CACHE, COMPILER, compiler_cache, parts
-from jointfmu_fmu_src.native.compiler import TARGETS, libraries
+from jointfmu_fmu_src.native.compiled.cache import CACHE, COMPILER, compiler_cache, parts
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
 from jointfmu_tools.host import Instance
 
 settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
@@ -175,7 +175,7 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 @contextmanager
 def here_alone() -> Iterator[None]:
     """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
-    from jointfmu_fmu_src.native import kept
+    from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
     def here(*files: Any, **options: Any) -> dict[str, bytes]:

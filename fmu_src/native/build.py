@@ -12,11 +12,11 @@ from ..archive import pack, workshop
 from ..partners import PARTNERS
 from ..proof import proof
 from ..xml_parts import VARIABILITIES
-from .binary import finished
-from .compiler import exported, file_name, universal
+from .compiled.binary import finished
+from .compiled.compiler import exported, file_name, universal
+from .compiled.kept import part_of
 from .data import data_of, placeholder, split
 from .description import build_description, fmi2_xml, fmi3_xml
-from .kept import part_of
 from .page import documentation
 from .terminals import terminals_and_icons
 

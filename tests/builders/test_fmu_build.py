@@ -26,7 +26,7 @@ from conftest import refused_line, run_host
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native import generate
+from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.python import build as python_build
 from jointfmu_tools import cli

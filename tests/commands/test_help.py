@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from conftest import here_alone
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.native.cache import CACHE
+from jointfmu_fmu_src.native.compiled.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES

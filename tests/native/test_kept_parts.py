@@ -12,11 +12,11 @@ import pytest
 from conftest import RELEASED, Fmu, run_host
 from joint_cases import CASES, STATE, law, random_inputs
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native import cache, kept
-from jointfmu_fmu_src.native.ahead import structures
-from jointfmu_fmu_src.native.binary import finished
+from jointfmu_fmu_src.native.code.generate import sources
+from jointfmu_fmu_src.native.compiled import cache, kept
+from jointfmu_fmu_src.native.compiled.ahead import structures
+from jointfmu_fmu_src.native.compiled.binary import finished
 from jointfmu_fmu_src.native.data import PLACEHOLDER, block, data_of, placeholder, split
-from jointfmu_fmu_src.native.generate import sources
 from natives import close
 from test_bare import EXTRAS
 from test_native_binaries import check_signature, images, members

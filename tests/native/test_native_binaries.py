@@ -16,7 +16,7 @@ import lief
 import pytest
 from conftest import run_host
 from jointfmu_fmu_src.building import build
-from jointfmu_fmu_src.native import compiler
+from jointfmu_fmu_src.native.compiled import compiler
 
 from jointfmu.joints import MODELS
 

@@ -20,8 +20,8 @@ import lief
 import pytest
 from conftest import RELEASED
 from joint_cases import JOINTS
-from jointfmu_fmu_src.native.compiler import TARGETS
-from jointfmu_fmu_src.native.generate import RUNTIME, runtime, sources, token
+from jointfmu_fmu_src.native.code.generate import RUNTIME, runtime, sources, token
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from natives import SAID

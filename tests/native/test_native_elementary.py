@@ -8,9 +8,9 @@ from decimal import Decimal, localcontext
 import fmpy
 import numpy as np
 import pytest
-from jointfmu_fmu_src.native.compiler import file_name, libraries
-from jointfmu_fmu_src.native.elementary import tables
-from jointfmu_fmu_src.native.generate import RUNTIME
+from jointfmu_fmu_src.native.code.elementary import tables
+from jointfmu_fmu_src.native.code.generate import RUNTIME
+from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
 
 pytestmark = pytest.mark.slow
 

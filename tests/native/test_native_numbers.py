@@ -10,7 +10,7 @@ import pytest
 from jointfmu_fmu_src import joints
 from jointfmu_fmu_src.joint_parts.native import COUNTS, NUMBERS
 from jointfmu_fmu_src.joints.harmonic_drive import native as drive_native
-from jointfmu_fmu_src.native.generate import RUNTIME, sources
+from jointfmu_fmu_src.native.code.generate import RUNTIME, sources
 
 import jointfmu
 from jointfmu.joints import MODELS

@@ -20,7 +20,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy import read_model_description
-from jointfmu_fmu_src.native.compiler import TARGETS
+from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from natives import SAID
 
 from jointfmu.joints import MODELS

@@ -8,7 +8,7 @@ import fmpy
 import numpy as np
 import pytest
 from joint_cases import CASES
-from jointfmu_fmu_src.native import compiler
+from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.systems.fmu.assembly import assembly
 from jointfmu_tools.systems.fmu.build import build_system
 from jointfmu_tools.systems.system import system

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from jointfmu_fmu_src.joint_parts.graph import Graph
 from jointfmu_fmu_src.joint_parts.sliders import add_sliders
-from jointfmu_fmu_src.native import compiler, elementary
-from jointfmu_fmu_src.native.emit import HELPERS, function
-from jointfmu_fmu_src.native.generate import RUNTIME
+from jointfmu_fmu_src.native.code import elementary
+from jointfmu_fmu_src.native.code.emit import HELPERS, function
+from jointfmu_fmu_src.native.code.generate import RUNTIME
+from jointfmu_fmu_src.native.compiled import compiler
 
 from jointfmu.mechanics.jenkins import Sliders, beyond, direction, reaches, slide, trial
 

@@ -11,7 +11,7 @@ from shutil import copytree, ignore_patterns
 import pytest
 from conftest import Fmu, made_once
 from joint_cases import CASES, STATE, law, random_inputs
-from jointfmu_fmu_src.native.ahead import compile_ahead, structures
+from jointfmu_fmu_src.native.compiled.ahead import compile_ahead, structures
 from natives import VERSIONS, close
 from packaging.requirements import Requirement
 from test_native_binaries import BINARIES, members

@@ -10,7 +10,7 @@ import sys
 from importlib.resources import files
 from pathlib import Path
 
-from jointfmu_fmu_src.native.generate import sources
+from jointfmu_fmu_src.native.code.generate import sources
 from jointfmu_fmu_src.proof import proof
 from jointfmu_tools.cli import main
 

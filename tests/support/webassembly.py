@@ -9,9 +9,9 @@ from typing import Any
 
 import fmpy
 import numpy as np
-from jointfmu_fmu_src.native.compiler import file_name, libraries
+from jointfmu_fmu_src.native.code.generate import sources, token
+from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
 from jointfmu_fmu_src.native.description import fmi3_xml
-from jointfmu_fmu_src.native.generate import sources, token
 from jointfmu_tools.laboratory.describe import Module
 
 from jointfmu.quantity import build as make

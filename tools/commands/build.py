@@ -132,7 +132,7 @@ def add_cache(commands: Commands) -> None:
 
 def _cache(args: argparse.Namespace) -> int:
     try:
-        from jointfmu_fmu_src.native import cache
+        from jointfmu_fmu_src.native.compiled import cache
     except ImportError as error:
         raise without_package(error, "build") from None
     if args.clear:

@@ -10,8 +10,8 @@ from threading import Lock
 from typing import Any
 
 from jointfmu_fmu_src.joint_parts import RampPanel
-from jointfmu_fmu_src.native.compiler import webassembly
-from jointfmu_fmu_src.native.kept import keeping
+from jointfmu_fmu_src.native.compiled.compiler import webassembly
+from jointfmu_fmu_src.native.compiled.kept import keeping
 from jointfmu_fmu_src.native.page import panels
 from jointfmu_fmu_src.xml_parts import Listed, listed
 
@@ -48,7 +48,7 @@ class Module:
     def sources(self) -> dict[str, str]:
         """{file name: text} of all C sources: those of the FMU, and what the page calls."""
         # needs casadi, pages of the report do not
-        from jointfmu_fmu_src.native.generate import sources, token
+        from jointfmu_fmu_src.native.code.generate import sources, token
 
         files = sources(self.model.name, self.files[0])
         return files | self._added() | {"token.h": f'#define TOKEN "{token(files)}"\n'}

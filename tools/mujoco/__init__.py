@@ -6,7 +6,7 @@ from pathlib import Path
 
 import fmpy
 from jointfmu_fmu_src.archive import workshop
-from jointfmu_fmu_src.native.compiler import file_name, libraries
+from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
 
 INPUTS = ["phi1", "w1", "phi2", "w2"]
 TORQUES = ["tau1", "tau2"]

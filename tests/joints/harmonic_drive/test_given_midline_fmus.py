@@ -15,7 +15,7 @@ from fmpy.validation import validate_fmu
 from joint_cases import CASES, law, random_inputs
 from jointfmu_fmu_src.archive import pack
 from jointfmu_fmu_src.building import FLAVOURS, build
-from jointfmu_fmu_src.native import kept
+from jointfmu_fmu_src.native.compiled import kept
 from jointfmu_tools.joints.harmonic_drive.new import NEW
 from natives import Host, close
 

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from jointfmu_fmu_src.joint_parts.c_text import array, string
+from jointfmu_fmu_src.native.code.elementary import tables
+from jointfmu_fmu_src.native.code.generate import RUNTIME, code, native_part, runtime, variables_c
 from jointfmu_fmu_src.native.data import block, split
-from jointfmu_fmu_src.native.elementary import tables
-from jointfmu_fmu_src.native.generate import RUNTIME, code, native_part, runtime
-from jointfmu_fmu_src.native.variables_c import variables_c
 
 from .model import SystemComponent, SystemModel
 

@@ -5,7 +5,7 @@ from decimal import Decimal, localcontext
 from functools import cache
 from math import factorial
 
-from ..joint_parts.c_text import array, number
+from ...joint_parts.c_text import array, number
 
 PLACES = 128
 """Of the tables of exponential and logarithm."""

@@ -1,7 +1,7 @@
 """Compiled parts of FMUs, which all parameter files of one structure share: shipped, kept or compiled now.
 
 A part is found by what went into it: the structure, and the content of every source that it is made of.
-Wheels carry parts beside this file; what is compiled here is kept in the user's cache.
+Wheels carry parts in `native/parts`; what is compiled here is kept in the user's cache.
 """
 
 import io
@@ -24,13 +24,13 @@ from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
 
-from ..folders import own_folder
-from ..joint_parts.data import Split
+from ...folders import own_folder
+from ...joint_parts.data import Split
+from ..data import PLACEHOLDER, placeholder
 from .cache import parts
 from .compiler import exported, libraries
-from .data import PLACEHOLDER, placeholder
 
-SHIPPED = Path(__file__).with_name("parts")
+SHIPPED = Path(__file__).parent.with_name("parts")
 """Where wheels have theirs."""
 VERSIONS = ("2", "3")
 MOST_KEPT = 200
@@ -101,7 +101,7 @@ def _interrupt_after() -> Iterator[None]:
 def compiled(model: Model, parameters: ParameterFile, given: Split) -> Part:
     """The same, compiled now."""
     step(f"compile {model.name}")
-    from .generate import code
+    from ..code.generate import code
 
     with _interrupt_after():
         sources = code(model, parameters, given)
@@ -131,7 +131,7 @@ def _sources_of(model: Model) -> str:
     own = KINDS.get(model.joint)
     packages = {"jointfmu", own.package if own else "jointfmu"}
     roots = [Path(str(files(package))) for package in sorted(packages)]
-    here = Path(__file__).parent
+    here = Path(__file__).parent.parent
     return _digest((*roots, here, here.with_name("joint_parts"), own_folder(model)))
 
 

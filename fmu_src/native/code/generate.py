@@ -7,18 +7,19 @@ from jointfmu import __version__
 from jointfmu.joints import MODELS
 from jointfmu.joints.model import Model
 from jointfmu.parameters import ParameterFile
+from jointfmu.quantity import Interval
 
-from ..folders import own_folder, parts_of
-from ..joint_parts.data import Split
-from ..joint_parts.graph import graph
-from ..joint_parts.native import NativePart
-from ..partners import PARTNERS
-from .data import GENERATED, data_of, placeholder, split
+from ...folders import own_folder, parts_of
+from ...joint_parts.c_text import array, number, string
+from ...joint_parts.data import Split
+from ...joint_parts.graph import graph
+from ...joint_parts.native import NativePart
+from ...partners import PARTNERS
+from ..data import GENERATED, data_of, placeholder, split
 from .elementary import tables
 from .law_c import law_c
-from .variables_c import variables_c
 
-RUNTIME = Path(__file__).parent / "runtime"
+RUNTIME = Path(__file__).parent.with_name("runtime")
 _GENERATED = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
 
 
@@ -109,3 +110,44 @@ enum {{
 
 #endif
 """
+
+
+def variables_c(model: Model) -> str:
+    """variables.c: the list of variables with their intervals, and which output depends on what."""
+    rows = [_row("time", "s", "time", Interval())]
+    rows += [_row(v.name, v.unit, v.doc, v.interval) for v in model.inputs]
+    rows += [_row(v.name, v.unit, v.doc, Interval()) for v in model.outputs]
+    for name, item in model.parameter_fields().items():
+        meta = item.metadata
+        if "allowed" in meta:
+            rows.append(_row(name, "1", meta["doc"], Interval.of(ge=0.0, le=1.0), boolean=True))
+        else:
+            rows.append(_row(name, meta["unit"], meta["doc"], meta["interval"], meta["whole"]))
+    states = model.outputs[: model.states]
+    links = [
+        "{" + ", ".join(str(int(i.name in model.depends(o.name))) for i in (*model.inputs, *states)) + "}"
+        for o in model.outputs
+    ]
+    nominals = array("const double nominals[N_STATES]", [number(v.nominal) for v in states])
+    return (
+        '#include "variables.h"\n\n#include <math.h>\n\n'
+        + array("const Variable variables[N_VALUES]", rows)
+        + "\n"
+        + array("const unsigned char depends[N_OUTPUTS][N_INPUTS + N_STATES]", links)
+        + (nominals if states else "")
+    )
+
+
+def _row(
+    name: str,
+    unit: str,
+    doc: str,
+    allowed: Interval,
+    whole: bool = False,
+    boolean: bool = False,
+) -> str:
+    flags = ", ".join(str(int(flag)) for flag in (allowed.low_open, allowed.high_open, whole, boolean))
+    numbers = ", ".join(number(x) for x in (allowed.low, allowed.high))
+    interval = "" if boolean else str(allowed)
+    texts = ", ".join(string(x) for x in (name, "" if unit == "1" else unit, doc, interval))
+    return f"{{{texts}, {numbers}, {flags}}}"

@@ -10,9 +10,9 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import track
 from jointfmu.quantity import flat_fields
 
-from ..partners import PARTNERS
-from ..partners import parameters as partner_parameters
-from .data import split
+from ...partners import PARTNERS
+from ...partners import parameters as partner_parameters
+from ..data import split
 from .kept import part_of, shipped_name, written
 
 

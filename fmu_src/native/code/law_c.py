@@ -8,9 +8,9 @@ import jinja2
 
 from jointfmu.joints.model import Model
 
-from ..joint_parts.c_text import array, number, string
-from ..joint_parts.graph import Graph
-from ..joint_parts.native import NativePart, shared_definitions
+from ...joint_parts.c_text import array, number, string
+from ...joint_parts.graph import Graph
+from ...joint_parts.native import NativePart, shared_definitions
 from .emit import HELPERS, function
 
 _SHORT = 150

@@ -9,7 +9,7 @@ import struct
 from hashlib import sha256
 from uuid import UUID
 
-from .data import PLACEHOLDER, Data
+from ..data import PLACEHOLDER, Data
 
 _MACHO = struct.pack("<I", 0xFEEDFACF)
 _UUID, _CODE_SIGNATURE = 0x1B, 0x1D
