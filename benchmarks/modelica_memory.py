@@ -17,8 +17,8 @@ from scipy.interpolate import BPoly
 from validity_tables import heading, row
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.harmonic_drive.drive import kinematic_error
 from jointfmu.joints.harmonic_drive.friction import LIMITS, limits, viscous
-from jointfmu.joints.harmonic_drive.kinematic_error import kinematic_error
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, transmitted, wind_up
 from jointfmu.joints.harmonic_drive.spring import State as Spring
 from jointfmu.mechanics.sliders import SPREAD

@@ -2,9 +2,10 @@
 
 import casadi as ca
 
-from jointfmu.joints.harmonic_drive import friction, hysteresis, kinematic_error, lost_motion, spring
+from jointfmu.joints.harmonic_drive import friction, hysteresis, spring
+from jointfmu.joints.harmonic_drive.drive import HARMONICS, amplitudes, kinematic_error
 from jointfmu.joints.harmonic_drive.given import CatalogueDrive, Measured, Node
-from jointfmu.joints.harmonic_drive.law import PairDrive
+from jointfmu.joints.harmonic_drive.law import PairDrive, stiffness_with_play
 from jointfmu.joints.model import Model
 
 from ...joint_parts.graph import Graph, Symbols, symbols
@@ -21,7 +22,7 @@ def _functions(g: Graph, model: Model) -> None:
     elif isinstance(drive, PairDrive):
         (torque,) = symbols("x", 1)
         doc = "torque -> K_WTS, its slope"
-        g.add("stiffness", doc, [torque], lost_motion.stiffness_with_play(drive, torque))
+        g.add("stiffness", doc, [torque], stiffness_with_play(drive, torque))
         head = [drive.torque_smoothing, drive.max_torque, drive.K_FTS0]
         g.add("pair_head", "-> T_s, largest torque, K_FTS0", [], head)
     head = [drive.hysteresis_loss, drive.hysteresis_stiffness, drive.rated_torque]
@@ -30,10 +31,10 @@ def _functions(g: Graph, model: Model) -> None:
     g.add("slider_shares", "-> springs over K_h, friction over M_f", [], [*springs, *limits])
     inputs = [ca.SX.sym(i.name) for i in model.inputs]
     locked = _given_torque(model)
-    waves = [0.0] * 3 if locked else kinematic_error.kinematic_error(drive, inputs[0])
+    waves = [0.0] * 3 if locked else kinematic_error(drive, inputs[0])
     g.add("kinematic_error", "inputs -> kinematic error, its derivatives in phi1", inputs, waves)
-    amplitudes = [0.0 * a if locked else a for a in kinematic_error.amplitudes(drive)]
-    g.add("error_amplitudes", "-> of the kinematic error", [], amplitudes)
+    errors = [0.0 * a if locked else a for a in amplitudes(drive)]
+    g.add("error_amplitudes", "-> of the kinematic error", [], errors)
     x, load, stiffness, slid, loss, error, slope, dry = symbols("found", 8)
     turn: Symbols
     if locked:
@@ -79,7 +80,7 @@ COUNTS: Named = ((hysteresis, "MOST_CORRECTIONS"), (hysteresis, "SLIDERS"), (fri
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {"ARGUMENT_IS_LOAD": int(_given_torque(model)), "DRIVE_STEPS": spring.STEPS}
-    counts["N_HARMONICS"] = len(kinematic_error.HARMONICS)
+    counts["N_HARMONICS"] = len(HARMONICS)
     sliders = column("BRAKE_SPRINGS", "N_BRAKE_SPRINGS", friction.SPRINGS)
     sliders |= column("BRAKE_LIMITS", "N_BRAKE_LIMITS", friction.LIMITS)
     given = named(NUMBERS, COUNTS) | Definitions(counts) | sliders

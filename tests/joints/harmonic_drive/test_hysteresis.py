@@ -117,7 +117,7 @@ def test_lost_motion_is_what_the_catalogue_measures_beside_the_wind_up():
     torque = 0.04 * stiff.joint.rated_torque
     wound = [law.windup([torque, -torque])["phi_rel"] for law in (stiff, loose)]
     before, after = (float(angle[0] - angle[1]) for angle in wound)
-    assert after - before == pytest.approx(PLAY, rel=1e-3)  # as `lost_motion.WIDTH` says
+    assert after - before == pytest.approx(PLAY, rel=1e-3)  # as `WIDTH` says
     beyond = [float(law.windup(4.0)["phi_rel"]) for law in (stiff, loose)]
     assert beyond[1] - beyond[0] == pytest.approx(0.5 * PLAY, rel=1e-6)  # half, to six digits of the table
 

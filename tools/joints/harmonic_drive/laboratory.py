@@ -3,7 +3,7 @@
 import math
 
 from jointfmu.joints import MODELS
-from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
+from jointfmu.joints.harmonic_drive.drive import HARMONICS
 
 from ...laboratory.part import Example, LaboratoryModel, Shown, Turn
 from .efficiency import parameters, printed_drives

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import Drive, play
 from jointfmu.joints.harmonic_drive.given import CatalogueDrive, TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive, drive_stiffness
-from jointfmu.joints.harmonic_drive.lost_motion import play
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring, torque_curve
 from jointfmu.quantity import Array
 

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointfmu.joints.harmonic_drive.drive import Drive
-from jointfmu.joints.harmonic_drive.kinematic_error import HARMONICS
+from jointfmu.joints.harmonic_drive.drive import HARMONICS, Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.quantity import Array
 

@@ -28,9 +28,8 @@ from numpy.typing import ArrayLike
 from ...mechanics.jenkins import Moved, Sliders
 from ...mechanics.memory import Layout
 from ...quantity import Array, Number
-from .drive import Drive
+from .drive import WIDTH, Drive
 from .hysteresis import shares
-from .lost_motion import WIDTH
 
 BRAKES = 8
 """How many sliders: friction from rest within 1 % of M."""

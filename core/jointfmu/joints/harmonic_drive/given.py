@@ -12,8 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quantity import Array, Interval, Limit, Number, check, group, quantity, series, where
-from .drive import Drive
-from .lost_motion import WIDTH, play
+from .drive import WIDTH, Drive, play
 
 CORNER = 0.04
 """Usual half-width of a corner over its wind-up [1]: at the corners of catalogue drives the angle then is

@@ -11,7 +11,7 @@ from ...contact.laws.hu2023 import Hu2023, elastic_pressure
 from ...contact.laws.roughness import Roughness, RoughSurfaces
 from ...contact.surface import ArealSurface, Elastic, ElasticPlastic
 from ...quantity import Interval, Limit, Number, choice, group, quantity, where
-from .drive import Drive
+from .drive import Drive, play
 
 SETTLED = 2.0
 """Torque over rated torque [1] at whose pressure the pair settles under any larger torque."""
@@ -255,3 +255,11 @@ def drive_stiffness(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
     pair, growth = pair_stiffness(drive, torque)
     total = 1.0 / (1.0 / drive.K_FTS0 + 1.0 / pair)
     return total, (total / pair) ** 2 * growth
+
+
+def stiffness_with_play(drive: PairDrive, torque: Number) -> tuple[Number, Number]:
+    """K_WTS (...) [N.m/rad] of law and play in series, and dK_WTS/dT [1/rad]."""
+    K, growth = drive_stiffness(drive, torque)
+    _, compliance, change = play(drive, torque)
+    softer = 1.0 + K * compliance
+    return K / softer, (growth - K * K * change) / softer**2

@@ -10,13 +10,11 @@ from ...mechanics.curve import Curve, assemble, refined
 from ...mechanics.steps import mobility, stable_steps
 from ...quantity import Array, Number, check_limits
 from . import friction, hysteresis
-from .drive import Drive
+from .drive import Drive, kinematic_error
 from .friction import REFERENCE, Friction, limits, viscous
 from .given import Given
 from .hysteresis import Hysteresis
-from .kinematic_error import kinematic_error
-from .law import PairDrive
-from .lost_motion import stiffness_with_play
+from .law import PairDrive, stiffness_with_play
 
 STEPS = 160
 """Steps of the torque curve, doubled until it is accurate enough."""

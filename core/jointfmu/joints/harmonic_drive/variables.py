@@ -3,8 +3,8 @@
 from ...mechanics.steps import STEPS
 from ...quantity.units import LUBRICANTS
 from ..model import BEYOND, Loop, Model, Outside, Ramp, Values, Variable
+from .drive import HARMONICS
 from .friction import REFERENCE
-from .kinematic_error import HARMONICS
 from .law import HarmonicDrive
 from .spring import HarmonicDriveSpring
 

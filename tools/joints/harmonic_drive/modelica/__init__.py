@@ -4,10 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import WIDTH, Drive
 from jointfmu.joints.harmonic_drive.friction import LIMITS, REFERENCE, SPRINGS, TURNED
 from jointfmu.joints.harmonic_drive.hysteresis import exponent, shares
-from jointfmu.joints.harmonic_drive.lost_motion import WIDTH
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import flat_fields
