@@ -72,7 +72,7 @@ typedef struct {
 
 typedef struct {
     State now;
-    State kept;              /* to go back to where a step is refused */
+    State kept;              /* to go back to where a step is refused; one that is read from bytes */
     double tried[N_MEMORY + 1]; /* memory after the way of the last evaluation */
     double tabulated[N_PARAMETERS]; /* parameters of the tables */
     double seed[N_INPUTS + N_STATES], change[N_OUTPUTS]; /* of a derivative */
@@ -229,6 +229,6 @@ Status state_restore(Instance *m, const char *function, const void *saved);
 Status state_free(const Instance *m, const char *function, void **saved);
 Status state_size(const Instance *m, const char *function, const void *saved, size_t *size);
 Status state_write(const Instance *m, const char *function, const void *saved, void *bytes, size_t size);
-Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved);
+Status state_read(Instance *m, const char *function, const void *bytes, size_t size, void **saved);
 
 #endif

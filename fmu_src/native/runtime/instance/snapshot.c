@@ -173,18 +173,15 @@ static SavedState *new_state(const Instance *m, const char *function)
 }
 
 /* Give a state to the host: in its own, if it gives one back. */
-static Status hand_over(const Instance *m, const char *function, SavedState *made, void **saved)
+static Status hand_over(const Instance *m, const char *function, const State *state, void **saved)
 {
-    if (*saved && !is_saved(m, function, *saved)) {
-        free(made);
+    if (*saved && !is_saved(m, function, *saved))
         return ERROR;
-    }
-    if (*saved) {
-        ((SavedState *)*saved)->state = made->state;
-        free(made);
-    } else {
-        *saved = made;
-    }
+    SavedState *to = *saved ? *saved : new_state(m, function);
+    if (!to)
+        return ERROR;
+    to->state = *state;
+    *saved = to;
     return OK;
 }
 
@@ -193,15 +190,9 @@ static Status hand_over(const Instance *m, const char *function, SavedState *mad
 Status state_save(const Instance *m, const char *function, void **saved)
 {
     if (!instance_allows(m, function, BOTH | ANY_MODE) ||
-        !instance_has(m, function, "the pointer to the FMU state", saved) ||
-        (*saved && !is_saved(m, function, *saved)))
+        !instance_has(m, function, "the pointer to the FMU state", saved))
         return ERROR;
-    SavedState *to = *saved ? *saved : new_state(m, function);
-    if (!to)
-        return ERROR;
-    to->state = m->now;
-    *saved = to;
-    return OK;
+    return hand_over(m, function, &m->now, saved);
 }
 
 Status state_restore(Instance *m, const char *function, const void *saved)
@@ -253,7 +244,7 @@ Status state_write(const Instance *m, const char *function, const void *saved, v
     return OK;
 }
 
-Status state_read(const Instance *m, const char *function, const void *bytes, size_t size, void **saved)
+Status state_read(Instance *m, const char *function, const void *bytes, size_t size, void **saved)
 {
     if (!instance_allows(m, function, BOTH | ANY_MODE) ||
         !instance_has(m, function, "the array of bytes", bytes) ||
@@ -269,13 +260,8 @@ Status state_read(const Instance *m, const char *function, const void *bytes, si
     pass_bytes(&end, &written, 8);
     if (written != checksum(bytes, size - 8))
         return refuse_bytes(m, function, "corrupt: their checksum is wrong");
-    SavedState *made = new_state(m, function);
-    if (!made)
-        return ERROR;
-    pass(&from, &made->state);
-    if (!fits(m, function, &made->state)) {
-        free(made);
-        return ERROR;
-    }
-    return hand_over(m, function, made, saved);
+    State *read = &m->kept;
+    memset(read, 0, sizeof *read);
+    pass(&from, read);
+    return fits(m, function, read) ? hand_over(m, function, read, saved) : ERROR;
 }

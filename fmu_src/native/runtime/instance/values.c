@@ -196,9 +196,20 @@ Status instance_none(const Instance *m, const char *function, unsigned where, co
 
 /* Derivatives */
 
-/* Whether unknowns are outputs and knowns inputs, and the outputs right. */
+static bool are_finite(const Instance *m, const char *function, const uint32_t refs[], size_t n, const double values[])
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(values[i]))
+            return instance_refuse(m, function,
+                                   "the derivative of %s is not finite; expected a finite seed, not too large",
+                                   variables[refs[i]].name) == OK;
+    return true;
+}
+
+/* Whether unknowns are outputs and knowns inputs, and the outputs right; the seed is of so many of them. */
 static bool can_differentiate(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
-                              const uint32_t knowns[], size_t n_knowns, const double seed[], const double result[])
+                              const uint32_t knowns[], size_t n_knowns, const uint32_t seeded[], size_t n,
+                              const double seed[], const double result[])
 {
     if (!instance_allows(m, function, BOTH | READABLE) ||
         (n_unknowns && !instance_has(m, function, "the array of unknowns", unknowns)) ||
@@ -214,8 +225,10 @@ static bool can_differentiate(Instance *m, const char *function, const uint32_t 
             !(is_input(knowns[i]) || is_state(knowns[i]) ||
               refused(m, function, knowns[i], " is among the knowns; expected inputs")))
             return false;
-    return instance_evaluate(m) == OK && instance_has(m, function, "the seed", seed) &&
-           instance_has(m, function, "the array of sensitivities", result);
+    const size_t n_results = n_unknowns + n_knowns - n;
+    return instance_evaluate(m) == OK && (n == 0 || instance_has(m, function, "the seed", seed)) &&
+           (n_results == 0 || instance_has(m, function, "the array of sensitivities", result)) &&
+           are_finite(m, function, seeded, n, seed);
 }
 
 /* Change of the outputs along m->seed. */
@@ -224,45 +237,25 @@ static void differentiate(Instance *m)
     joint_derivative(m->joint, m->now.values + FIRST_INPUT, memory_of(m), memory_after(m), m->seed, m->change);
 }
 
-static bool is_finite(const Instance *m, const char *function, uint32_t ref, double value)
-{
-    return isfinite(value) || instance_refuse(m, function,
-                                              "the derivative of %s is not finite; expected a finite seed, not too large",
-                                              variables[ref].name) == OK;
-}
-
 Status instance_derivative(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                            const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
 {
-    const double nothing = 0.0;
-    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, n_knowns ? seed : &nothing,
-                           n_unknowns ? result : &nothing))
+    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, knowns, n_knowns, seed, result))
         return ERROR;
     memset(m->seed, 0, sizeof m->seed);
-    for (size_t i = 0; i < n_knowns; i++) {
-        if (!is_finite(m, function, knowns[i], seed[i]))
-            return ERROR;
+    for (size_t i = 0; i < n_knowns; i++)
         m->seed[knowns[i] - FIRST_INPUT] += seed[i];
-    }
     differentiate(m);
-    for (size_t i = 0; i < n_unknowns; i++) {
+    for (size_t i = 0; i < n_unknowns; i++)
         result[i] = m->change[unknowns[i] - FIRST_OUTPUT];
-        if (!is_finite(m, function, unknowns[i], result[i]))
-            return ERROR;
-    }
-    return OK;
+    return are_finite(m, function, unknowns, n_unknowns, result) ? OK : ERROR;
 }
 
 Status instance_adjoint(Instance *m, const char *function, const uint32_t unknowns[], size_t n_unknowns,
                         const uint32_t knowns[], size_t n_knowns, const double seed[], double result[])
 {
-    const double nothing = 0.0;
-    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, n_unknowns ? seed : &nothing,
-                           n_knowns ? result : &nothing))
+    if (!can_differentiate(m, function, unknowns, n_unknowns, knowns, n_knowns, unknowns, n_unknowns, seed, result))
         return ERROR;
-    for (size_t i = 0; i < n_unknowns; i++)
-        if (!is_finite(m, function, unknowns[i], seed[i]))
-            return ERROR;
     for (size_t j = 0; j < n_knowns; j++) {
         memset(m->seed, 0, sizeof m->seed);
         m->seed[knowns[j] - FIRST_INPUT] = 1.0;
@@ -270,8 +263,6 @@ Status instance_adjoint(Instance *m, const char *function, const uint32_t unknow
         result[j] = 0.0;
         for (size_t i = 0; i < n_unknowns; i++)
             result[j] += seed[i] * m->change[unknowns[i] - FIRST_OUTPUT];
-        if (!is_finite(m, function, knowns[j], result[j]))
-            return ERROR;
     }
-    return OK;
+    return are_finite(m, function, knowns, n_knowns, result) ? OK : ERROR;
 }
