@@ -4,11 +4,10 @@ Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surf
 """
 
 import numpy as np
+from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import form
 from jointfmu_tools.surfaces.form import without_form
 from surface_round_trip import FRESH, gaussian
-
-from jointfmu.contact import fractal
 
 SHARES = (1.0, 0.5, 0.25)
 """Longest wave over the side of the scan."""

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import interface_laws as compare
 import numpy as np
+from jointfmu_tools.fractal import rms_height
 from measured_joints import measured
 from validity_pictures import GAMMA
 from validity_tables import heading, row
 
-from jointfmu.contact.fractal import rms_height
 from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
 from jointfmu.contact.roughness import height, level
 from jointfmu.parameters import default

@@ -4,13 +4,13 @@ import math
 from pathlib import Path
 from typing import Any
 
-from jointfmu.contact import fractal
 from jointfmu.contact.laws import LAWS, ROUGHNESS_LAW
 from jointfmu.contact.roughness import DECLARED, check, height
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build, flat_fields, flatten
 
+from . import fractal
 from .judgement import known_height
 
 ROW = ("largest_spot", "pressure", "F", "K_N", "K_T", "A_r", "eta_n", "eta_t")

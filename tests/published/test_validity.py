@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from jointfmu_tools import fractal
 from jointfmu_tools.surfaces.synthesis import periodic
 
-from jointfmu.contact import fractal
 from jointfmu.contact.interface import at_pressure, stiffness_curve
 
 pytest.importorskip("tamaas", reason="tamaas has wheels for Linux x86_64 only")

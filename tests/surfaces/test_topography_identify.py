@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import refused_line
-from jointfmu_tools import cli
+from jointfmu_tools import cli, fractal
 from jointfmu_tools.surfaces import synthesis
 from jointfmu_tools.surfaces.fit import fit
 from jointfmu_tools.surfaces.form import without_form
@@ -18,7 +18,6 @@ from jointfmu_tools.surfaces.results import RoughnessEstimate
 from jointfmu_tools.surfaces.spectrum import psd, structure
 from scipy.integrate import quad
 
-from jointfmu.contact import fractal
 from jointfmu.joints import KINDS
 from jointfmu.parameters import default, dump, load
 

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
+from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import form, synthesis
 from jointfmu_tools.surfaces.form import without_form
 from jointfmu_tools.surfaces.heights import Areal, Profile
-
-from jointfmu.contact import fractal
 
 SIZE, POINTS, G = 1e-3, 256, 1e-9
 

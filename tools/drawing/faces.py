@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from jointfmu.contact import fractal, roughness
+from jointfmu.contact import roughness
 from jointfmu.quantity import Number
 
+from .. import fractal
 from ..joint_parts import Option
 from ..surfaces import form, reading
 from .part import Given, Sheet

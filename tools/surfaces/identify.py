@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointfmu.contact import fractal
 from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
 
+from .. import fractal
 from .fit import SelfAffineLaw, fit
 from .form import check_wave, default_wave, of_scan, prepare
 from .heights import Areal, Heights

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from jointfmu.contact.fractal import second_difference
 from jointfmu.quantity import Array
 
 from .. import plots
+from ..fractal import second_difference
 from .fit import SelfAffineLaw
 from .form import Repair, ScanRoughness
 from .heights import Areal

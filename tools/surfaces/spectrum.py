@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.contact.fractal import second_difference, structure_constant
 from jointfmu.quantity import Array
 
+from ..fractal import second_difference, structure_constant
 from .heights import Areal, Heights
 
 METHODS = ("structure", "psd")

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.contact.fractal import wave_power
 from jointfmu.quantity import Array, Interval, Limit, check, quantity
 
+from ..fractal import wave_power
 from .heights import Areal, Profile
 
 

@@ -249,7 +249,7 @@ def test_options_of_the_bolts(capsys):
 
 
 def test_zhao_2018_gets_the_same_height(capsys, tmp_path):
-    from jointfmu.contact import fractal
+    from jointfmu_tools import fractal
 
     path = tmp_path / "plate.toml"
     made(capsys, *PLATE, *FACES, *LOAD, "--law", "zhao2018", path=path)

@@ -6,7 +6,6 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 
-from jointfmu.contact.fractal import zhao_roughness
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.contact.roughness import GAMMA, height, level
 from jointfmu.joints import KINDS
@@ -14,6 +13,7 @@ from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
 from ...command_line.common import tell
+from ...fractal import zhao_roughness
 from ...judgement import Judgement
 from ...pressure import judge_file
 from ...shown import aligned

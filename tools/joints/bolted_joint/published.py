@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointfmu.contact.fractal import height
 from jointfmu.contact.laws import mindlin
 from jointfmu.contact.laws import zhao2018 as zhao
 from jointfmu.contact.surface import domain_extension
 from jointfmu.joints.bolted_joint.law import BoltedJoint, bolt_pattern, pressures, row_forces
 from jointfmu.mechanics.footprint.bolts import cells, pressure_shape, unit_pressures
 
+from ...fractal import height
 from ...published.computed import CalibrationFit, Published
 
 

@@ -7,7 +7,7 @@ The derivations are in docs/surfaces.md.
 
 import numpy as np
 
-from ..quantity import Number
+from jointfmu.quantity import Number
 
 
 def wave_power(frequency: Number, H: Number, G: Number) -> Number:
