@@ -21,7 +21,7 @@ from typing import Any
 
 from .contact import roughness
 from .joints import KINDS
-from .quantity import build, changed, flat_fields, flatten, problem, quantity
+from .quantity import build, changed, flat_fields, flatten, problem, problems, quantity
 
 SCHEMA = 1
 ORIGINS = ("published", "derived", "catalogue", "estimate", "calibration", "user")
@@ -289,15 +289,9 @@ def _start_values(joint: str, given: Mapping[str, Any]) -> dict[str, float]:
 
     Raises ValueError, one line, naming every unknown name and every value outside its interval.
     """
-    declared = _input_fields(joint)
     named = {_INPUTS + name: value for name, value in given.items()}
-    problems = [f"unknown name {name!r}" for name in named if name not in declared]
-    if problems:
-        problems.append(f"allowed are {', '.join(declared)}")
-    texts = (problem(name, value, declared[name]) for name, value in named.items() if name in declared)
-    problems += [text for text in texts if text]
-    if problems:
-        raise ValueError("; ".join(problems))
+    if texts := problems(named, _input_fields(joint)):
+        raise ValueError("; ".join(texts))
     return {name: float(value) for name, value in given.items()}
 
 
@@ -348,20 +342,3 @@ def _quoted(text: str) -> str:
 def default(joint: str, law: str | None = None) -> ParameterFile:
     """The default parameter set of a joint, shipped with the package; with its first law, or another."""
     return load(KINDS[joint].default_file(law), joint)
-
-
-def parse_setting(text: str) -> tuple[str, Any]:
-    """`NAME=VALUE` of the command line: a number, true, false or a word.
-
-    Raises ValueError if there is no `=` or no name.
-    """
-    name, equals, value = text.partition("=")
-    if not equals or not name.strip():
-        raise ValueError(f"{text!r} is no setting; expected NAME=VALUE")
-    value = value.strip()
-    if value.lower() in ("true", "false"):
-        return name.strip(), value.lower() == "true"
-    try:
-        return name.strip(), float(value)
-    except ValueError:
-        return name.strip(), value

@@ -7,10 +7,11 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from jointfmu_tools.command_line.common import parse_setting
 
 from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
-from jointfmu.parameters import ORIGINS, default, dump, load, parse_setting
+from jointfmu.parameters import ORIGINS, default, dump, load
 from jointfmu.quantity import flat_fields, flatten
 
 each_joint = pytest.mark.parametrize("joint", KINDS)

@@ -8,8 +8,6 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
 
-from jointfmu.parameters import parse_setting
-
 from ..judgement import Judgement
 from .examples import BEFORE, EXAMPLES
 
@@ -116,6 +114,23 @@ def settings(sub: argparse.ArgumentParser) -> None:
         help="set parameters (SI units)",
     )
     sub.set_defaults(options={"settings": "set"})
+
+
+def parse_setting(text: str) -> tuple[str, Any]:
+    """`NAME=VALUE` of the command line: a number, true, false or a word.
+
+    Raises ValueError if there is no `=` or no name.
+    """
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise ValueError(f"{text!r} is no setting; expected NAME=VALUE")
+    value = value.strip()
+    if value.lower() in ("true", "false"):
+        return name.strip(), value.lower() == "true"
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        return name.strip(), value
 
 
 def _setting(text: str) -> tuple[str, object]:

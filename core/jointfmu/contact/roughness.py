@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..quantity import Number, problem, quantity
+from ..quantity import Number, problems, quantity
 
 GAMMA = 0.45
 """Decay length of the pressure over the rms height [1]: p ~ exp(approach/(GAMMA h)) in elastic contact of
@@ -70,21 +70,17 @@ def check(stated: Mapping[str, Any], prefix: str = "") -> dict[str, float]:
 
     Raises ValueError, one line: an unknown name, no number, outside (0, inf), or two heights of one side.
     """
-    problems = [f"unknown name {prefix + name!r}" for name in stated if name not in DECLARED]
-    if problems:
-        problems.append(f"allowed are {', '.join(prefix + name for name in DECLARED)}")
-    known = {name: value for name, value in stated.items() if name in DECLARED}
-    texts = (problem(prefix + name, value, DECLARED[name]) for name, value in known.items())
-    problems += [text for text in texts if text]
-    for name in known:
-        beside = [other for other in excluded(name) if other in known]
+    declared = {prefix + name: item for name, item in DECLARED.items()}
+    texts = problems({prefix + name: value for name, value in stated.items()}, declared)
+    for name in (name for name in stated if name in DECLARED):
+        beside = [other for other in excluded(name) if other in stated]
         if beside:
             others = ", ".join(prefix + other for other in beside)
-            problems.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
+            texts.append(f"{prefix}{name} beside {others}: expected one height of each side, or h alone")
             break
-    if problems:
-        raise ValueError("; ".join(problems))
-    return {name: float(value) for name, value in known.items()}
+    if texts:
+        raise ValueError("; ".join(texts))
+    return {name: float(value) for name, value in stated.items()}
 
 
 def height(stated: Mapping[str, float]) -> float | None:

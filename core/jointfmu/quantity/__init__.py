@@ -1,6 +1,6 @@
 """The one place where a physical field declares its SI unit, open or closed interval and meaning."""
 
-from .declaration import Checked, check, choice, group, problem, quantity, series
+from .declaration import Checked, check, choice, group, problem, problems, quantity, series
 from .interval import Array, Interval, Number, erf, where
 from .parameter_set import Limit, assemble, build, changed, check_limits, flat_fields, flatten
 from .smooth import smooth_step, smooth_step_integral, smooth_step_slopes
@@ -22,6 +22,7 @@ __all__ = [
     "flatten",
     "group",
     "problem",
+    "problems",
     "quantity",
     "series",
     "smooth_step",

@@ -1,5 +1,6 @@
 """A physical field declares its SI unit, open or closed interval and meaning, and is checked against them."""
 
+from collections.abc import Collection, Mapping
 from dataclasses import MISSING, Field, field, fields
 from typing import Any
 
@@ -99,6 +100,19 @@ def problem(name: str, value: object, item: Field[object]) -> str | None:
     return None
 
 
+def problems(
+    values: Mapping[str, object], declared: Mapping[str, Field[Any]], missing: Collection[str] = ()
+) -> list[str]:
+    """Texts of all that is wrong with {name: value}: unknown names, missing ones, and what `problem` says."""
+    texts = [f"unknown name {name!r}" for name in values if name not in declared]
+    if texts:
+        texts.append(f"allowed are {', '.join(declared)}")
+    if missing:
+        texts.append(f"missing {', '.join(missing)}")
+    known = (problem(name, value, declared[name]) for name, value in values.items() if name in declared)
+    return texts + [text for text in known if text]
+
+
 def _series_problem(name: str, values: object, item: Field[object]) -> str | None:
     """As `problem`, of the first of some numbers that is wrong."""
     if values == () and item.default == ():
@@ -106,8 +120,8 @@ def _series_problem(name: str, values: object, item: Field[object]) -> str | Non
     if not isinstance(values, list | tuple) or not values:
         return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
     number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})
-    problems = (problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
-    return next((text for text in problems if text), None)
+    texts = (problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
+    return next((text for text in texts if text), None)
 
 
 def _shown(value: object) -> str:
@@ -117,12 +131,8 @@ def _shown(value: object) -> str:
 
 def check(obj: Any) -> None:
     """Raise ValueError naming every field of `obj` outside its interval (NaN and infinity included)."""
-    problems = (
-        problem(label(item), getattr(obj, item.name), item)
-        for item in fields(obj)
-        if "group" not in item.metadata
-    )
-    if texts := [text for text in problems if text]:
+    own = {label(item): item for item in fields(obj) if "group" not in item.metadata}
+    if texts := problems({name: getattr(obj, item.name) for name, item in own.items()}, own):
         raise ValueError("; ".join(texts))
 
 

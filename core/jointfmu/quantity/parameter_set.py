@@ -5,7 +5,7 @@ from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
 
-from .declaration import label, problem
+from .declaration import label, problems
 from .interval import Interval, Number
 
 T = TypeVar("T")
@@ -97,14 +97,7 @@ def build(cls: type[T], values: Mapping[str, object]) -> T:
     """
     known = dict(flat_fields(cls, names=values))
     required = {name for name, item in known.items() if item.default is MISSING}
-    texts = [f"unknown name {name!r}" for name in values if name not in known]
-    if texts:
-        texts.append(f"allowed are {', '.join(known)}")
-    if missing := sorted(required - values.keys()):
-        texts.append(f"missing {', '.join(missing)}")
-    problems = (problem(name, value, known[name]) for name, value in values.items() if name in known)
-    texts += [text for text in problems if text]
-    if texts:
+    if texts := problems(values, known, sorted(required - values.keys())):
         raise ValueError("; ".join(texts))
     plain = {name: _plain(value) for name, value in values.items()}
     return assemble(cls, plain, lambda part, arguments: part(**arguments))
