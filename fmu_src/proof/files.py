@@ -136,9 +136,13 @@ def archive(
         for path in series:
             if path.endswith("_ref.csv"):
                 related.append(RelatedFile(path, standard.CSV, "result", "reference result of the package"))
-    members["fmi-ls-manifest.xml"] = manifest_xml(related)
-    found = {f"{standard.FOLDER}/{path}": content for path, content in members.items()}
-    return found | {TEXT: _text(own, experiments, native).encode()}
+    return placed(members, related, _text(own, experiments, native))
+
+
+def placed(members: Mapping[str, bytes], related: Sequence[RelatedFile], page: str) -> dict[str, bytes]:
+    """{path in the FMU: content} of a proof: its files, their manifest, and the page that explains it."""
+    files = {**members, "fmi-ls-manifest.xml": _manifest(related)}
+    return {f"{standard.FOLDER}/{path}": content for path, content in files.items()} | {TEXT: page.encode()}
 
 
 def slug(name: str) -> str:
@@ -177,7 +181,7 @@ def _parameter_set(model: Model, name: str, values: Mapping[str, object]) -> byt
     return parameter_set(name, {n: Value(value, units[n]) for n, value in values.items()})
 
 
-def manifest_xml(related: Sequence[RelatedFile]) -> bytes:
+def _manifest(related: Sequence[RelatedFile]) -> bytes:
     """The manifest of FMI-LS-REF."""
     head = {"name": standard.NAME, "version": standard.VERSION, "description": standard.DESCRIPTION}
     root = Element("fmiReferences", {"xmlns:fmi-ls": standard.ATTRIBUTES})

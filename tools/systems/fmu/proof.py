@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from jointfmu_fmu_src.proof import standard
-from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, manifest_xml
+from jointfmu_fmu_src.proof.files import TEXT, RelatedFile, placed
 from jointfmu_fmu_src.proof.series import TimeSeries, text
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 from jointfmu_fmu_src.xml_parts import serialized
@@ -95,7 +95,6 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         members[path] = _experiments(model, count * step, steps, scales)
         labels = {interface: "steps of stepSize"}
         related.append(RelatedFile(path, standard.EXPERIMENTS, "experiment/validation", model.doc, labels))
-    members["fmi-ls-manifest.xml"] = manifest_xml(related)
     page = _PAGE.format(
         standard=standard.NAME,
         version=standard.VERSION,
@@ -108,8 +107,7 @@ def proof(model: Model, stop: float, interval: float, fmu: Path) -> dict[str, by
         small=SMALL,
         near=FINE * NEAR * fine,
     )
-    placed = {f"{standard.FOLDER}/{path}": content for path, content in members.items()}
-    return placed | {TEXT: page.encode()}
+    return placed(members, related, page)
 
 
 def _exchanged(model: Model, fmu: Path, times: np.ndarray) -> TimeSeries:
