@@ -174,10 +174,3 @@ TorqueCurve: type[_Bernstein] = make_dataclass(
     frozen=True,
     kw_only=True,
 )
-
-
-PARTNERS: dict[str, type[object]] = {
-    cls.__name__: cls
-    for cls in (RotationalInertia, TranslationalMass, TorqueProfile, ForceProfile, AngleProfile, TorqueCurve)
-}
-"""{FMU: parameters} of all."""

@@ -20,7 +20,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jointfmu_fmu_src.partners.laws import PARTNERS
+from jointfmu_fmu_src.partners import PARTNERS
 
 from jointfmu.joints import MODELS
 from jointfmu.parameters import ParameterFile, default, entries, read_document
@@ -227,8 +227,8 @@ def _component(path: Path, name: str, section: Any) -> Component:
                 raise ValueError(
                     f"{name}.{key} = {section[key]!r}, expected none of a {model}, only its values"
                 )
-        file, declared, inputs = None, dict(flat_fields(PARTNERS[model])), {}
-        needed = getattr(PARTNERS[model], "inertia", None)
+        file, declared, inputs = None, dict(flat_fields(PARTNERS[model].parameters)), {}
+        needed = getattr(PARTNERS[model].parameters, "inertia", None)
         if needed and needed not in section:
             meant = declared[needed].metadata
             raise ValueError(f"{name}.{needed} is not stated, expected the {meant['doc']} [{meant['unit']}]")
@@ -261,5 +261,5 @@ def _component(path: Path, name: str, section: Any) -> Component:
 def _exposed(model: str, file: ParameterFile | None) -> dict[str, Any]:
     """Fields of the parameters that an FMU has."""
     if file is None:
-        return dict(flat_fields(PARTNERS[model]))
+        return dict(flat_fields(PARTNERS[model].parameters))
     return MODELS[model].of(file.joint, file.values).parameter_fields()
