@@ -59,6 +59,19 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
+_METAVARS: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
+
+
+def argument(
+    sub: "argparse._ActionsContainer", name: str, kind: type, text: str, metavar: str = "", **more: Any
+) -> None:
+    """Declare what takes values of a type; a default that is stated is told."""
+    if "default" in more:
+        default = more["default"]
+        text += f" (default: {f'{default:g}' if kind is float else default})"
+    sub.add_argument(name, type=kind, metavar=metavar or _METAVARS[kind], help=text, **more)
+
+
 def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
     """Declare a command with `--json`."""
     sub: Parser = commands.add_parser(name, help=text, description=text)

@@ -13,7 +13,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..command_line.common import Commands, command, tell, without_package
+from ..command_line.common import Commands, argument, command, tell, without_package
 from ..pressure import judge_file
 
 SHOWN = 3
@@ -23,9 +23,7 @@ SHOWN = 3
 def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "build", _build, "build FMUs")
-    make.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"FMUs to build: {', '.join(MODELS)} (default: all)"
-    )
+    argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
         "--flavour",
         nargs="+",
@@ -33,13 +31,9 @@ def add(commands: Commands) -> None:
         metavar="FLAVOUR",
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
-    make.add_argument(
-        "--name",
-        metavar="NAME",
-        help="model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
-        "names stand side by side in one model",
-    )
-    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
+    text = "model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
+    argument(make, "--name", str, text + "names stand side by side in one model")
+    argument(make, "--params", Path, "parameter file with other defaults (TOML)")
     make.add_argument(
         "--parameters",
         choices=("tunable", "fixed"),
@@ -50,7 +44,7 @@ def add(commands: Commands) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
 def _build(args: argparse.Namespace) -> int:

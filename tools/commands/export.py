@@ -10,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
-from ..command_line.common import Commands, command, flag, joint_name, tell, without_package
+from ..command_line.common import Commands, argument, command, flag, joint_name, tell, without_package
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
@@ -42,7 +42,7 @@ def add(commands: Commands) -> None:
         f"{', '.join(ROBOTS)}: a drive's parameter file or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
-    joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    argument(joint, "--params", Path, "parameter file of the joint (TOML)")
     joint.add_argument(
         "--joint",
         type=joint_name,
@@ -51,37 +51,20 @@ def add(commands: Commands) -> None:
         help=f"a default joint ({with_springs[0]})",
     )
     for name, texts in _working_points().items():
-        export.add_argument(flag(name), type=float, metavar="VALUE", help="; ".join(texts))
-    export.add_argument(
-        "--nodes",
-        type=Path,
-        metavar="CSV",
-        help="springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
-        "pressure [MPa] instead of a working point",
-    )
-    export.add_argument(
-        "--first", type=int, metavar="N", help="springs: first number free for elements and nodes (1)"
-    )
-    export.add_argument(
-        "--first-set",
-        type=int,
-        metavar="N",
-        help="ansys: first number free for element types and sets of real constants (1)",
-    )
+        argument(export, flag(name), float, "; ".join(texts))
+    text = "springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
+    argument(export, "--nodes", Path, text + "pressure [MPa] instead of a working point", "CSV")
+    argument(export, "--first", int, "springs: first number free for elements and nodes (1)")
+    text = "ansys: first number free for element types and sets of real constants (1)"
+    argument(export, "--first-set", int, text)
     export.add_argument("--normal", choices=list(AXES), help="springs: axis along the joint's normal (z)")
     export.add_argument(
         "--units", choices=list(UNITS), default=SI.name, help=f"units of the file ({SI.name})"
     )
-    export.add_argument(
-        "--error", type=float, metavar="E", help=f"tables: largest error by straight lines ({ERROR:g})"
-    )
-    export.add_argument(
-        "--torque",
-        type=float,
-        metavar="T",
-        help=f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)",
-    )
-    export.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write")
+    argument(export, "--error", float, f"tables: largest error by straight lines ({ERROR:g})", "E")
+    text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)"
+    argument(export, "--torque", float, text, "T")
+    argument(export, "--out", Path, "file to write", required=True)
 
 
 def _working_points() -> dict[str, list[str]]:

@@ -12,7 +12,7 @@ from jointfmu.parameters import load
 from jointfmu.progress import step
 
 from .. import columns, plots
-from ..command_line.common import Commands, Parser, command, flag, tell, written
+from ..command_line.common import Commands, Parser, argument, command, flag, tell, written
 from ..drawing.reading import number
 from ..fitting.outcome import percent
 from ..fitting.procedure import Procedure, procedures
@@ -37,13 +37,13 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     text = "; ".join(procedure.text for procedure in choices.values())
     sub = command(ways, first.name, partial(_fit, choices), f"fit {text}")
     if first.file:
-        text = "CSV; the heading names columns and units"
-        sub.add_argument("file", type=Path, nargs="+" if first.many else None, metavar="FILE", help=text)
-    sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
-    sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
+        many = "+" if first.many else None
+        argument(sub, "file", Path, "CSV; the heading names columns and units", nargs=many)
+    argument(sub, "--params", Path, "parameter file to start from (TOML)")
+    argument(sub, "--free", str, "parameters to fit", nargs="+")
     written(sub)
     sub.add_argument("--force", action="store_true", help="write a fit that says nothing of the joint too")
-    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
+    argument(sub, "--plot", Path, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         declare(sub, option)
 

@@ -14,7 +14,7 @@ from jointfmu.judgement import judge, known_height, law_height
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flatten
 
-from ..command_line.common import Commands, command, settings, tell
+from ..command_line.common import Commands, argument, command, settings, tell
 from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
 
 
@@ -24,11 +24,9 @@ def add(commands: Commands) -> None:
     laws = [name for name in LAWS if joints_of(name)]
     law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
     at = law.add_mutually_exclusive_group(required=True)
-    at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
-    at.add_argument(
-        "--largest-spot", type=float, nargs="+", metavar="A", help="area of the largest spot [m2]"
-    )
-    law.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    argument(at, "--pressure", float, "nominal pressure [Pa]", "P", nargs="+")
+    argument(at, "--largest-spot", float, "area of the largest spot [m2]", "A", nargs="+")
+    argument(law, "--params", Path, "parameter file of the joint (TOML)")
     settings(law)
 
 

@@ -10,25 +10,20 @@ from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
-from ..command_line.common import Commands, command, flag, tell, without_package
+from ..command_line.common import Commands, argument, command, flag, tell, without_package
 from ..pressure import judge_file
 
 
 def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
-    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file of one joint (TOML)")
+    argument(make, "--params", Path, "parameter file of one joint (TOML)")
     for name, kinds in _inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
-        make.add_argument(
-            flag(name),
-            type=float,
-            nargs="+" if first else None,
-            metavar="VALUE",
-            help="; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
-            + ("" if first else " (default: 0)"),
-        )
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+        text = "; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
+        text += "" if first else " (default: 0)"
+        argument(make, flag(name), float, text, nargs="+" if first else None)
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
 def _modelica(args: argparse.Namespace) -> int:

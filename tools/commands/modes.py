@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
-from ..command_line.common import Commands, command, tell
+from ..command_line.common import Commands, argument, command, tell
 from ..fem import installed
 from ..fields.clamped import clamping
 from .footprint.compute import assembly_arguments, joint_file, judge_assembly, with_assembly
@@ -26,12 +26,10 @@ def add(commands: Commands) -> None:
     text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
     sub = command(commands, "modes", run, text)
     assembly_arguments(sub)
-    sub.add_argument("--moment", type=float, default=0.0, metavar="M", help="about x [N.m] (default: 0)")
-    sub.add_argument("--count", type=int, default=6, metavar="N", help=f"modes, 1 to {MOST} (default: 6)")
-    sub.add_argument(
-        "--refinement", type=float, default=1.0, metavar="R", help="divides all element sizes (default: 1)"
-    )
-    sub.add_argument("--vtu", type=Path, metavar="FILE", help="write the shapes of the modes (.vtu)")
+    argument(sub, "--moment", float, "about x [N.m]", "M", default=0.0)
+    argument(sub, "--count", int, f"modes, 1 to {MOST}", default=6)
+    argument(sub, "--refinement", float, "divides all element sizes", "R", default=1.0)
+    argument(sub, "--vtu", Path, "write the shapes of the modes (.vtu)")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -13,7 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
-from ..command_line.common import Commands, Parser, command, tell
+from ..command_line.common import Commands, Parser, argument, command, tell
 from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made
@@ -41,8 +41,8 @@ def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     sub.example = f"new {name} {drawing.example} --out my.toml"
     for option in drawing.options:
         declare(sub, option)
-    sub.add_argument("--name", metavar="NAME", help="of the parameter set (default: by its sizes)")
-    sub.add_argument("--out", type=Path, metavar="FILE", help="write the parameter file (TOML)")
+    argument(sub, "--name", str, "of the parameter set (default: by its sizes)")
+    argument(sub, "--out", Path, "write the parameter file (TOML)")
 
 
 def _make(drawing: Drawing, args: argparse.Namespace) -> int:
@@ -149,8 +149,7 @@ TABLES = {"materials": _materials, "finishes": _finishes, "bolts": _bolts}
 def add_catalogue(commands: Commands) -> None:
     """Declare the command."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
-    text = "parts of a name, as CSG-17, csg25-100 or csg 25 100"
-    sub.add_argument("words", nargs="*", metavar="WORD", help=text)
+    argument(sub, "words", str, "parts of a name, as CSG-17, csg25-100 or csg 25 100", "WORD", nargs="*")
 
 
 def _catalogue(args: argparse.Namespace) -> int:

@@ -14,7 +14,7 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import flat_fields, flatten
 
-from ..command_line.common import Commands, command
+from ..command_line.common import Commands, argument, command
 from ..laws import law_file, law_parameters
 
 _HEAD = ("name", "default", "unit", "allowed", "meaning")
@@ -24,18 +24,12 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "list what can be set of an FMU, a joint or an interface law"
     sub = command(commands, "parameters", _parameters, text)
-    sub.add_argument(
-        "name",
-        choices=[*MODELS, *KINDS, *LAWS],
-        metavar="NAME",
-        help=f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})",
-    )
+    text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
+    argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
     own = sub.add_mutually_exclusive_group()
     laws = sorted({law for kind in KINDS.values() for law in kind.laws})
-    own.add_argument(
-        "--law", choices=laws, metavar="LAW", help=f"law of the FMU or joint ({', '.join(laws)})"
-    )
-    own.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other values (TOML)")
+    argument(own, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws)
+    argument(own, "--params", Path, "parameter file with other values (TOML)")
 
 
 def _parameters(args: argparse.Namespace) -> int:

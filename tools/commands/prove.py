@@ -11,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 from jointfmu.published import validation
 
-from ..command_line.common import Commands, command
+from ..command_line.common import Commands, argument, command
 from ..fem import installed
 from ..fem.validation import natural_frequencies
 from ..proof import listing, report
@@ -23,28 +23,14 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run the experiments that an FMU carries (FMI-LS-REF) and compare with its reference results"
     sub = command(commands, "prove", _prove, text)
-    sub.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    sub.add_argument(
-        "--in",
-        dest="importer",
-        choices=list(IMPORTERS),
-        default="fmpy",
-        metavar="IMPORTER",
-        help=f"what runs the FMU: {', '.join(IMPORTERS)} (default: fmpy)",
-    )
-    sub.add_argument(
-        "--listing",
-        type=Path,
-        metavar="DIR",
-        help="if all passes, write the files of the FMI cross-check for lists of exporting tools",
-    )
-    sub.add_argument(
-        "--against",
-        type=Path,
-        metavar="FILE",
-        help="parameter file: this package computes start values and references from it, those that the FMU "
-        "carries are not read",
-    )
+    argument(sub, "fmu", Path, "path of the FMU", "FMU")
+    text = f"what runs the FMU: {', '.join(IMPORTERS)}"
+    choices = list(IMPORTERS)
+    argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
+    text = "if all passes, write the files of the FMI cross-check for lists of exporting tools"
+    argument(sub, "--listing", Path, text, "DIR")
+    text = "parameter file: this package computes start values and references from it, those that the FMU "
+    argument(sub, "--against", Path, text + "carries are not read")
 
 
 def _prove(args: argparse.Namespace) -> int:

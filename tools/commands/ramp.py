@@ -13,7 +13,7 @@ import numpy as np
 from jointfmu.files.writing import check_writable, write_text
 
 from .. import plots
-from ..command_line.common import Commands, command, flag, settings
+from ..command_line.common import Commands, argument, command, flag, settings
 from ..ramps import loops, ramp
 
 if TYPE_CHECKING:
@@ -29,25 +29,22 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run an FMU along a load ramp from zero, or to and fro, and print every output or the loops' loss"
     drive = command(commands, "ramp", _run, text)
-    drive.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    drive.add_argument("--input", required=True, metavar="NAME", help="input to drive")
-    drive.add_argument("--to", type=float, metavar="VALUE", help="end of the ramp (SI)")
-    drive.add_argument("--step", type=float, metavar="VALUE", help="step of the ramp (SI)")
-    drive.add_argument(
-        "--loop", type=float, nargs="+", metavar="VALUE", help="amplitudes of loops, each from rest (SI)"
-    )
-    drive.add_argument("--about", type=float, metavar="VALUE", help="middle of the loops (default: 0)")
+    argument(drive, "fmu", Path, "path of the FMU", "FMU")
+    argument(drive, "--input", str, "input to drive", required=True)
+    argument(drive, "--to", float, "end of the ramp (SI)")
+    argument(drive, "--step", float, "step of the ramp (SI)")
+    argument(drive, "--loop", float, "amplitudes of loops, each from rest (SI)", nargs="+")
+    argument(drive, "--about", float, "middle of the loops (default: 0)")
     drive.add_argument(
         "--shape", choices=loops.SHAPES, help=f"of a loop over time (default: {loops.SHAPES[0]})"
     )
-    drive.add_argument("--points", type=int, metavar="N", help=f"of a cycle (default: {loops.POINTS})")
-    drive.add_argument("--cycles", type=int, metavar="N", help=f"of a loop (default: {loops.CYCLES})")
-    drive.add_argument("--output", metavar="NAME", help="force or motion conjugate to the input of loops")
-    drive.add_argument("--columns", nargs="+", metavar="NAME", help="outputs of a ramp (default: all)")
+    argument(drive, "--points", int, f"of a cycle (default: {loops.POINTS})")
+    argument(drive, "--cycles", int, f"of a loop (default: {loops.CYCLES})")
+    argument(drive, "--output", str, "force or motion conjugate to the input of loops")
+    argument(drive, "--columns", str, "outputs of a ramp (default: all)", nargs="+")
     settings(drive)
-    drive.add_argument("--csv", type=Path, metavar="FILE", help="write every point to a file")
-    text = "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
-    drive.add_argument("--plot", type=Path, metavar="FILE", help=text)
+    argument(drive, "--csv", Path, "write every point to a file")
+    argument(drive, "--plot", Path, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
 
 
 def _run(args: argparse.Namespace) -> int:

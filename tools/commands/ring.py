@@ -13,7 +13,7 @@ from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
 from .. import columns, plots
-from ..command_line.common import Commands, command, settings, without_package
+from ..command_line.common import Commands, argument, command, settings, without_package
 from ..systems.system import names, system
 from . import check_files
 
@@ -22,36 +22,19 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
-    ring.add_argument("system", metavar="SYSTEM", help=f"{', '.join(names())}, or a system's file (TOML)")
-    ring.add_argument("--joint", metavar="NAME", help="the joint, where the system has several")
-    ring.add_argument(
-        "--fmus",
-        type=Path,
-        default=Path("dist/fmi2"),
-        metavar="DIR",
-        help="folder with the FMUs of `jointfmu build --systems` (default: dist/fmi2)",
-    )
-    ring.add_argument(
-        "--load",
-        type=float,
-        nargs="+",
-        metavar="VALUE",
-        help="what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
-        "that show the joint)",
-    )
-    ring.add_argument(
-        "--inertia", type=float, metavar="VALUE", help="of the body [kg or kg.m2] (default: of the system)"
-    )
-    ring.add_argument(
-        "--amplitude",
-        type=float,
-        metavar="VALUE",
-        help="let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
-        "the motion in which the joint slips (default load: the largest of the several)",
-    )
+    argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
+    argument(ring, "--joint", str, "the joint, where the system has several")
+    text = "folder with the FMUs of `jointfmu build --systems`"
+    argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
+    text = "what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
+    argument(ring, "--load", float, text + "that show the joint)", nargs="+")
+    argument(ring, "--inertia", float, "of the body [kg or kg.m2] (default: of the system)")
+    text = "let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
+    text += "the motion in which the joint slips (default load: the largest of the several)"
+    argument(ring, "--amplitude", float, text)
     settings(ring)
-    ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
-    ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
+    argument(ring, "--csv", Path, "write the table to a file")
+    argument(ring, "--plot", Path, "draw resonance and decay (.png, .svg)")
 
 
 def _ring(args: argparse.Namespace) -> int:

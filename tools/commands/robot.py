@@ -10,7 +10,7 @@ from jointfmu.files.writing import check_folder, write_text
 from jointfmu.parameters import dump
 
 from .. import plots
-from ..command_line.common import Commands, command, without_package
+from ..command_line.common import Commands, argument, command, without_package
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -20,17 +20,12 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "make named joints of a robot (MJCF, URDF) elastic with their drives"
     sub = command(commands, "robot", run, text)
-    sub.add_argument("robot", type=Path, metavar="ROBOT", help="the robot's file, MJCF or URDF")
-    sub.add_argument(
-        "--drive",
-        nargs="+",
-        action="extend",
-        required=True,
-        metavar="JOINT=NAME",
-        help="joints and their drives: a name of the catalogue or a parameter file",
-    )
-    sub.add_argument("--payload", type=float, default=1.0, metavar="M", help="mass at the tip [kg] (1)")
-    sub.add_argument("--tip", metavar="BODY", help="body whose origin is the tip (the last body)")
+    several: dict[str, Any] = {"nargs": "+", "action": "extend"}
+    argument(sub, "robot", Path, "the robot's file, MJCF or URDF", "ROBOT")
+    text = "joints and their drives: a name of the catalogue or a parameter file"
+    argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
+    argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
+    argument(sub, "--tip", str, "body whose origin is the tip (the last body)", "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
@@ -40,15 +35,11 @@ def add(commands: Commands) -> None:
         help="angles [rad] of the pose, of joints at zero or as in the first keyframe (for the payload: the "
         "pose of the grid at which the tip sinks most)",
     )
-    sub.add_argument(
-        "--plugin",
-        action="store_true",
-        help="the robot with MuJoCo's plugins of the drives too, compiled here",
-    )
-    sub.add_argument(
-        "--fmu", action="store_true", help="one FMU of the axes at the pose too, and the system's file of it"
-    )
-    sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    text = "the robot with MuJoCo's plugins of the drives too, compiled here"
+    sub.add_argument("--plugin", action="store_true", help=text)
+    text = "one FMU of the axes at the pose too, and the system's file of it"
+    sub.add_argument("--fmu", action="store_true", help=text)
+    argument(sub, "--out", Path, "folder to write", "DIR", required=True)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from pathlib import Path
 from jointfmu.files.writing import check_folder, write_text
 
 from .. import columns, plots
-from ..command_line.common import Commands, command, without_package
+from ..command_line.common import Commands, argument, command, without_package
 from ..systems.system import names, system
 from . import check_files
 
@@ -16,18 +16,13 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
-    make.add_argument("file", metavar="FILE", help=f"a system's file (TOML), or {', '.join(names())}")
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
-    make.add_argument(
-        "--fmu", action="store_true", help="one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
-    )
-    make.add_argument("--csv", type=Path, metavar="FILE", help="run it and write all connected outputs")
-    make.add_argument(
-        "--plot",
-        type=Path,
-        metavar="FILE",
-        help="run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)",
-    )
+    argument(make, "file", str, f"a system's file (TOML), or {', '.join(names())}", "FILE")
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
+    text = "one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
+    make.add_argument("--fmu", action="store_true", help=text)
+    argument(make, "--csv", Path, "run it and write all connected outputs")
+    text = "run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)"
+    argument(make, "--plot", Path, text)
 
 
 def _system(args: argparse.Namespace) -> int:

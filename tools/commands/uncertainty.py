@@ -11,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
-from ..command_line.common import Commands, command, settings, tell
+from ..command_line.common import Commands, Parser, argument, command, settings, tell
 from ..pressure import judge_file
 from . import check_files
 
@@ -28,26 +28,21 @@ def add(commands: Commands) -> None:
         commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"
     )
     study.epilog = f"{SYNTAX}; NAME=interval: between the ends that the source in the file states"
-    study.add_argument(
-        "joint", nargs="?", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
-    )
-    study.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
-    study.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
-    settings(study)
-    study.add_argument("--to", type=float, metavar="VALUE", help="end of the load ramp (SI)")
-    study.add_argument(
-        "--points", type=int, default=201, metavar="N", help="points of the ramp (default: 201)"
-    )
-    study.add_argument(
-        "--samples",
-        type=int,
-        default=16384,
-        metavar="N",
-        help="samples, rounded up to a power of two (default: 16384)",
-    )
-    study.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the Sobol' sequence")
-    study.add_argument("--csv", type=Path, metavar="FILE", help="write the bands to a file")
-    study.add_argument("--plot", type=Path, metavar="FILE", help="draw bands and indices, .png or .svg")
+    argument(study, "joint", str, f"one of {', '.join(KINDS)}", "JOINT", nargs="?", choices=list(KINDS))
+    argument(study, "--params", Path, "parameter file of the joint (TOML)")
+    _drawn(study, "samples", 16384)
+    argument(study, "--to", float, "end of the load ramp (SI)")
+    argument(study, "--points", int, "points of the ramp", default=201)
+    argument(study, "--csv", Path, "write the bands to a file")
+    argument(study, "--plot", Path, "draw bands and indices, .png or .svg")
+
+
+def _drawn(sub: Parser, what: str, samples: int) -> None:
+    """Declare what is uncertain, and how many samples are drawn."""
+    argument(sub, "--study", Path, "study file with the distributions (TOML)")
+    settings(sub)
+    argument(sub, "--samples", int, f"{what}, rounded up to a power of two", default=samples)
+    argument(sub, "--seed", int, "seed of the Sobol' sequence", default=0)
 
 
 def chosen(joint: str | None, params: Path | None) -> ParameterFile:
@@ -92,24 +87,15 @@ def add_sweep(commands: Commands) -> None:
         commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"
     )
     many.epilog = SYNTAX
-    many.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    many.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
-    settings(many)
-    many.add_argument("--input", required=True, metavar="NAME", help="input to drive")
-    many.add_argument("--to", type=float, required=True, metavar="VALUE", help="end of the ramp (SI)")
-    many.add_argument("--step", type=float, required=True, metavar="VALUE", help="step of the ramp (SI)")
-    many.add_argument(
-        "--samples",
-        type=int,
-        default=256,
-        metavar="N",
-        help="runs, rounded up to a power of two (default: 256)",
-    )
-    many.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the Sobol' sequence")
-    many.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
+    argument(many, "fmu", Path, "path of the FMU", "FMU")
+    _drawn(many, "runs", 256)
+    argument(many, "--input", str, "input to drive", required=True)
+    argument(many, "--to", float, "end of the ramp (SI)", required=True)
+    argument(many, "--step", float, "step of the ramp (SI)", required=True)
+    argument(many, "--out", Path, "folder of the results", "DIR", required=True)
     where = many.add_mutually_exclusive_group()
-    where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler of a cluster, tcp://HOST:PORT")
-    where.add_argument("--workers", type=int, metavar="N", help="local processes (default: one per core)")
+    argument(where, "--scheduler", str, "dask scheduler of a cluster, tcp://HOST:PORT", "ADDRESS")
+    argument(where, "--workers", int, "local processes (default: one per core)")
 
 
 def _sweep(args: argparse.Namespace) -> int:
