@@ -1,9 +1,11 @@
 """What commands share: the parser, `--json`, `--set`, numbers as JSON."""
 
 import argparse
+import json
 import re
 import sys
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
@@ -13,7 +15,43 @@ from jointfmu.parameters import parse_setting
 
 from .examples import BEFORE, EXAMPLES
 
-Run = Callable[[argparse.Namespace], int]
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answer:
+    """What a command found.
+
+    document  : for `--json`
+    lines     : for people
+    notes     : for people, on standard error
+    judgement : told after both, and part of the document
+    written   : files, told last; None is none
+    status    : of the process
+    """
+
+    document: Any
+    lines: Iterable[str] = ()
+    notes: Iterable[str] = ()
+    judgement: Judgement | None = None
+    written: Iterable[object] = ()
+    status: int = 0
+
+    def tell(self, as_json: bool) -> int:
+        """Print it, as one JSON object and nothing else or for people; the status."""
+        if as_json:
+            own = {} if self.judgement is None else self.judgement.document()
+            print(json.dumps({**self.document, **own} if own else self.document))
+            return self.status
+        found = self.judgement or Judgement(None, ())
+        for line in (*self.lines, *found.lines()):
+            print(line)
+        for note in (*self.notes, *(f"warning: {text}" for text in found.warnings)):
+            print(note, file=sys.stderr)
+        for path in filter(None, self.written):
+            print(f"wrote {path}")
+        return self.status
+
+
+Run = Callable[[argparse.Namespace], Answer]
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
 """Where commands are declared."""
 IMPLIED = {"surface": ("identify", "synthesize")}
@@ -78,14 +116,6 @@ def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
     sub.set_defaults(run=run)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
-
-
-def tell(found: Judgement, of: str = "") -> None:
-    """Print a judgement: what is found, and the warnings on standard error; `of` is put before."""
-    for line in found.lines():
-        print(f"{of}{line}")
-    for warning in found.warnings:
-        print(f"warning: {of}{warning}", file=sys.stderr)
 
 
 def flag(name: str) -> str:

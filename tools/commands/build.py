@@ -1,8 +1,6 @@
 """`jointfmu build`: FMUs from parameters; `jointfmu cache`: where their compiled parts are kept."""
 
 import argparse
-import json
-import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,7 +11,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..command_line.common import Commands, argument, command, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, without_package
 from ..pressure import judge_file
 
 SHOWN = 3
@@ -47,7 +45,7 @@ def add(commands: Commands) -> None:
     argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
-def _build(args: argparse.Namespace) -> int:
+def _build(args: argparse.Namespace) -> Answer:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
     check_folder(args.out)
@@ -71,18 +69,18 @@ def _build(args: argparse.Namespace) -> int:
     changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
-    if args.json:
-        judged = {joint: judgement.document() for joint, judgement in found.items()}
-        print(json.dumps({"built": [str(path) for path in built], "replaced": changed, "joints": judged}))
-        return 0
-    print("\n".join(f"built {path}" for path in built))
+    judged = {joint: judgement.document() for joint, judgement in found.items()}
+    notes = []
     for path, values in changed.items():
         said = [f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()]
         more = f" and {len(said) - SHOWN} more" if len(said) > SHOWN else ""
-        print(f"replaced {path}: {', '.join(said[:SHOWN])}{more}", file=sys.stderr)
-    for joint, judgement in found.items():
-        tell(judgement, of=f"{joint}: ")
-    return 0
+        notes.append(f"replaced {path}: {', '.join(said[:SHOWN])}{more}")
+    levels = [f"{joint}: {line}" for joint, one in found.items() for line in one.lines()]
+    return Answer(
+        document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
+        lines=[*(f"built {path}" for path in built), *levels],
+        notes=[*notes, *(f"warning: {joint}: {x}" for joint, one in found.items() for x in one.warnings)],
+    )
 
 
 def _starts(path: Path) -> dict[str, str]:
@@ -124,7 +122,7 @@ def add_cache(commands: Commands) -> None:
     cache.add_argument("--clear", action="store_true", help="remove them; the next build compiles again")
 
 
-def _cache(args: argparse.Namespace) -> int:
+def _cache(args: argparse.Namespace) -> Answer:
     try:
         from jointfmu_fmu_src.native import cache
     except ImportError as error:
@@ -132,8 +130,8 @@ def _cache(args: argparse.Namespace) -> int:
     if args.clear:
         cache.clear()
     files, size = cache.content()
-    if args.json:
-        print(json.dumps({"folder": str(cache.cache_folder()), "files": files, "bytes": size}))
-    else:
-        print(f"{cache.cache_folder()}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})")
-    return 0
+    folder = str(cache.cache_folder())
+    return Answer(
+        document={"folder": folder, "files": files, "bytes": size},
+        lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})"],
+    )

@@ -1,7 +1,6 @@
 """`jointfmu export`: the joint for finite elements, Modelica tables and CSV."""
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
-from ..command_line.common import Commands, argument, command, flag, joint_name, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, without_package
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
@@ -76,7 +75,7 @@ def _working_points() -> dict[str, list[str]]:
     return texts
 
 
-def _export(args: argparse.Namespace) -> int:
+def _export(args: argparse.Namespace) -> Answer:
     if args.form in ROBOTS:
         return _robots(args)
     if args.what not in WHAT:
@@ -93,20 +92,16 @@ def _export(args: argparse.Namespace) -> int:
     _refuse_idle(args, file)
     written = _written(args, file)
     write_text(args.out, written.text)
-    found = _judged(args, file).with_warnings(written.warnings)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
-    if args.json:
-        print(json.dumps({**facts, **written.facts, **found.document()}))
-        return 0
-    print(f"wrote {args.out}: {args.what} for {args.form}, {args.units}")
+    lines = [f"wrote {args.out}: {args.what} for {args.form}, {args.units}"]
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
-        print(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
-    tell(found)
-    return 0
+        lines.append(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
+    found = _judged(args, file).with_warnings(written.warnings)
+    return Answer(document={**facts, **written.facts}, lines=lines, judgement=found)
 
 
-def _robots(args: argparse.Namespace) -> int:
+def _robots(args: argparse.Namespace) -> Answer:
     """Write a drive for a robot's simulator, and say what it misses."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
     for name in idle:
@@ -122,11 +117,10 @@ def _robots(args: argparse.Namespace) -> int:
     except ImportError as error:
         raise without_package(error, "measure the file", "mujoco") from None
     write_text(args.out, found.text)
-    if args.json:
-        print(json.dumps({"written": str(args.out), "format": args.form, **found.facts}))
-        return 0
-    print("\n".join([f"wrote {args.out}: {found.name} for {args.form}", *(f"  {x}" for x in found.lines)]))
-    return 0
+    return Answer(
+        document={"written": str(args.out), "format": args.form, **found.facts},
+        lines=[f"wrote {args.out}: {found.name} for {args.form}", *(f"  {x}" for x in found.lines)],
+    )
 
 
 def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:

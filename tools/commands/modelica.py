@@ -1,7 +1,6 @@
 """`jointfmu modelica`: the Modelica library, from parameters."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_folder
@@ -10,7 +9,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
-from ..command_line.common import Commands, argument, command, flag, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, without_package
 from ..pressure import judge_file
 
 
@@ -26,7 +25,7 @@ def add(commands: Commands) -> None:
     argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
-def _modelica(args: argparse.Namespace) -> int:
+def _modelica(args: argparse.Namespace) -> Answer:
     check_folder(args.out)
     file = load(args.params) if args.params else None
     points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
@@ -36,15 +35,11 @@ def _modelica(args: argparse.Namespace) -> int:
         written = library.write(args.out, file, points)
     except ImportError as error:
         raise without_package(error, "write the library") from None
-    found = _judged(file, points) if file else None
-    if args.json:
-        said = found.document() if found else {}
-        print(json.dumps({"written": [str(path) for path in written]} | said))
-        return 0
-    print(f"wrote {args.out / library.NAME}: {len(written)} files")
-    if found:
-        tell(found)
-    return 0
+    return Answer(
+        document={"written": [str(path) for path in written]},
+        lines=[f"wrote {args.out / library.NAME}: {len(written)} files"],
+        judgement=_judged(file, points) if file else None,
+    )
 
 
 def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:

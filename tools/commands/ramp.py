@@ -1,7 +1,6 @@
 """`jointfmu ramp`: an FMU along a load ramp, or to and fro."""
 
 import argparse
-import json
 import math
 import sys
 from dataclasses import replace
@@ -10,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 
 from .. import plots
-from ..command_line.common import Commands, argument, command, flag, settings
+from ..command_line.common import Answer, Commands, argument, command, flag, settings
 from ..ramps import loops, ramp
+from . import check_files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,7 +47,7 @@ def add(commands: Commands) -> None:
     argument(drive, "--plot", Path, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
 
 
-def _run(args: argparse.Namespace) -> int:
+def _run(args: argparse.Namespace) -> Answer:
     """A ramp or loops, as the options say; ValueError if they say both or neither."""
     ramped, looped = ([name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP))
     if args.loop and ramped:
@@ -60,14 +60,11 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError("the drive is not stated; expected --to with --step, or --loop")
     if args.loop and args.columns:
         raise ValueError("--columns is given with --loop; allowed is with a ramp only")
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     return _loops(args) if args.loop else _ramp(args)
 
 
-def _ramp(args: argparse.Namespace) -> int:
+def _ramp(args: argparse.Namespace) -> Answer:
     result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)
@@ -78,15 +75,11 @@ def _ramp(args: argparse.Namespace) -> int:
         count = len(result.columns) - 1
         with plots.drawing(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
             _draw_ramp(figure, result)
-    points = len(next(iter(result.columns.values())))
-    if args.json:
-        columns = {name: column.tolist() for name, column in result.columns.items()}
-        print(json.dumps({"fmu": str(args.fmu), "units": result.units, "columns": columns}))
-    elif args.csv or args.plot:
-        print("\n".join(f"wrote {path}: {points} points" for path in (args.csv, args.plot) if path))
-    else:
-        sys.stdout.write(_table(result) if sys.stdout.isatty() else result.csv())
-    return 0
+    columns = {name: column.tolist() for name, column in result.columns.items()}
+    lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
+    if not lines and not args.json:
+        lines = [_table(result) if sys.stdout.isatty() else result.csv()[:-1]]
+    return Answer(document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines)
 
 
 def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ramp.RampResult:
@@ -116,7 +109,7 @@ def _table(result: ramp.RampResult) -> str:
         )
     rows = zip(*([f"{cell:>{max(map(len, column))}}" for cell in column] for column in columns), strict=True)
     more = f"\n{len(shown)} of {every} points; --csv writes all" if len(shown) < every else ""
-    return "\n".join("  ".join(row) for row in rows) + more + "\n"
+    return "\n".join("  ".join(row) for row in rows) + more
 
 
 def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
@@ -133,7 +126,7 @@ def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
         one.set_visible(False)
 
 
-def _loops(args: argparse.Namespace) -> int:
+def _loops(args: argparse.Namespace) -> Answer:
     given = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
     swing = loops.Swing(**given)
     found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
@@ -144,13 +137,8 @@ def _loops(args: argparse.Namespace) -> int:
     if args.plot:
         with plots.drawing(args.plot, (11.4, 3.8)) as figure:
             _draw(figure, found, swing)
-    if args.json:
-        print(json.dumps(_document(args.fmu, found)))
-        return 0
-    sys.stdout.write(found.table())
-    for path in filter(None, (args.csv, args.plot)):
-        print(f"wrote {path}")
-    return 0
+    lines, written = found.table().splitlines(), (args.csv, args.plot)
+    return Answer(document=_document(args.fmu, found), lines=lines, written=written)
 
 
 def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:

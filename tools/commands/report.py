@@ -1,12 +1,11 @@
 """`jointfmu report`: the page of one joint, from its parameter file or by its name."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_writable
 
-from ..command_line.common import Commands, argument, command
+from ..command_line.common import Answer, Commands, argument, command
 from ..interface.make import load
 
 
@@ -21,12 +20,11 @@ def add(commands: Commands) -> None:
     argument(make, "--out", Path, "page to write (.html; default: FILE.html in this folder)")
 
 
-def _report(args: argparse.Namespace) -> int:
+def _report(args: argparse.Namespace) -> Answer:
     joint = load(args.file)
     out: Path = args.out or Path(f"{args.file.stem}.html")
     if out.suffix != ".html":
         raise ValueError(f"--out {out} has the ending {out.suffix!r}, allowed is .html")
     check_writable(out)
     joint.report(out, args.fmu)
-    print(json.dumps({"report": str(out)}) if args.json else f"wrote {out}")
-    return 0
+    return Answer(document={"report": str(out)}, written=[out])

@@ -1,7 +1,6 @@
 """`jointfmu ring`: resonance of a joint in its system over the load or the amplitude, by running FMUs."""
 
 import argparse
-import json
 import math
 import sys
 from pathlib import Path
@@ -13,7 +12,7 @@ from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
 from .. import columns, plots
-from ..command_line.common import Commands, argument, command, settings, without_package
+from ..command_line.common import Answer, Commands, argument, command, settings, without_package
 from ..systems.system import names, system
 from . import check_files
 
@@ -37,7 +36,7 @@ def add(commands: Commands) -> None:
     argument(ring, "--plot", Path, "draw resonance and decay (.png, .svg)")
 
 
-def _ring(args: argparse.Namespace) -> int:
+def _ring(args: argparse.Namespace) -> Answer:
     try:
         from ..systems import ringing
     except ImportError as error:
@@ -64,18 +63,17 @@ def _ring(args: argparse.Namespace) -> int:
         with plots.drawing(args.plot, SIZE) as figure:
             draw(figure, points, example, args.fmus)
     misses = [line for point in points for line in point.misses]
-    if args.json:
-        print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
-    else:
-        sys.stdout.write(table)
-        for path in filter(None, (args.csv, args.plot)):
-            print(f"wrote {path}")
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
-    return int(bool(misses))
+    return Answer(
+        document={"system": args.system, "rows": rows, "missed": len(misses)},
+        lines=table.splitlines(),
+        written=(args.csv, args.plot),
+        status=int(bool(misses)),
+    )
 
 
-def _decays(args: argparse.Namespace, example: Any) -> int:
+def _decays(args: argparse.Namespace, example: Any) -> Answer:
     """Frequency and damping over the amplitude."""
     from ..systems import decays
 
@@ -100,14 +98,9 @@ def _decays(args: argparse.Namespace, example: Any) -> int:
 
         with plots.drawing(args.plot, WIDE) as figure:
             draw_decays(figure, points, body)
-    if args.json:
-        rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
-        print(json.dumps({"system": args.system, "rows": rows}))
-        return 0
-    sys.stdout.write(table)
-    for path in filter(None, (args.csv, args.plot)):
-        print(f"wrote {path}")
-    return 0
+    rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
+    document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
+    return Answer(document=document, lines=table.splitlines(), written=written)
 
 
 def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:

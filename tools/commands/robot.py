@@ -1,7 +1,6 @@
 """`jointfmu robot`: a robot of others, MJCF or URDF, with elastic axes."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from jointfmu.files.writing import check_folder, write_text
 from jointfmu.parameters import dump
 
 from .. import plots
-from ..command_line.common import Commands, argument, command, without_package
+from ..command_line.common import Answer, Commands, argument, command, without_package
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -42,8 +41,8 @@ def add(commands: Commands) -> None:
     argument(sub, "--out", Path, "folder to write", "DIR", required=True)
 
 
-def run(args: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+def run(args: argparse.Namespace) -> Answer:
+    """Run the command."""
     names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
     if not 0.0 <= args.payload <= MOST:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
@@ -102,8 +101,7 @@ def run(args: argparse.Namespace) -> int:
         "longest_step": longest,
         "notes": notes,
     }
-    print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
-    return 0
+    return Answer(document=facts, lines=_lines(facts))
 
 
 def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:

@@ -1,13 +1,12 @@
 """`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives, a Modelica model, one FMU."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_folder, write_text
 
 from .. import columns, plots
-from ..command_line.common import Commands, argument, command, without_package
+from ..command_line.common import Answer, Commands, argument, command, without_package
 from ..systems.system import names, system
 from . import check_files
 
@@ -25,7 +24,7 @@ def add(commands: Commands) -> None:
     argument(make, "--plot", Path, text)
 
 
-def _system(args: argparse.Namespace) -> int:
+def _system(args: argparse.Namespace) -> Answer:
     found = system(args.file)
     check_folder(args.out)
     check_files(args.csv, plot=args.plot)
@@ -60,8 +59,5 @@ def _system(args: argparse.Namespace) -> int:
             with plots.drawing(args.plot, systems.MOTION_SIZE) as figure:
                 systems.draw_motion(figure, found, run)
         paths += [path for path in (args.csv, args.plot) if path]
-    if args.json:
-        print(json.dumps({"system": found.name, "built": [str(path) for path in paths]}))
-        return 0
-    print("\n".join(f"built {path}" for path in paths))
-    return 0
+    document = {"system": found.name, "built": [str(path) for path in paths]}
+    return Answer(document=document, lines=[f"built {path}" for path in paths])

@@ -1,7 +1,6 @@
 """`jointfmu uncertainty`: bands from uncertain parameters; `jointfmu sweep`: a study of an FMU."""
 
 import argparse
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
-from ..command_line.common import Commands, Parser, argument, command, settings, tell
+from ..command_line.common import Answer, Commands, Parser, argument, command, settings
 from ..pressure import judge_file
 from . import check_files
 
@@ -52,7 +51,7 @@ def chosen(joint: str | None, params: Path | None) -> ParameterFile:
     return load(params, joint) if params else default(str(joint))
 
 
-def _uncertainty(args: argparse.Namespace) -> int:
+def _uncertainty(args: argparse.Namespace) -> Answer:
     from ..uncertainty import problem, propagate, report, study
     from ..uncertainty.propagate import sensitivity
 
@@ -69,16 +68,10 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import report
-
         report.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
-    if args.json:
-        print(json.dumps(report.as_json(task, bands, indices) | found.document()))
-    else:
-        print(report.table(task, bands, indices))
-        tell(found)
-    return 0
+    lines = [report.table(task, bands, indices)]
+    return Answer(document=report.as_json(task, bands, indices), lines=lines, judgement=found)
 
 
 def add_sweep(commands: Commands) -> None:
@@ -98,7 +91,7 @@ def add_sweep(commands: Commands) -> None:
     argument(where, "--workers", int, "local processes (default: one per core)")
 
 
-def _sweep(args: argparse.Namespace) -> int:
+def _sweep(args: argparse.Namespace) -> Answer:
     from ..uncertainty import journal, study
     from ..uncertainty.cluster import leave
     from ..uncertainty.sweep import plan, sweep
@@ -121,14 +114,15 @@ def _sweep(args: argparse.Namespace) -> int:
         )
         leave(130)
     failure = done.first_failure
-    if args.json:
-        example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
-        counts = {"runs": done.runs, "now": done.now, "failed": done.failed}
-        print(json.dumps({"out": str(args.out), **counts, "first_failure": example}))
-    else:
-        before = done.runs - done.now
-        print(f"{done.runs} runs in {args.out}: {done.now} now, {before} before, {done.failed} failed")
-        if failure:
-            values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
-            print(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
-    return int(done.failed == done.runs)
+    example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
+    counts = {"runs": done.runs, "now": done.now, "failed": done.failed}
+    before = done.runs - done.now
+    lines = [f"{done.runs} runs in {args.out}: {done.now} now, {before} before, {done.failed} failed"]
+    if failure:
+        values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
+        lines.append(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
+    return Answer(
+        document={"out": str(args.out), **counts, "first_failure": example},
+        lines=lines,
+        status=int(done.failed == done.runs),
+    )

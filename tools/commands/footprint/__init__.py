@@ -1,7 +1,6 @@
 """`jointfmu footprint`: the pressure field of a bolted joint, brought along or computed."""
 
 import argparse
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import judge, known_height
 from jointfmu.parameters import ParameterFile, dump
 
-from ...command_line.common import Commands, Parser, argument, command, tell
+from ...command_line.common import Answer, Commands, Parser, argument, command
 from ...fields.clamped import clamping
 from .. import check_files
 from . import bodies, compute
@@ -60,7 +59,7 @@ def _import(steps: Commands) -> None:
     step.set_defaults(options=OPTIONS)
 
 
-def _run_import(args: argparse.Namespace) -> int:
+def _run_import(args: argparse.Namespace) -> Answer:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
     check_files(args.out, plot=args.plot)
@@ -103,12 +102,7 @@ def _run_import(args: argparse.Namespace) -> int:
     if abs(scaled) > FORCE_ERROR:
         text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
         found = found.with_warnings([f"{text}: ask the run's own contact force which of the two is wrong"])
-    if args.json:
-        print(json.dumps(facts | found.document()))
-    else:
-        print("\n".join(_lines(facts, start.values.A_0)))
-        tell(found)
-    return 0
+    return Answer(document=facts, lines=_lines(facts, start.values.A_0), judgement=found)
 
 
 def _reading(args: argparse.Namespace) -> Any:

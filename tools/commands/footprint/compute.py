@@ -3,7 +3,6 @@ with it.
 """
 
 import argparse
-import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +14,7 @@ from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default, dump, load
 
-from ...command_line.common import Commands, argument, command, tell
+from ...command_line.common import Answer, Commands, argument, command
 from ...drawing.vdi2230 import proof_load
 from ...fem import installed
 from ...fields.clamped import clamped, clamping
@@ -110,8 +109,8 @@ def add(commands: Commands) -> None:
     argument(sub, "--refinement", float, "divides the sizes of elements", "R", default=1.0)
 
 
-def run(args: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+def run(args: argparse.Namespace) -> Answer:
+    """Run the command."""
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
@@ -132,14 +131,9 @@ def run(args: argparse.Namespace) -> int:
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
     found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
-    if args.json:
-        shown = facts | {"meshes": list(_meshes(rows)), "written": written}
-        print(json.dumps(shown | found.document()))
-    else:
-        print("\n".join([*_lines(facts), *_table(rows)]))
-        tell(found)
-        print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
-    return 0
+    document = facts | {"meshes": [_mesh(row) for row in rows], "written": written}
+    lines = [*_lines(facts), *_table(rows)]
+    return Answer(document=document, lines=lines, judgement=found, written=written)
 
 
 def _law(file: ParameterFile) -> Curve:
@@ -211,9 +205,8 @@ def _lines(facts: dict[str, Any]) -> Iterator[str]:
     yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
 
 
-def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, object]]:
-    for row in rows:
-        yield {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+def _mesh(row: "MeshResult") -> dict[str, object]:
+    return {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
 
 
 def _table(rows: list["MeshResult"]) -> Iterator[str]:

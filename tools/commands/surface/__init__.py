@@ -10,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
-from ...command_line.common import IMPLIED, Commands, Parser, argument, command, joint_name, written
+from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name, written
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.spectrum import METHODS, SIDES
@@ -65,7 +65,7 @@ def add(commands: Commands) -> None:
     synthesize.add(steps, SUBCOMMANDS[1])
 
 
-def _identify(args: argparse.Namespace) -> int:
+def _identify(args: argparse.Namespace) -> Answer:
     base = _base(args)
     _check(args)
     heights = [read(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
@@ -83,8 +83,7 @@ def _identify(args: argparse.Namespace) -> int:
         from ...surfaces.results import draw
 
         draw(identified, args.plot)
-    results.show(identified, heights, file, args)
-    return 0
+    return results.answer(identified, heights, file, args)
 
 
 def _usual(identified: "Identification", force: bool) -> None:

@@ -1,12 +1,11 @@
 """`jointfmu surface synthesize`: a seeded Weierstrass-Mandelbrot surface."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_writable, write_text
 
-from ...command_line.common import Commands, argument, command
+from ...command_line.common import Answer, Commands, argument, command
 from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights
 
@@ -35,7 +34,7 @@ def add(steps: Commands, name: str) -> None:
     argument(make, "--out", Path, "file to write (.csv)", required=True)
 
 
-def _synthesize(args: argparse.Namespace) -> int:
+def _synthesize(args: argparse.Namespace) -> Answer:
     if args.out.suffix.lower() != ".csv":
         raise ValueError(f"{args.out}: suffix {args.out.suffix!r}, allowed is .csv")
     check_writable(args.out)
@@ -51,11 +50,8 @@ def _synthesize(args: argparse.Namespace) -> int:
         "gamma": args.gamma,
         "seed": args.seed,
     }
-    if args.json:
-        print(json.dumps(shown))
-    else:
-        print(f"wrote {args.out}: {size(heights)}, rms height {shown['rms']:.4g} m")
-    return 0
+    lines = [f"wrote {args.out}: {size(heights)}, rms height {shown['rms']:.4g} m"]
+    return Answer(document=shown, lines=lines)
 
 
 def _check_memory(args: argparse.Namespace) -> None:
