@@ -14,7 +14,7 @@ from .branches import Loops, ordered
 from .hysteresis import Free, HysteresisLaw, Oscillator, Response
 from .least_squares import Exchange, Residuals, Solution, Unknown, solve
 from .measurement import Measurement
-from .outcome import Picture, systematic
+from .outcome import Facts, Picture, systematic
 
 DAMPING = "damping_ratio"
 """Unknown that is no parameter of the joint: the damping ratio of the structure beside it [1]."""
@@ -160,9 +160,7 @@ def _best(
     return best
 
 
-def facts(
-    measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array
-) -> dict[str, tuple[float, str, str]]:
+def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array) -> Facts:
     """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
     data, (_, unit) = measurement.data, measurement.heads.unit
     found = {
@@ -195,14 +193,14 @@ _LINE = 120
 
 def pictures(
     measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], scale: Array
-) -> tuple[Picture, Picture | None]:
+) -> Sequence[Picture]:
     """Loops, or amplitudes over the frequency; or frequency and, beside it, damping over the amplitude."""
     law = model.of(values)
     match measurement.data:
         case Loops() as loops:
-            return _loops(measurement, loops, law, scale), None
+            return [_loops(measurement, loops, law, scale)]
         case Response() as response:
-            return _response(measurement, response, model.oscillator(law, values)), None
+            return [_response(measurement, response, model.oscillator(law, values))]
         case Free() as free:
             return _free(measurement, free, model.oscillator(law, values))
 

@@ -120,30 +120,26 @@ class Picture:
     also: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
+Facts = dict[str, tuple[float, str, str]]
+"""{name: (value, unit, meaning)}."""
+
+
 @dataclass(frozen=True, slots=True)
 class FitResult:
     """A fit.
 
     facts : {name: (value, unit, meaning)} beside the parameters
     notes : what the user should know, one line each
-    second_picture : drawn beside the first
-    more_pictures  : beside these
+    pictures : drawn beside each other
     intervals : {name: ends of its 95 % interval}, where they are told
     """
 
     parameters: ParameterFile
     solution: Solution
-    facts: Mapping[str, tuple[float, str, str]]
-    picture: Picture
+    facts: Facts
+    pictures: Sequence[Picture]
     notes: Sequence[str] = ()
-    second_picture: Picture | None = None
-    more_pictures: Sequence[Picture] = ()
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    @property
-    def pictures(self) -> list[Picture]:
-        """All of them."""
-        return [self.picture, *filter(None, (self.second_picture,)), *self.more_pictures]
 
     def rows(self) -> list[dict[str, Any]]:
         """Every unknown with value, unit, relative standard deviation and whether it is determined."""

@@ -201,7 +201,8 @@ def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
-    found = catalogue.fit_pair(_row(printed), None, None, kind, ratio, name)
+    row = _row(printed)
+    found = catalogue.fit_pair(row, printed=catalogue.stated_numbers(row, kind, ratio, name), source=name)
     file = replace(found.parameters, name=name)
     loss = printed.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":

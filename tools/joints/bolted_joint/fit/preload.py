@@ -30,7 +30,7 @@ from jointfmu.quantity.units import Sizes, factor, sizes
 
 from .... import columns
 from ....fitting.least_squares import Solution, Unknown, solve
-from ....fitting.outcome import FitResult, Picture, fitted, unknowns
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, unknowns
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -76,7 +76,7 @@ def fit(
     *,
     direction: str = "normal",
     modal_mass: float | None = None,
-    series: float | None = None,
+    series_stiffness: float | None = None,
 ) -> FitResult:
     """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
 
@@ -85,20 +85,20 @@ def fit(
     free       : names to fit; None: surface.D with surface.G, or with mass if it is not stated
     direction  : of the motion, one of DIRECTIONS
     modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
-    series     : [N/m] stiffness of the structure in series; None: none, unless SERIES is in `free`
+    series_stiffness : [N/m] of the structure, in series; None: rigid, unless SERIES is in `free`
 
     Raises ValueError, one line: the file, its units, its values; a name that cannot be fitted.
     RuntimeError if the fit finds no end.
     """
     curve = _measured(Path(path))
-    file = _stated(start or default("bolted_joint"), curve, modal_mass, series)
+    file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
     mass = curve.of == "frequency" and modal_mass is None
     names = list(free if free is not None else ("surface.D", "mass" if mass else "surface.G"))
 
     def predict(values: Mapping[str, float]) -> Array:
         own = {name: value for name, value in values.items() if name != SERIES}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predicted(joint, values.get(SERIES, series), direction)
+        return curve.predicted(joint, values.get(SERIES, series_stiffness), direction)
 
     def miss(values: Mapping[str, float]) -> Array:
         return np.log(predict(values) / curve.value)
@@ -107,7 +107,7 @@ def fit(
     own = {name: value for name, value in solution.values.items() if name != SERIES}
     span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.of}"
     result = fitted(file, own, "calibration", Path(path).name, span)
-    stiffness = solution.values.get(SERIES, series)
+    stiffness = solution.values.get(SERIES, series_stiffness)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
     unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
@@ -119,7 +119,7 @@ def fit(
         line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
-    return FitResult(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
+    return FitResult(result, solution, _facts(curve, solution), [picture], notes=_notes(names, mass))
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +211,7 @@ def _best_start(
     return best
 
 
-def _facts(curve: PreloadCurve, solution: Solution) -> dict[str, tuple[float, str, str]]:
+def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
     power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),

@@ -101,7 +101,6 @@ def fit(
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
     solution, scale = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
-    picture, beside = memory.pictures(data, model, solution.values, scale)
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])
     described = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
@@ -109,9 +108,8 @@ def fit(
         result,
         solution,
         described | memory.facts(data, solution, found, scale),
-        picture,
+        memory.pictures(data, model, solution.values, scale),
         notes=memory.notes(data, solution),
-        second_picture=beside,
     )
 
 

@@ -17,7 +17,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ....fitting.least_squares import Solution
-from ....fitting.outcome import FitResult, Picture, fitted, undetermined
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, undetermined
 from . import hysteresis
 from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor
 from .log_reading import ONE_SPEED, Samples, joined, named, read
@@ -85,9 +85,8 @@ def fit(
         result,
         found,
         facts(file, samples, whole, wanted),
-        drawn[0],
+        drawn,
         notes=left,
-        more_pictures=drawn[1:],
         intervals=intervals,
     )
 
@@ -176,12 +175,7 @@ def _span(samples: Samples) -> str:
     return text + (f", {known.min():.5g} to {known.max():.5g} K" if known.size else "")
 
 
-Facts = dict[str, tuple[float, str, str]]
-
-
-def facts(
-    file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]
-) -> dict[str, tuple[float, str, str]]:
+def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]) -> Facts:
     """Residual, what was found beside, and the held-out part beside a constant."""
     ratio = abs(whole.drive.ratio)
     beside = Linear.of(samples, ratio)

@@ -17,7 +17,7 @@ from jointfmu.quantity.units import Sizes, sizes
 from .... import columns
 from ....fitting import loop
 from ....fitting.least_squares import NOTHING, Solution, solve
-from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
@@ -46,16 +46,21 @@ def fit(
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
     rated_torque: float | None = None,
+    law: str | None = None,
 ) -> FitResult:
     """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
 
     The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
     scales the start's torques (max_torque, smoothing) to another size of drive. `free` None: FREE, of lines
-    of a catalogue their stiffnesses.
+    of a catalogue their stiffnesses. The law `table` takes the mid-line as it is, see `fit_table`.
 
     Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
     that cannot be fitted. RuntimeError if the fit finds no end.
     """
+    if law == "table":
+        if free:
+            raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
+        return fit_table(path, start, rated_torque)
     record = read(path, start, rated_torque)
     line, file = record.line, record.start
     if file.law == "table":
@@ -116,7 +121,7 @@ def outcome(
         line=(grid, drive.windup(result.values, grid) / ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
-    return FitResult(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
+    return FitResult(result, solution, _facts(line, shift, rest, noise), [picture], notes=_notes(line, rest))
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
@@ -157,7 +162,7 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
             )
 
 
-def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> dict[str, tuple[float, str, str]]:
+def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> Facts:
     """What was read off the record beside the parameters."""
     facts = {
         "points": (float(np.sum(line.count)), "1", "samples used"),
