@@ -4,7 +4,8 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -138,12 +139,16 @@ def written(sub: argparse.ArgumentParser, text: str = "write the parameter file 
     sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
 
 
-def without_package(error: ImportError, purpose: str, extra: str = "build") -> ValueError:
-    """The refusal of a command whose package is missing, with the extra that brings it."""
-    return ValueError(
-        f"the package {error.name or error} is missing, needed to {purpose}; "
-        f"install it with: pip install 'jointfmu[{extra}]'"
-    )
+@contextmanager
+def needing(purpose: str, extra: str = "build") -> Iterator[None]:
+    """ValueError, one line, where a package is missing inside, with the extra that brings it."""
+    try:
+        yield
+    except ImportError as error:
+        raise ValueError(
+            f"the package {error.name or error} is missing, needed to {purpose}; "
+            f"install it with: pip install 'jointfmu[{extra}]'"
+        ) from None
 
 
 def settings(sub: argparse.ArgumentParser) -> None:

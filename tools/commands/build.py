@@ -11,7 +11,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..command_line.common import Answer, Commands, argument, command, without_package
+from ..command_line.common import Answer, Commands, argument, command, needing
 from ..pressure import judge_file
 
 SHOWN = 3
@@ -50,7 +50,7 @@ def _build(args: argparse.Namespace) -> Answer:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
     check_folder(args.out)
     file = load(args.params) if args.params else None
-    try:
+    with needing("build"):
         from jointfmu_fmu_src import building
 
         before = {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")}
@@ -64,8 +64,6 @@ def _build(args: argparse.Namespace) -> Answer:
                 from ..systems import ssp
 
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool)
-    except ImportError as error:
-        raise without_package(error, "build") from None
     changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
@@ -123,10 +121,8 @@ def add_cache(commands: Commands) -> None:
 
 
 def _cache(args: argparse.Namespace) -> Answer:
-    try:
+    with needing("build"):
         from jointfmu_fmu_src.native import cache
-    except ImportError as error:
-        raise without_package(error, "build") from None
     if args.clear:
         cache.clear()
     files, size = cache.content()

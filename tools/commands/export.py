@@ -9,7 +9,7 @@ from jointfmu.joints import KINDS
 from jointfmu.judgement import Judgement, judge, known_height
 from jointfmu.parameters import ParameterFile, default, load
 
-from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, needing
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
@@ -112,10 +112,8 @@ def _robots(args: argparse.Namespace) -> Answer:
     check_writable(args.out)
     from ..robots.writing import written
 
-    try:
+    with needing("measure the file", "mujoco"):
         found = written(args.form, args.what, args.torque)
-    except ImportError as error:
-        raise without_package(error, "measure the file", "mujoco") from None
     write_text(args.out, found.text)
     return Answer(
         document={"written": str(args.out), "format": args.form, **found.facts},

@@ -9,7 +9,7 @@ from jointfmu.joints.kind import Kind
 from jointfmu.judgement import Judgement
 from jointfmu.parameters import ParameterFile, load
 
-from ..command_line.common import Answer, Commands, argument, command, flag, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, needing
 from ..pressure import judge_file
 
 
@@ -29,12 +29,10 @@ def _modelica(args: argparse.Namespace) -> Answer:
     check_folder(args.out)
     file = load(args.params) if args.params else None
     points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
-    try:
+    with needing("write the library"):
         from ..modelica import library
 
         written = library.write(args.out, file, points)
-    except ImportError as error:
-        raise without_package(error, "write the library") from None
     return Answer(
         document={"written": [str(path) for path in written]},
         lines=[f"wrote {args.out / library.NAME}: {len(written)} files"],

@@ -11,10 +11,10 @@ import numpy as np
 from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
-from .. import columns, plots
-from ..command_line.common import Answer, Commands, argument, command, settings, without_package
+from .. import columns
+from ..command_line.common import Answer, Commands, argument, command, needing, settings
 from ..systems.system import names, system
-from . import check_files
+from . import check_files, draw
 
 
 def add(commands: Commands) -> None:
@@ -37,10 +37,8 @@ def add(commands: Commands) -> None:
 
 
 def _ring(args: argparse.Namespace) -> Answer:
-    try:
+    with needing("run a system"):
         from ..systems import ringing
-    except ImportError as error:
-        raise without_package(error, "run a system") from None
     example = ringing.vibrating_joint(system(args.system), args.joint)
     _check(args, example.inertia_unit)
     for name in (example.body.fmu, example.body.partner):
@@ -58,10 +56,9 @@ def _ring(args: argparse.Namespace) -> Answer:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import SIZE, draw
+        from ..report.systems import SIZE, resonance_panels
 
-        with plots.drawing(args.plot, SIZE) as figure:
-            draw(figure, points, example, args.fmus)
+        draw(args.plot, resonance_panels(points, example, args.fmus), SIZE)
     misses = [line for point in points for line in point.misses]
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
@@ -94,10 +91,9 @@ def _decays(args: argparse.Namespace, example: Any) -> Answer:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import WIDE, draw_decays
+        from ..report.systems import WIDE, decay_panels
 
-        with plots.drawing(args.plot, WIDE) as figure:
-            draw_decays(figure, points, body)
+        draw(args.plot, decay_panels(points, body), WIDE)
     rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
     document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
     return Answer(document=document, lines=table.splitlines(), written=written)

@@ -9,7 +9,7 @@ from jointfmu.files.writing import check_folder, write_text
 from jointfmu.parameters import dump
 
 from .. import plots
-from ..command_line.common import Answer, Commands, argument, command, without_package
+from ..command_line.common import Answer, Commands, argument, command, needing
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -49,10 +49,8 @@ def run(args: argparse.Namespace) -> Answer:
     check_folder(args.out)
     pictures = args.out / "frequencies.png", args.out / "payload.png"
     plots.check(pictures[0])
-    try:
+    with needing("read robots", "mujoco"):
         import mujoco  # noqa: F401
-    except ImportError as error:
-        raise without_package(error, "read robots", "mujoco") from None
     from ..interface import load
     from ..robots import elastic, poses
     from ..robots import pictures as drawn
@@ -77,13 +75,11 @@ def run(args: argparse.Namespace) -> Answer:
         pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     more = []
-    try:
+    with needing("compile", "mujoco"):
         if args.plugin:
             more += _plugged(args, spec, axes, files)
         if args.fmu:
             more += _system(args, model, axes, files, pose, tip)
-    except ImportError as error:
-        raise without_package(error, "compile", "mujoco") from None
     longest = poses.longest_step(model, axes, pose)
     notes = [line for axis in axes for line in axis.noted]
     if model.opt.timestep > longest:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from jointfmu.files.writing import check_folder, write_text
 
-from .. import columns, plots
-from ..command_line.common import Answer, Commands, argument, command, without_package
+from .. import columns
+from ..command_line.common import Answer, Commands, argument, command, needing
 from ..systems.system import names, system
-from . import check_files
+from . import check_files, draw
 
 
 def add(commands: Commands) -> None:
@@ -28,7 +28,7 @@ def _system(args: argparse.Namespace) -> Answer:
     found = system(args.file)
     check_folder(args.out)
     check_files(args.csv, plot=args.plot)
-    try:
+    with needing("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
@@ -41,8 +41,6 @@ def _system(args: argparse.Namespace) -> Answer:
             from jointfmu_fmu_src.system.fmu import build_system
 
             built += build_system(whole, args.out)
-    except ImportError as error:
-        raise without_package(error, "build a system") from None
     written = args.out / "modelica" / f"{model_name(found)}.mo"
     write_text(written, model)
     paths = [*built, written]
@@ -56,8 +54,7 @@ def _system(args: argparse.Namespace) -> Answer:
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
         if args.plot:
-            with plots.drawing(args.plot, systems.MOTION_SIZE) as figure:
-                systems.draw_motion(figure, found, run)
+            draw(args.plot, systems.panels(found, run), systems.MOTION_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
     document = {"system": found.name, "built": [str(path) for path in paths]}
     return Answer(document=document, lines=[f"built {path}" for path in paths])

@@ -223,7 +223,6 @@ def covariance(jacobian: Array, noise: float) -> Array:
 
 EXACT, SECANTS = 1e-10, 40
 """Relative accuracy with which the quantity is met [1], and the steps for that."""
-"""Step of the differences in a logarithm [1]."""
 
 
 @dataclass(frozen=True, slots=True)

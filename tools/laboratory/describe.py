@@ -1,7 +1,6 @@
 """What the page knows of a module: its variables, parameter sets, curves, points; JSON in the end."""
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -23,6 +22,7 @@ from jointfmu.published.reference import ROLES, points
 from jointfmu.quantity import units
 
 from ..joint_parts import part
+from ..ramps.loops import suffix
 from ..shown import shown_unit
 from .part import LaboratoryModel
 
@@ -141,21 +141,11 @@ def pairs(model: Model) -> dict[str, str]:
     """{input: the output whose product with it is an energy}, of the same suffix, else the first one."""
     found = {}
     for i in model.inputs:
-        fitting = [o.name for o in model.outputs if _is_energy(i.unit, o.unit)]
-        same = [name for name in fitting if _ending(name) == _ending(i.name)]
-        if same or (fitting and not _ending(i.name) and i.name == model.ramp.input):
+        fitting = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
+        same = [name for name in fitting if suffix(name) == suffix(i.name)]
+        if same or (fitting and not suffix(i.name) and i.name == model.ramp.input):
             found[i.name] = (same or fitting)[0]
     return found
-
-
-def _ending(name: str) -> str:
-    """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
-    match = re.search(r"(_[xyz]|\d+)$", name)
-    return match[0] if match else ""
-
-
-def _is_energy(one: str, other: str) -> bool:
-    return {one, other} in ({"N", "m"}, {"N.m", "rad"})
 
 
 def _bench(model: Model) -> LaboratoryModel:

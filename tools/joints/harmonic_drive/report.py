@@ -78,7 +78,6 @@ def _over_speed(file: ParameterFile) -> Figure:
 _LINES = ("K1", "K2", "K3", "T1", "T2")
 _LOOP = {"hysteresis_loss": (hysteresis_loss, OWN), "lost_motion": (lost_motion, PREDICTED)}
 _UNITS = {"starting_torque": "N.m", "running_torque": "N.m", "back_driving_torque": "N.m", "efficiency": "1"}
-"""Torque up to which back-driving is sought, over the published one [1]."""
 
 
 def beside(model: Model, file: ParameterFile) -> list[Beside]:
