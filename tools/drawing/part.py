@@ -67,15 +67,12 @@ class Sheet:
         self.ranges[name] = (low, high)
 
     def stated(self, name: str, value: object) -> None:
-        """A parameter that stands on the drawing."""
         self.put(name, value, "user", "stated on the drawing")
 
     def take(self, name: str, known: Known) -> None:
-        """A parameter of a table."""
         self.put(name, known.value, known.kind, known.source)
 
     def value(self, name: str) -> Any:
-        """One of the values."""
         return self.known[name][0]
 
     def file(self, name: str, roughness: Mapping[str, float] | None = None) -> ParameterFile:

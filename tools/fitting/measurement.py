@@ -41,7 +41,6 @@ class Heads:
 
     @property
     def columns(self) -> Mapping[str, Sizes]:
-        """All columns that are read."""
         return {
             self.motion: self.motions,
             self.force: self.forces,
@@ -155,7 +154,6 @@ class Measurement:
 
     @property
     def span(self) -> str:
-        """What it is and up to which amplitude."""
         return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.unit[1]}"
 
 

@@ -43,18 +43,15 @@ class MeasurementModel:
     damping: float
 
     def of(self, values: Mapping[str, float]) -> HysteresisLaw:
-        """The law of the loop at the values."""
         return self.law({name: value for name, value in values.items() if name != DAMPING})
 
     def residuals(self, data: Loops | Free | Response, values: Mapping[str, float], scale: Array) -> Array:
-        """Residuals of the data at the values."""
         law = self.of(values)
         if isinstance(data, Loops):
             return data.residuals(law, scale)
         return data.residuals(self.oscillator(law, values), scale)
 
     def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
-        """The mass on the joint."""
         assert self.inertia is not None
         return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
 

@@ -206,7 +206,6 @@ class FitResult:
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
-        """Everything as one JSON object."""
         return {
             "joint": self.parameters.joint,
             "unknowns": self.rows(),

@@ -134,11 +134,9 @@ class HysteresisLoops:
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """What the FMU logged, once each."""
         return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
 
     def rows(self) -> list[dict[str, float]]:
-        """What each loop gives, see `Loop.row`."""
         return [loop.row() for loop in self.loops]
 
     def table(self) -> str:

@@ -47,7 +47,6 @@ class ScaleSeries:
     covariance: Callable[[float], Array]
 
     def within(self, keep: NDArray[Any]) -> "ScaleSeries":
-        """The values of a boolean or index array."""
         return replace(
             self,
             scale=self.scale[keep],

@@ -59,7 +59,6 @@ class PythonDrive:
         self.step(0.0, 0.0)
 
     def set(self, *values: float) -> None:
-        """Give the inputs their values."""
         self._inputs = {**self._rest, **dict(zip(_MOTION, values, strict=True))}
 
     def get(self) -> list[float]:
