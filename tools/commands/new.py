@@ -2,7 +2,7 @@
 
 import argparse
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -87,36 +87,26 @@ def _shown(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _materials() -> Iterator[dict[str, object]]:
+_MATERIAL = {
+    "E [GPa]": ("E", 1e-9),
+    "nu": ("nu", 1.0),
+    "density [kg/m3]": ("density", 1.0),
+    "H [MPa]": ("H", 1e-6),
+}
+_FINISH = {"Ra [um]": ("Ra", 1e6), "from": ("Ra_low", 1e6), "to": ("Ra_high", 1e6), "slope": ("slope", 1.0)}
+"""{head: column, its number over that in SI}."""
+
+
+def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Iterator[dict[str, object]]:
+    """The rows of `materials` or `finishes`; `source` is made of those of their numbers."""
     from ..drawing.tables import table
 
-    for row in table("materials").values():
-        known = row.numbers
-        yield {
-            "name": row.name,
-            "E [GPa]": known["E"].value / 1e9,
-            "nu": known["nu"].value,
-            "density [kg/m3]": known["density"].value,
-            "H [MPa]": known["H"].value / 1e6,
-            "also": ", ".join(row.also),
-            "source": f"{known['E'].source}; H: {known['H'].source}",
+    for row in table(name).values():
+        numbers = {
+            head: round(row.numbers[column].value * times, 9) for head, (column, times) in heads.items()
         }
-
-
-def _finishes() -> Iterator[dict[str, object]]:
-    from ..drawing.tables import table
-
-    for row in table("finishes").values():
-        known = row.numbers
-        yield {
-            "name": row.name,
-            "Ra [um]": known["Ra"].value * 1e6,
-            "from": known["Ra_low"].value * 1e6,
-            "to": known["Ra_high"].value * 1e6,
-            "slope": known["slope"].value,
-            "also": ", ".join(row.also),
-            "source": known["Ra_low"].source,
-        }
+        also = {"also": ", ".join(row.also), "source": source.format(**row.numbers)}
+        yield {"name": row.name, **numbers, **also}
 
 
 def _bolts() -> Iterator[dict[str, object]]:
@@ -139,7 +129,11 @@ def _bolts() -> Iterator[dict[str, object]]:
         }
 
 
-TABLES = {"materials": _materials, "finishes": _finishes, "bolts": _bolts}
+TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
+    "materials": partial(_rows, "materials", _MATERIAL, "{E.source}; H: {H.source}"),
+    "finishes": partial(_rows, "finishes", _FINISH, "{Ra_low.source}"),
+    "bolts": _bolts,
+}
 """{name: its rows}."""
 
 

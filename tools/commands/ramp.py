@@ -14,6 +14,7 @@ from jointfmu.files.writing import write_text
 from .. import plots
 from ..command_line.common import Answer, Commands, argument, command, flag, settings
 from ..ramps import loops, ramp
+from ..shown import aligned
 from . import check_files
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def _ramp(args: argparse.Namespace) -> Answer:
     columns = {name: column.tolist() for name, column in result.columns.items()}
     lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
     if not lines and not args.json:
-        lines = [_table(result) if sys.stdout.isatty() else result.csv()[:-1]]
+        lines = _table(result) if sys.stdout.isatty() else [result.csv()[:-1]]
     return Answer(document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines)
 
 
@@ -94,7 +95,7 @@ def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ra
     )
 
 
-def _table(result: ramp.RampResult) -> str:
+def _table(result: ramp.RampResult) -> list[str]:
     """Some of the points for people, in the units in which they read best."""
     every = next(iter(result.columns.values())).size
     shown = np.unique(np.linspace(0, every - 1, min(every, ROWS)).round().astype(int))
@@ -107,9 +108,8 @@ def _table(result: ramp.RampResult) -> str:
                 *(f"{size * values[i] + 0.0:.5g}" for i in shown),
             ]
         )
-    rows = zip(*([f"{cell:>{max(map(len, column))}}" for cell in column] for column in columns), strict=True)
-    more = f"\n{len(shown)} of {every} points; --csv writes all" if len(shown) < every else ""
-    return "\n".join("  ".join(row) for row in rows) + more
+    more = [f"{len(shown)} of {every} points; --csv writes all"] if len(shown) < every else []
+    return [*aligned([*zip(*columns, strict=True)], 0), *more]
 
 
 def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:

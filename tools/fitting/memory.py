@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from jointfmu.quantity.refusal import Refusal
 from ..plots import shown
 from .branches import Loops, ordered
 from .hysteresis import Free, HysteresisLaw, Oscillator, Response
-from .least_squares import Exchange, Residuals, Solution, Unknown, solve
+from .least_squares import Exchange, Residuals, Solution, Unknown, best_start, solve
 from .measurement import Measurement
 from .outcome import Facts, Picture, systematic
 
@@ -112,7 +111,17 @@ def search(
 
     rough = data.scale
     seen = None if level is None else measurement.rest_stiffness(model.inertia)
-    own = {u.name: u for u in _best(unknowns, residuals(rough), starts, level, seen)}
+
+    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """At the stiffness that the data have, whatever else the point has."""
+        if level is not None and seen is not None:
+            rest = {name: value for name, value in values.items() if name != level.name}
+            values |= level.values(rest | {level.label: seen}, values[level.name])
+        if any(not u.low < values[u.name] < u.high for u in unknowns):
+            return values, np.inf
+        return values, float(np.sum(residuals(rough)(values) ** 2))
+
+    own = {u.name: u for u in best_start(unknowns, starts, tried)}
     exchange = level if moved else None
     found = [exchange.unknown(own) if exchange and u.name == exchange.name else u for u in own.values()]
     first = solve(found, exchanged(residuals(rough)), noise=ROUGH_NOISE, tolerance=ROUGH)
@@ -127,34 +136,6 @@ def _inside(unknown: Unknown, value: float) -> float:
     """A value kept off the bounds."""
     low = max(unknown.low * (1.0 + 1e-6), 1e-300)
     return float(min(max(value, low), unknown.high * (1.0 - 1e-6)))
-
-
-def _best(
-    unknowns: Sequence[Unknown],
-    residuals: Residuals,
-    starts: Mapping[str, Sequence[float]],
-    level: Exchange | None,
-    seen: float | None,
-) -> Sequence[Unknown]:
-    """The unknowns at the best of the starting points; at their own starts where no other is allowed.
-
-    seen : stiffness that `level` has at every starting point
-    """
-    best, least = unknowns, np.inf
-    for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
-        values = dict(zip((u.name for u in unknowns), point, strict=True))
-        try:
-            if level is not None and seen is not None:
-                rest = {name: value for name, value in values.items() if name != level.name}
-                values |= level.values(rest | {level.label: seen}, values[level.name])
-            if not all(u.low < values[u.name] < u.high for u in unknowns):
-                continue
-            cost = float(np.sum(residuals(values) ** 2))
-        except (ValueError, RuntimeError):
-            continue
-        if cost < least:
-            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
-    return best
 
 
 def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array) -> Facts:

@@ -274,17 +274,14 @@ def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Ma
 def fitted(
     start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
-    """The file with fitted values; their source says from what, when and over which range."""
-    file = start.with_values(values, origin, f"fitted to {data}, {today()}, {span}")
-    return replace(file, name=f"fitted to {data}")
+    """The file with fitted values; their source says from what, over which range and when: today, or at
+    SOURCE_DATE_EPOCH where that is set, for files that repeat.
 
-
-def today() -> str:
-    """The date, or that of SOURCE_DATE_EPOCH where it is set (for files that repeat).
-
-    Raises ValueError if the variable is no number of seconds.
+    Raises ValueError if that variable is no number of seconds.
     """
-    return build_time().date().isoformat()
+    today = build_time().date().isoformat()
+    file = start.with_values(values, origin, f"fitted to {data}, {today}, {span}")
+    return replace(file, name=f"fitted to {data}")
 
 
 def size(outcome: FitResult) -> tuple[float, float]:

@@ -131,17 +131,13 @@ def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
         direction=series.direction,
         series=series,
         fit=fitted,
-        profile=ProfileFractal(D=_estimate(2.0 - H), G=_roughness(profile)),
-        areal=ArealFractal(D_s=_estimate(3.0 - H), G_s=_roughness(areal)),
+        profile=ProfileFractal(
+            D=Estimate(*_interval(2.0 - H)), G=RoughnessEstimate.of_logarithms(*_interval(profile))
+        ),
+        areal=ArealFractal(
+            D_s=Estimate(*_interval(3.0 - H)), G_s=RoughnessEstimate.of_logarithms(*_interval(areal))
+        ),
     )
-
-
-def _estimate(values: Array) -> Estimate:
-    return Estimate(*_interval(values))
-
-
-def _roughness(logarithms: Array) -> RoughnessEstimate:
-    return RoughnessEstimate.of_logarithms(*_interval(logarithms))
 
 
 def _interval(values: Array) -> tuple[float, float, float]:

@@ -14,7 +14,6 @@ and G stays as it is.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +28,7 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, factor, sizes
 
 from .... import columns
-from ....fitting.least_squares import Solution, Unknown, solve
+from ....fitting.least_squares import Solution, Unknown, best_start, solve
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, unknowns
 
 SERIES = "series_stiffness"
@@ -148,11 +147,7 @@ def _measured(path: Path) -> PreloadCurve:
         raise ValueError(
             f"{path}: has {have} of stiffness and frequency; expected one: {columns.heading(choice)}"
         )
-    for name in ("preload", given[0]):
-        if np.any(bad := table.columns[name] <= 0.0):
-            unit = next(iter(COLUMNS[name]))
-            worst = table.columns[name][bad][0]
-            raise ValueError(f"{path}: {name} = {worst:g} {unit} is outside (0, inf)")
+    table.positive(("preload", given[0]), COLUMNS)
     order = np.argsort(preload, kind="stable")
     preload, value = preload[order], table.columns[given[0]][order]
     if np.unique(preload).size < LEAST:
@@ -186,7 +181,7 @@ def _best_start(
     names: Sequence[str],
     curve: PreloadCurve,
     miss: Callable[[Mapping[str, float]], Array],
-) -> list[Unknown]:
+) -> Sequence[Unknown]:
     """The unknowns at the best of some starting points."""
     wanted = unknowns(file, [name for name in names if name != SERIES], {})
     level = (
@@ -195,20 +190,16 @@ def _best_start(
         else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
     )
     wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
-    grids = [(u.start, *STARTS.get(u.name, ())) for u in wanted]
-    best, least = wanted, np.inf
-    for point in product(*grids):
-        values = dict(zip((u.name for u in wanted), point, strict=True))
-        try:
-            rest = miss(values)
-        except (ValueError, RuntimeError):
-            continue
+
+    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """With the mass that suits the data best, whose square root the frequencies have."""
+        rest = miss(values)
         if "mass" in values:
             values["mass"] *= float(np.exp(2.0 * np.mean(rest)))
             rest = rest - np.mean(rest)
-        if (cost := float(rest @ rest)) < least:
-            least, best = cost, [replace(u, start=values[u.name]) for u in wanted]
-    return best
+        return values, float(rest @ rest)
+
+    return best_start(wanted, STARTS, tried)
 
 
 def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
