@@ -1,7 +1,7 @@
 """What catalogues quote of a drive, found by running it: efficiency, torques without load, its loop."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,6 +75,20 @@ class PythonDrive:
         return self._model.evolve(self._spring, self._inputs, self._memory)
 
 
+def wound_up(carried: Callable[[float], float], torque: float, stiffness: float) -> float:
+    """Wind-up [rad] at which a drive of about this stiffness [N.m/rad] carries a torque [N.m]."""
+
+    def missing(angle: float) -> float:
+        return carried(angle) - torque
+
+    if not torque:
+        return 0.0
+    far = torque / stiffness
+    while missing(far) * torque < 0.0:
+        far *= 2.0
+    return float(brentq(missing, 0.0, far, xtol=1e-16))
+
+
 @dataclass(slots=True)
 class Bench:
     """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`."""
@@ -120,16 +134,11 @@ class Bench:
     def _wind_up(self, torque: float) -> float:
         """Wind-up [rad] under a torque [N.m]."""
 
-        def missing(angle: float) -> float:
+        def carried(angle: float) -> float:
             self.drive.set(self.angle, 0.0, self.angle / self.ratio + angle, 0.0)
-            return self.drive.get()[0] - torque
+            return self.drive.get()[0]
 
-        if not torque:
-            return 0.0
-        far = torque / self.stiffness
-        while missing(far) * torque < 0.0:
-            far *= 2.0
-        return float(brentq(missing, 0.0, far, xtol=1e-16))
+        return wound_up(carried, torque, self.stiffness)
 
 
 @contextmanager
