@@ -17,7 +17,8 @@ from .outcome import Facts, Picture, systematic
 
 DAMPING = "damping_ratio"
 """Unknown that is no parameter of the joint: the damping ratio of the structure beside it [1]."""
-FIRST_DAMPING, MOST_DAMPING = 1e-3, 0.3
+MOST_DAMPING = 0.3
+DAMPING_UNKNOWN = Unknown(DAMPING, "1", 1e-3, 1e-9, MOST_DAMPING)
 ROUGH, TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 ROUGH_NOISE = 0.01
@@ -73,11 +74,6 @@ def model(
     if not 0.0 <= damping < MOST_DAMPING:
         raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
     return MeasurementModel(law, inertia, damping)
-
-
-def damping_unknown() -> Unknown:
-    """The damping ratio of the structure as an unknown."""
-    return Unknown(DAMPING, "1", FIRST_DAMPING, 1e-9, MOST_DAMPING)
 
 
 def search(

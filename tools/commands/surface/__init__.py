@@ -1,6 +1,7 @@
 """`jointfmu surface`: D and G from measured heights; `jointfmu surface synthesize`: made heights."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -128,9 +129,7 @@ def _base(args: argparse.Namespace) -> ParameterFile | None:
         law = args.law or ROUGHNESS_LAW
         if law not in KINDS[args.joint].laws:
             raise Refusal(f"{args.joint} has no law {law!r}, but {', '.join(KINDS[args.joint].laws)}", "law")
-        from ...surfaces.joint_parameters import without_roughness
-
-        return without_roughness(default(args.joint, law))
+        return replace(default(args.joint, law), roughness={})  # that of another surface
     if args.law:
         raise Refusal(f"law {args.law} needs --joint, one of {', '.join(KINDS)}", "law")
     if args.out:

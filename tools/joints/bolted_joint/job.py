@@ -49,11 +49,12 @@ def through_fmu(point: Point, folder: Path) -> float | None:
 
 
 _CASES = ((9e3, 0.0), (15e3, 4500.0))
-"""Preload [N] and moment [N.m] of the maps."""
+"""Preload [N] and moment [N.m] of the maps of the box specimen, without and with that of the paper."""
 
 
 def figures(outcome: Any) -> list[Figure]:
     """The figures of an outcome of the main job."""
+    joint = default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
@@ -65,7 +66,7 @@ def figures(outcome: Any) -> list[Figure]:
             "Contact pressure",
             "Bolts are numbered. First the preload of the published pressures, then the moment that shifts "
             "the bolt forces of the two rows by 5 kN.",
-            pictures=pressure_maps(),
+            pictures=[plan(joint, *case) for case in _CASES],
         ),
     ]
 
@@ -78,12 +79,6 @@ def stiffness(result: RampResult) -> list[Panel]:
         Panel("Stiffness", over, "K [N/um]", [Series(n, load, c[n] / 1e6) for n in ("K_zz", "K_xx")]),
         Panel("Damping", over, "C [kN s/m]", [Series(n, load, c[n] / 1e3) for n in ("C_zz", "C_xx")]),
     ]
-
-
-def pressure_maps() -> list[str]:
-    """Contact pressure of the box specimen, without and with the bending moment of the paper."""
-    joint = default("bolted_joint").values
-    return [plan(joint, *case) for case in _CASES]
 
 
 PRELOADS = (3e3, 9e3, 15e3, 30e3)

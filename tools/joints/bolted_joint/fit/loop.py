@@ -26,7 +26,7 @@ from jointfmu.quantity.units import sizes
 from ....fitting import memory
 from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Exchange, Unknown
-from ....fitting.measurement import Heads, Measurement, measured
+from ....fitting.measurement import Heads, measured
 from ....fitting.outcome import Facts, FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
 
@@ -152,7 +152,7 @@ def fit(
             SERIES,
         )
     wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
-    wanted += [memory.damping_unknown()] * (memory.DAMPING in names)
+    wanted += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
     wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
 
     def rest(values: Mapping[str, float]) -> float:
@@ -167,7 +167,9 @@ def fit(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
     law, described = first_loading(result.values, force, beside(solution.values))
-    facts = described | _reached(data, law, described["friction_limit"][0])
+    reached = float(law.friction(np.array([data.amplitude]))[0]) / described["friction_limit"][0]
+    text = "largest friction force of the data over friction_limit"
+    facts = described | {"slip_reached": (reached, "1", text)}
     return FitResult(
         result,
         solution,
@@ -190,9 +192,3 @@ def _level(
 def _own(values: Mapping[str, float]) -> dict[str, float]:
     """Those of the joint."""
     return {name: value for name, value in values.items() if name not in BESIDE}
-
-
-def _reached(data: Measurement, law: HysteresisLaw, limit: float) -> Facts:
-    """How near to gross slip the data come."""
-    force = float(law.friction(np.array([data.amplitude]))[0])
-    return {"slip_reached": (force / limit, "1", "largest friction force of the data over friction_limit")}

@@ -156,7 +156,8 @@ def wanted_of(
     if free:
         return list(free), []
     left: dict[str, str] = {}
-    load = _first_load(samples, drive, rotor)
+    beside, linear = _straight(samples, drive)
+    load = beside.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
     if np.max(np.abs(load)) < LOADED * drive.rated_torque:
         text = f"the load stays below {LOADED:g} times the rated torque"
         left |= {LOSS: text, BACK: text}
@@ -175,12 +176,6 @@ def wanted_of(
         left[STRIBECK] = f"the motor is never slower than {slow:.3g} rad/s, twice stribeck_speed is needed"
     notes = [f"the log does not determine {name}, which stays as it is: {why}" for name, why in left.items()]
     return [name for name in FREE if name not in left], notes
-
-
-def _first_load(samples: Samples, drive: Drive, rotor: float) -> Array:
-    """The load (n) [N.m] as friction of constant dry and viscous parts leaves it."""
-    beside, linear = _straight(samples, drive)
-    return beside.load(samples, linear[2:], abs(drive.ratio), rotor)
 
 
 def _straight(samples: Samples, drive: Drive) -> tuple[Linear, Array]:
