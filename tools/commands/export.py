@@ -1,6 +1,7 @@
 """`jointfmu export`: the joint for finite elements, Modelica tables and CSV."""
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -81,8 +82,7 @@ def _export(args: argparse.Namespace) -> Answer:
     if args.what not in WHAT:
         choices = ", ".join(map(repr, WHAT))
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
-    if args.torque is not None:
-        raise ValueError(f"--torque has no meaning for {args.form}; it is for {', '.join(ROBOTS)}")
+    _refuse(args, {"torque": f"{args.form}; it is for {', '.join(ROBOTS)}"})
     if args.what not in FORMS[args.form]:
         raise ValueError(
             f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
@@ -104,20 +104,18 @@ def _export(args: argparse.Namespace) -> Answer:
 def _robots(args: argparse.Namespace) -> Answer:
     """Write a drive for a robot's simulator, and say what it misses."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
-    for name in idle:
-        if getattr(args, name) is not None:
-            raise ValueError(f"{flag(name)} has no meaning for {args.form}")
+    _refuse(args, dict.fromkeys(idle, args.form))
     if args.units != SI.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
     check_writable(args.out)
     from ..robots.writing import written
 
     with needing("measure the file", "mujoco"):
-        found = written(args.form, args.what, args.torque)
-    write_text(args.out, found.text)
+        text, lines, facts = written(args.form, args.what, args.torque)
+    write_text(args.out, text)
     return Answer(
-        document={"written": str(args.out), "format": args.form, **found.facts},
-        lines=[f"wrote {args.out}: {found.name} for {args.form}", *(f"  {x}" for x in found.lines)],
+        document={"written": str(args.out), "format": args.form, **facts},
+        lines=[f"wrote {args.out}: {facts['drive']} for {args.form}", *(f"  {line}" for line in lines)],
     )
 
 
@@ -169,13 +167,18 @@ def _state(args: argparse.Namespace, joint: str) -> Any:
     return offered.state(**{name: value or 0.0 for name, value in values.items()})
 
 
+def _refuse(args: argparse.Namespace, idle: Mapping[str, str]) -> None:
+    """Refuse what is stated of these: {name: for what it has no meaning}."""
+    for name, what in idle.items():
+        if getattr(args, name) is not None:
+            raise ValueError(f"{flag(name)} has no meaning for {what}")
+
+
 def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
     """Refuse a working point that would do nothing, or is missing."""
     wanted = {} if args.what == "contact" else exports.of(joint).working_point
-    stated = [name for name in _working_points() if getattr(args, name) is not None]
-    for name in stated:
-        if name not in wanted:
-            raise ValueError(f"{flag(name)} has no meaning for the {args.what} of a {joint}")
+    _refuse(args, {name: f"the {args.what} of a {joint}" for name in _working_points() if name not in wanted})
+    stated = [name for name in wanted if getattr(args, name) is not None]
     first, text = next(iter(wanted.items()), ("", ""))
     if stated and first not in stated:
         raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
@@ -185,16 +188,15 @@ def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
 
 def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
     """Refuse options that would do nothing, or are missing."""
-    springs = args.what == "springs"
     exports.required(file.joint, args.what)
     _refuse_working_point(args, file.joint)
-    for name in ("nodes", "first", "normal"):
-        if getattr(args, name) is not None and not springs:
-            raise ValueError(f"--{name} has no meaning for a {args.what}; it is for springs")
-    if args.error is not None and springs:
-        raise ValueError("--error has no meaning for springs; it is for tables")
-    if args.first_set is not None and args.form != "ansys":
-        raise ValueError(f"--first-set has no meaning for {args.form}; it is for ansys")
+    if args.what == "springs":
+        idle = {"error": "springs; it is for tables"}
+    else:
+        idle = dict.fromkeys(("nodes", "first", "normal"), f"a {args.what}; it is for springs")
+    if args.form != "ansys":
+        idle["first_set"] = f"{args.form}; it is for ansys"
+    _refuse(args, idle)
     for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
         value, option = getattr(args, name), flag(name)
         if value is not None and not 1 <= value <= highest:

@@ -21,10 +21,12 @@ _WAYS = ((1.0, "above"), (-1.0, "below"))
 
 def resonances(found: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
     """A figure per system of a joint that rings; `folder` has the FMUs (FMI 2.0)."""
-    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
-    return [
-        _resonance(name, bodies[name], points, folder) for name, points in found.items() if name in bodies
-    ]
+    return [_resonance(name, one, found[name], folder) for name, one in _ringing(joint) if name in found]
+
+
+def _ringing(joint: str) -> list[tuple[str, VibratingJoint]]:
+    """The systems in which a joint of the kind rings."""
+    return [(name, one) for name, one in vibrating_joints().items() if one.joint.kind == joint]
 
 
 def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder: Path) -> Figure:
@@ -40,8 +42,7 @@ def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder
 
 def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
     """A figure per system of a joint that slips."""
-    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
-    return [_ring_down(name, bodies[name], points) for name, points in decays.items() if name in bodies]
+    return [_ring_down(name, one, decays[name]) for name, one in _ringing(joint) if name in decays]
 
 
 def _ring_down(name: str, one: VibratingJoint, points: Sequence[Decay]) -> Figure:

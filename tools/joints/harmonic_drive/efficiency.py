@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from scipy.optimize import brentq
 
@@ -35,16 +35,6 @@ def parameters(item: Item) -> dict[str, float]:
     """Ratio and friction of a drive of the catalogue, for the FMU."""
     numbers = {"ratio": item.numbers["ratio"], **friction(item.numbers)}
     return {name: number.value for name, number in numbers.items()}
-
-
-class Driven(Protocol):
-    """What a bench turns: set phi1, w1, phi2, w2, get tau and tau1 and maybe more, accept by a step."""
-
-    def set(self, *values: float) -> None: ...
-
-    def get(self) -> list[float]: ...
-
-    def step(self, time: float, size: float) -> None: ...
 
 
 class PythonDrive:
@@ -91,9 +81,12 @@ def wound_up(carried: Callable[[float], float], torque: float, stiffness: float)
 
 @dataclass(slots=True)
 class Bench:
-    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`."""
+    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`.
 
-    drive: Driven
+    drive : takes phi1, w1, phi2, w2, gives tau and tau1 and maybe more, and is accepted by a step
+    """
+
+    drive: Slave | PythonDrive
     ratio: float
     presliding: float
     stiffness: float

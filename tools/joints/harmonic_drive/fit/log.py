@@ -6,7 +6,6 @@ The last 30 % of each log, or every third row of a table, are predicted by a fit
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from scipy import stats
@@ -228,15 +227,7 @@ _FRICTION, _MISFIT = "friction at the motor [mN m]", "log - law [mN m]"
 _UNLOADED, _WARMTH = "friction without load [mN m]", "temperature [degrees C]"
 
 
-class FrictionLaw(Protocol):
-    """A fit: friction and torque at samples, friction without load at speeds and a temperature."""
-
-    def torque(self, samples: Samples) -> tuple[Array, Array]: ...
-
-    def unloaded(self, dq: Array, temperature: float) -> Array: ...
-
-
-def pictures(samples: Samples, law: FrictionLaw) -> Iterator[Picture]:
+def pictures(samples: Samples, law: FittedLog) -> Iterator[Picture]:
     """Over the speed of the joint, the time, the temperature, as far as the log has them."""
     braked, torque = law.torque(samples)
     misfit = samples.torque - torque
@@ -253,7 +244,7 @@ def pictures(samples: Samples, law: FrictionLaw) -> Iterator[Picture]:
         yield Picture(warmth, over, rest, (ends, np.ones(2)), (_WARMTH, "friction, log over law", _MISFIT))
 
 
-def _over_speed(samples: Samples, law: FrictionLaw, misfit: Array) -> Picture:
+def _over_speed(samples: Samples, law: FittedLog, misfit: Array) -> Picture:
     """Without load, at the median of the temperatures; held-out rows of a table are marked."""
     fastest = float(np.max(np.abs(samples.dq)))
     speed = np.linspace(-fastest, fastest, 400)
