@@ -18,7 +18,7 @@ from jointfmu.quantity.units import KELVIN_AT_ZERO
 from ....fitting.least_squares import Solution
 from ....fitting.outcome import Facts, FitResult, Picture, fitted, undetermined
 from . import hysteresis
-from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor
+from .log_friction import FittedLog, LinearTerms, fitted_to, wanted_of, with_rotor
 from .log_reading import ONE_SPEED, Samples, joined, named, read
 
 LEVEL = 0.95
@@ -177,7 +177,7 @@ def _span(samples: Samples) -> str:
 def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]) -> Facts:
     """Residual, what was found beside, and the held-out part beside a constant."""
     ratio = abs(whole.drive.ratio)
-    beside = Linear.of(samples, ratio)
+    beside = LinearTerms.of(samples, ratio)
     units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
     texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
@@ -210,7 +210,7 @@ def _constant(early: Samples, late: Samples, ratio: float) -> Array:
     """Torque (n) [N.m] at later samples by what is linear and a constant, fitted to earlier ones."""
     matrices = []
     for samples in (early, late):
-        beside = Linear.of(samples, ratio)
+        beside = LinearTerms.of(samples, ratio)
         matrices.append(
             (np.concatenate([np.ones((samples.dq.size, 1)), beside.matrix], axis=1), beside.known)
         )
