@@ -4,9 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("modelica", "new", "reduced"),
-    checks="job",
-    figures="job",
+    ("modelica", "new"),
+    checks="ramp",
+    figures="ramp",
+    reduced="ramp",
     export="load",
     laboratory="load",
     pressure="load",
