@@ -1,17 +1,8 @@
 """What fits the harmonic drive: a measured torque-angle curve, its loops, a robot's log, a catalogue row."""
 
-from typing import Any
-
 from ....fitting.procedure import Procedure, fit_of
 from ....joint_parts import Option
-
-_PER_ANGLE: Any = {"unit": "N.m/rad", "unit_by": "stiffness_unit"}
-_STIFFNESSES = (
-    ("K1", "stiffness below T1 [N.m/rad]"),
-    ("K2", "stiffness between T1 and T2 [N.m/rad]"),
-    ("K3", "stiffness above T2 [N.m/rad]"),
-)
-
+from ..catalogue import ROW
 
 FITS = (
     Procedure(
@@ -62,9 +53,16 @@ FITS = (
         text="a catalogue row to the harmonic drive",
         file=False,
         options=(
-            *(Option(name, text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
-            Option("T1", "torque at the first corner [N.m]", required=True, unit="N.m"),
-            Option("T2", "torque at the second corner [N.m]", required=True, unit="N.m"),
+            *(
+                Option(
+                    column.name,
+                    f"{column.text} [{column.unit}]",
+                    required=True,
+                    unit=column.unit,
+                    unit_by="stiffness_unit" if column.name.startswith("K") else "",
+                )
+                for column in ROW
+            ),
             Option(
                 "stiffness_unit",
                 "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",

@@ -21,6 +21,7 @@ from jointfmu.quantity import Array, build, flat_fields
 from ....catalogue import Printed
 from ....fitting.least_squares import NOTHING, Solution, solve
 from ....fitting.outcome import Facts, FitResult, fitted, model, unknowns
+from ..catalogue import LINES
 from . import drive
 from .drive import Row, angle_picture, stiffness, stiffness_picture
 
@@ -60,9 +61,7 @@ def stated_numbers(
     """{parameter: number} of a row that is printed in `source`, and of a ratio, if it is known."""
     origin = f"{source} ({row})"
     rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
-    found = {
-        name: Printed(getattr(row, name), "catalogue", origin) for name in ("K1", "K2", "K3", "T1", "T2")
-    }
+    found = {name: Printed(getattr(row, name), "catalogue", origin) for name in LINES}
     found["rated_torque"] = Printed(row.rated, rated_kind, rated)
     return found if ratio is None else found | {"ratio": Printed(ratio, "catalogue", origin)}
 
