@@ -16,7 +16,7 @@ import numpy as np
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import CORNER, CatalogueDrive
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import Array, build, flat_fields
+from jointfmu.quantity import Array
 
 from ....catalogue import Printed
 from ....fitting.least_squares import NOTHING, Solution, solve
@@ -155,17 +155,11 @@ def made(name: str, printed: Mapping[str, Printed], start: ParameterFile | None 
     Raises ValueError for a number outside its interval.
     """
     file = start or default("harmonic_drive")
-    shared = [label for label, _ in flat_fields(Drive) if label in file.flat]
-    if isinstance(file.values, CatalogueDrive):
-        shared.append("corner")
-    values = {label: file.flat[label] for label in shared} | {k: p.value for k, p in printed.items()}
-    origins = {k: v for k, v in file.origins.items() if k in shared} | {k: p.kind for k, p in printed.items()}
-    sources = {k: v for k, v in file.sources.items() if k in shared}
-    sources |= {k: p.source for k, p in printed.items()}
-    if "corner" not in values:
-        values["corner"], origins["corner"] = CORNER, "user"
-        sources["corner"] = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-    return ParameterFile("harmonic_drive", name, build(CatalogueDrive, values), origins, sources)
+    kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
+    if not (kept or "corner" in printed):
+        text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
+        printed = {**printed, "corner": Printed(CORNER, "user", text)}
+    return drive.with_law(file, CatalogueDrive, name, printed, kept)
 
 
 def fit_lines(
