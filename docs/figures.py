@@ -5,11 +5,13 @@ does `python docs/figures.py examples`, which runs the scripts in `examples`, no
 drives.
 """
 
+import io
 import os
+import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -19,9 +21,10 @@ from jointfmu_tools.job.checks import default_ramp
 from jointfmu_tools.joints.harmonic_drive import job
 from jointfmu_tools.joints.harmonic_drive.fit import catalogue
 from jointfmu_tools.joints.harmonic_drive.fit.drive import Row
+from jointfmu_tools.plots import BLUE, GREY, RED
 from jointfmu_tools.published import validation
-from jointfmu_tools.report.drawing import BLUE, GREY, RED, short, svg
-from jointfmu_tools.report.systems import SIZE, draw
+from jointfmu_tools.report.figure import drawn
+from jointfmu_tools.report.systems import SIZE, resonance_panels
 from jointfmu_tools.systems import ringing, ssp
 from jointfmu_tools.systems.system import system
 from matplotlib.axes import Axes
@@ -55,8 +58,8 @@ def main() -> None:
     if sys.argv[1:]:
         return
     result = default_ramp("HarmonicDriveCompliance", ROOT / "dist" / "python")
-    picture = job.stiffness(result, validation.validate())
-    write_text(IMAGES / "harmonic_drive_ramp.svg", picture)
+    panels = job.stiffness(result, validation.validate())
+    write_text(IMAGES / "harmonic_drive_ramp.svg", svg(lambda canvas: drawn(canvas, panels), SIZE))
     resonance(IMAGES / "tutorial_resonance.png")
 
 
@@ -82,13 +85,13 @@ def example(script: Path) -> None:
 def resonance(path: Path) -> None:
     """Draw the plot in which the tutorial ends."""
     row = Row(K1=4700.0, K2=6100.0, K3=7100.0, T1=2.0, T2=6.9, rated=6.9)
-    drive = catalogue.fit_lines(row, ratio=100.0).parameters
+    drive = catalogue.fit_lines(row, printed=catalogue.stated_numbers(row, ratio=100.0)).parameters
     with TemporaryDirectory() as folder:
         ssp.build_systems(Path(folder), parameters=drive)
         one = ringing.vibrating_joint(system("robot_joint"))
         points = ringing.ring(one, Path(folder) / "fmi2")
         with plots.drawing(path, SIZE) as canvas:
-            draw(canvas, points, one, Path(folder) / "fmi2")
+            drawn(canvas, resonance_panels(points, one, Path(folder) / "fmi2"))
 
 
 def house() -> str:
@@ -109,7 +112,20 @@ def house() -> str:
             top -= HEAD + ROW * len(layers)
         _legend(axes, height - EDGE)
 
-    return short(svg(draw, (WIDTH, height), layout=None)) + "\n"
+    return svg(draw, (WIDTH, height), layout=None) + "\n"
+
+
+def svg(draw: Callable[[Figure], None], size: tuple[float, float], layout: str | None = "constrained") -> str:
+    """A figure of a size [inch] in few bytes: hundredths of a point, no description, no empty lines."""
+    with plots.style():
+        figure, text = Figure(figsize=size, layout=layout), io.StringIO()
+        draw(figure)
+        figure.savefig(text, format="svg", metadata={"Date": None})
+    found = text.getvalue()[text.getvalue().index("<svg") :]
+    found = re.sub(r"<metadata>.*?</metadata>", "", found, flags=re.DOTALL)
+    found = re.sub(r' transform="rotate\(-0 [^"]*"', "", found)
+    found = re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), found)
+    return re.sub(r"\s*\n\s*", "\n", found)
 
 
 def _layers(package: str) -> list[list[str]]:

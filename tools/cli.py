@@ -49,7 +49,7 @@ def _run(args: Any, name: str) -> int:
 
     try:
         with told(name):
-            status = int(args.run(args))
+            status = int(args.run(args).tell(args.json))
         print(end="", flush=True)
         return status
     except (ValueError, RuntimeError) as error:

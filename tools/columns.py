@@ -50,6 +50,15 @@ class Columns:
             raise ValueError(f"{self.path}: has no column {name!r}; expected {heading({name: spec[name]})}")
         return self.columns[name]
 
+    def positive(self, names: Iterable[str], spec: Mapping[str, Sizes]) -> "Columns":
+        """The same; ValueError, naming the line, if one of these columns has a number that is not above 0."""
+        for name in names:
+            if np.any(wrong := self.columns[name] <= 0.0):
+                first = int(np.argmax(wrong))
+                value = f"{name} = {self.columns[name][first]:g} {next(iter(spec[name]))}"
+                raise ValueError(f"{self.path}: line {self.lines[first]}: {value} is outside (0, inf)")
+        return self
+
 
 def heading(spec: Mapping[str, Sizes]) -> str:
     """The columns with their units as text."""

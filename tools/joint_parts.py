@@ -57,7 +57,6 @@ class ToolParts:
 
     @property
     def folder(self) -> Path:
-        """The joint's folder."""
         return Path(str(import_module(self.package).__file__)).parent
 
     def load(self, tool: str) -> ModuleType | None:

@@ -36,10 +36,15 @@ def quantity(value: Any, unit: str | None, digits: int = 6) -> tuple[str, str]:
     return f"{factor(unit, shown) * value:.{digits}g}", spelled(shown)
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Rows of cells as lines, columns as wide as their widest cell."""
+def aligned(rows: Sequence[Sequence[str]], words: int | None = None) -> list[str]:
+    """Rows of cells as lines, columns as wide as their widest cell.
+
+    words : so many columns are words, to the left, the others numbers, to the right; None: all are words
+    """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(f"{c:{w}}" for c, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    signs = ["<" if words is None or i < words else ">" for i in range(len(widths))]
+    pattern = "  ".join(f"{{:{sign}{width}}}" for sign, width in zip(signs, widths, strict=True))
+    return [pattern.format(*row).rstrip() for row in rows]
 
 
 class Stated(NamedTuple):

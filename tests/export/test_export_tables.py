@@ -8,8 +8,7 @@ import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.export import keywords, tables, writing
 from jointfmu_tools.export.placing import SI, UNITS
-from jointfmu_tools.joints.bolted_joint.export import Tightening
-from jointfmu_tools.joints.bolted_joint.export.springs import STRONGEST, pull_table
+from jointfmu_tools.joints.bolted_joint.export import STRONGEST, Tightening, pull_table
 from scipy.interpolate import PchipInterpolator
 
 import jointfmu

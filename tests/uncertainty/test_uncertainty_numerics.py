@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from jointfmu_tools.batch import approach
-from jointfmu_tools.joints.gear_contact import reduced as gear
+from jointfmu_tools.joints.gear_contact import ramp as gear
 from jointfmu_tools.uncertainty import propagate, study
 from jointfmu_tools.uncertainty.problem import pose
 from jointfmu_tools.uncertainty.study import parse

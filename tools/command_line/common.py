@@ -1,9 +1,12 @@
 """What commands share: the parser, `--json`, `--set`, numbers as JSON."""
 
 import argparse
+import json
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn, TypeAlias
@@ -11,7 +14,43 @@ from typing import Any, NoReturn, TypeAlias
 from ..judgement import Judgement
 from .examples import BEFORE, EXAMPLES
 
-Run = Callable[[argparse.Namespace], int]
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answer:
+    """What a command found.
+
+    document  : for `--json`
+    lines     : for people
+    notes     : for people, on standard error
+    judgement : told after both, and part of the document
+    written   : files, told last; None is none
+    status    : of the process
+    """
+
+    document: Any
+    lines: Iterable[str] = ()
+    notes: Iterable[str] = ()
+    judgement: Judgement | None = None
+    written: Iterable[object] = ()
+    status: int = 0
+
+    def tell(self, as_json: bool) -> int:
+        """Print it, as one JSON object and nothing else or for people; the status."""
+        if as_json:
+            own = {} if self.judgement is None else self.judgement.document()
+            print(json.dumps({**self.document, **own} if own else self.document))
+            return self.status
+        found = self.judgement or Judgement(None, ())
+        for line in (*self.lines, *found.lines()):
+            print(line)
+        for note in (*self.notes, *(f"warning: {text}" for text in found.warnings)):
+            print(note, file=sys.stderr)
+        for path in filter(None, self.written):
+            print(f"wrote {path}")
+        return self.status
+
+
+Run = Callable[[argparse.Namespace], Answer]
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"
 """Where commands are declared."""
 IMPLIED = {"surface": ("identify", "synthesize")}
@@ -57,20 +96,25 @@ class Parser(argparse.ArgumentParser):
         raise SystemExit(2)
 
 
+_METAVARS: dict[type, str] = {float: "VALUE", int: "N", Path: "FILE", str: "NAME"}
+
+
+def argument(
+    sub: "argparse._ActionsContainer", name: str, kind: type, text: str, metavar: str = "", **more: Any
+) -> None:
+    """Declare what takes values of a type; a default that is stated is told."""
+    if "default" in more:
+        default = more["default"]
+        text += f" (default: {f'{default:g}' if kind is float else default})"
+    sub.add_argument(name, type=kind, metavar=metavar or _METAVARS[kind], help=text, **more)
+
+
 def command(commands: Commands, name: str, run: Run, text: str) -> Parser:
     """Declare a command with `--json`."""
     sub: Parser = commands.add_parser(name, help=text, description=text)
     sub.set_defaults(run=run)
     sub.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     return sub
-
-
-def tell(found: Judgement, of: str = "") -> None:
-    """Print a judgement: what is found, and the warnings on standard error; `of` is put before."""
-    for line in found.lines():
-        print(f"{of}{line}")
-    for warning in found.warnings:
-        print(f"warning: {of}{warning}", file=sys.stderr)
 
 
 def flag(name: str) -> str:
@@ -93,12 +137,16 @@ def written(sub: argparse.ArgumentParser, text: str = "write the parameter file 
     sub.add_argument("--out", "--write", type=Path, dest="out", metavar="FILE", help=text)
 
 
-def without_package(error: ImportError, purpose: str, extra: str = "build") -> ValueError:
-    """The refusal of a command whose package is missing, with the extra that brings it."""
-    return ValueError(
-        f"the package {error.name or error} is missing, needed to {purpose}; "
-        f"install it with: pip install 'jointfmu[{extra}]'"
-    )
+@contextmanager
+def needing(purpose: str, extra: str = "build") -> Iterator[None]:
+    """ValueError, one line, where a package is missing inside, with the extra that brings it."""
+    try:
+        yield
+    except ImportError as error:
+        raise ValueError(
+            f"the package {error.name or error} is missing, needed to {purpose}; "
+            f"install it with: pip install 'jointfmu[{extra}]'"
+        ) from None
 
 
 def settings(sub: argparse.ArgumentParser) -> None:

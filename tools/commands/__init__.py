@@ -1,13 +1,18 @@
 """The commands of the command line, most of them modules of their names; what they share."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jointfmu.files.writing import check_writable
 
 from .. import plots
 from ..command_line.common import flag
 from ..joint_parts import Option
+
+if TYPE_CHECKING:
+    from ..report.figure import Panel
 
 
 def declare(sub: argparse.ArgumentParser, option: Option) -> None:
@@ -33,3 +38,11 @@ def check_files(*paths: Path | None, plot: Path | None = None) -> None:
         check_writable(path)
     if plot:
         plots.check(plot)
+
+
+def draw(path: Path, panels: "Sequence[Panel]", size: tuple[float, float]) -> None:
+    """Save panels side by side as a picture of a size [inch]."""
+    from ..report.figure import drawn
+
+    with plots.drawing(path, size) as figure:
+        drawn(figure, panels)

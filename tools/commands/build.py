@@ -1,8 +1,6 @@
 """`jointfmu build`: FMUs from parameters; `jointfmu cache`: where their compiled parts are kept."""
 
 import argparse
-import json
-import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,7 +11,7 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, load
 from jointfmu.progress import processes
 
-from ..command_line.common import Commands, command, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, needing
 from ..pressure import judge_file
 
 SHOWN = 3
@@ -23,9 +21,7 @@ SHOWN = 3
 def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "build", _build, "build FMUs")
-    make.add_argument(
-        "names", nargs="*", metavar="NAME", help=f"FMUs to build: {', '.join(MODELS)} (default: all)"
-    )
+    argument(make, "names", str, f"FMUs to build: {', '.join(MODELS)} (default: all)", nargs="*")
     make.add_argument(
         "--flavour",
         nargs="+",
@@ -33,13 +29,9 @@ def add(commands: Commands) -> None:
         metavar="FLAVOUR",
         help="flavours to build: fmi2, fmi3 (default: both), python",
     )
-    make.add_argument(
-        "--name",
-        metavar="NAME",
-        help="model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
-        "names stand side by side in one model",
-    )
-    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other defaults (TOML)")
+    text = "model name, identifier and file name of one FMU, for example ShoulderDrive; builds with other "
+    argument(make, "--name", str, text + "names stand side by side in one model")
+    argument(make, "--params", Path, "parameter file with other defaults (TOML)")
     make.add_argument(
         "--parameters",
         choices=("tunable", "fixed"),
@@ -50,15 +42,15 @@ def add(commands: Commands) -> None:
     make.add_argument(
         "--systems", action="store_true", help="build the example systems (SSP) with the FMUs that they need"
     )
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
-def _build(args: argparse.Namespace) -> int:
+def _build(args: argparse.Namespace) -> Answer:
     if args.name is not None and args.systems:
         raise ValueError(f"--name {args.name} is for one FMU; expected no --systems beside it")
     check_folder(args.out)
     file = load(args.params) if args.params else None
-    try:
+    with needing("build"):
         from jointfmu_fmu_src import building
 
         before = {path: _starts(path) for f in args.flavour for path in (args.out / f).glob("*.fmu")}
@@ -72,23 +64,21 @@ def _build(args: argparse.Namespace) -> int:
                 from ..systems import ssp
 
                 built += ssp.build_systems(args.out, None, file, True, args.parameters, pool)
-    except ImportError as error:
-        raise without_package(error, "build") from None
     changed = _replaced(built, before)
     joints = dict.fromkeys(MODELS[name].joint for name in args.names or MODELS)
     found = {f.joint: judge_file(f) for f in ([file] if file else map(default, joints))}
-    if args.json:
-        judged = {joint: judgement.document() for joint, judgement in found.items()}
-        print(json.dumps({"built": [str(path) for path in built], "replaced": changed, "joints": judged}))
-        return 0
-    print("\n".join(f"built {path}" for path in built))
+    judged = {joint: judgement.document() for joint, judgement in found.items()}
+    notes = []
     for path, values in changed.items():
         said = [f"{name} was {old or 'not there'}, is {new or 'gone'}" for name, (old, new) in values.items()]
         more = f" and {len(said) - SHOWN} more" if len(said) > SHOWN else ""
-        print(f"replaced {path}: {', '.join(said[:SHOWN])}{more}", file=sys.stderr)
-    for joint, judgement in found.items():
-        tell(judgement, of=f"{joint}: ")
-    return 0
+        notes.append(f"replaced {path}: {', '.join(said[:SHOWN])}{more}")
+    levels = [f"{joint}: {line}" for joint, one in found.items() for line in one.lines()]
+    return Answer(
+        document={"built": [str(path) for path in built], "replaced": changed, "joints": judged},
+        lines=[*(f"built {path}" for path in built), *levels],
+        notes=[*notes, *(f"warning: {joint}: {x}" for joint, one in found.items() for x in one.warnings)],
+    )
 
 
 def _starts(path: Path) -> dict[str, str]:
@@ -130,16 +120,14 @@ def add_cache(commands: Commands) -> None:
     cache.add_argument("--clear", action="store_true", help="remove them; the next build compiles again")
 
 
-def _cache(args: argparse.Namespace) -> int:
-    try:
+def _cache(args: argparse.Namespace) -> Answer:
+    with needing("build"):
         from jointfmu_fmu_src.native.compiled import cache
-    except ImportError as error:
-        raise without_package(error, "build") from None
     if args.clear:
         cache.clear()
     files, size = cache.content()
-    if args.json:
-        print(json.dumps({"folder": str(cache.cache_folder()), "files": files, "bytes": size}))
-    else:
-        print(f"{cache.cache_folder()}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})")
-    return 0
+    folder = str(cache.cache_folder())
+    return Answer(
+        document={"folder": folder, "files": files, "bytes": size},
+        lines=[f"{folder}: {files} files, {size / 1e6:.1f} MB (another folder: {cache.CACHE})"],
+    )

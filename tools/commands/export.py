@@ -1,7 +1,7 @@
 """`jointfmu export`: the joint for finite elements, Modelica tables and CSV."""
 
 import argparse
-import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +9,7 @@ from jointfmu.files.writing import check_writable, write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 
-from ..command_line.common import Commands, command, flag, joint_name, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, joint_name, needing
 from ..export import exports
 from ..export.exports import ERROR, FORMS, ROBOTS, WHAT
 from ..export.placing import AXES, SI, UNITS, Placing
@@ -42,7 +42,7 @@ def add(commands: Commands) -> None:
         f"{', '.join(ROBOTS)}: a drive's parameter file or its name in the catalogue",
     )
     joint = export.add_mutually_exclusive_group()
-    joint.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    argument(joint, "--params", Path, "parameter file of the joint (TOML)")
     joint.add_argument(
         "--joint",
         type=joint_name,
@@ -51,37 +51,20 @@ def add(commands: Commands) -> None:
         help=f"a default joint ({with_springs[0]})",
     )
     for name, texts in _working_points().items():
-        export.add_argument(flag(name), type=float, metavar="VALUE", help="; ".join(texts))
-    export.add_argument(
-        "--nodes",
-        type=Path,
-        metavar="CSV",
-        help="springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
-        "pressure [MPa] instead of a working point",
-    )
-    export.add_argument(
-        "--first", type=int, metavar="N", help="springs: first number free for elements and nodes (1)"
-    )
-    export.add_argument(
-        "--first-set",
-        type=int,
-        metavar="N",
-        help="ansys: first number free for element types and sets of real constants (1)",
-    )
+        argument(export, flag(name), float, "; ".join(texts))
+    text = "springs: your node pairs: node_1 [1], node_2 [1], x [mm], y [mm], area [mm2], and with "
+    argument(export, "--nodes", Path, text + "pressure [MPa] instead of a working point", "CSV")
+    argument(export, "--first", int, "springs: first number free for elements and nodes (1)")
+    text = "ansys: first number free for element types and sets of real constants (1)"
+    argument(export, "--first-set", int, text)
     export.add_argument("--normal", choices=list(AXES), help="springs: axis along the joint's normal (z)")
     export.add_argument(
         "--units", choices=list(UNITS), default=SI.name, help=f"units of the file ({SI.name})"
     )
-    export.add_argument(
-        "--error", type=float, metavar="E", help=f"tables: largest error by straight lines ({ERROR:g})"
-    )
-    export.add_argument(
-        "--torque",
-        type=float,
-        metavar="T",
-        help=f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)",
-    )
-    export.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write")
+    argument(export, "--error", float, f"tables: largest error by straight lines ({ERROR:g})", "E")
+    text = f"{', '.join(ROBOTS)}: largest torque of the fit [N.m] (rated torque)"
+    argument(export, "--torque", float, text, "T")
+    argument(export, "--out", Path, "file to write", required=True)
 
 
 def _working_points() -> dict[str, list[str]]:
@@ -93,14 +76,13 @@ def _working_points() -> dict[str, list[str]]:
     return texts
 
 
-def _export(args: argparse.Namespace) -> int:
+def _export(args: argparse.Namespace) -> Answer:
     if args.form in ROBOTS:
         return _robots(args)
     if args.what not in WHAT:
         choices = ", ".join(map(repr, WHAT))
         raise ValueError(f"argument WHAT: invalid choice: {args.what!r} (choose from {choices})")
-    if args.torque is not None:
-        raise ValueError(f"--torque has no meaning for {args.form}; it is for {', '.join(ROBOTS)}")
+    _refuse(args, {"torque": f"{args.form}; it is for {', '.join(ROBOTS)}"})
     if args.what not in FORMS[args.form]:
         raise ValueError(
             f"{args.form} {args.what} cannot be written; {args.form} has {', '.join(FORMS[args.form])}"
@@ -110,40 +92,31 @@ def _export(args: argparse.Namespace) -> int:
     _refuse_idle(args, file)
     written = _written(args, file)
     write_text(args.out, written.text)
-    found = _judged(args, file).with_warnings(written.warnings)
     facts = {"written": str(args.out), "format": args.form, "what": args.what, "units": args.units}
-    if args.json:
-        print(json.dumps({**facts, **written.facts, **found.document()}))
-        return 0
-    print(f"wrote {args.out}: {args.what} for {args.form}, {args.units}")
+    lines = [f"wrote {args.out}: {args.what} for {args.form}, {args.units}"]
     for name, value in written.facts.items():
         number = f"{value:.6g}" if isinstance(value, float) else value
-        print(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
-    tell(found)
-    return 0
+        lines.append(f"  {name:<24}  {number} {_SI.get(name[:2], '')}".rstrip())
+    found = _judged(args, file).with_warnings(written.warnings)
+    return Answer(document={**facts, **written.facts}, lines=lines, judgement=found)
 
 
-def _robots(args: argparse.Namespace) -> int:
+def _robots(args: argparse.Namespace) -> Answer:
     """Write a drive for a robot's simulator, and say what it misses."""
     idle = ("params", "nodes", "first", "first_set", "normal", "error", *_working_points())
-    for name in idle:
-        if getattr(args, name) is not None:
-            raise ValueError(f"{flag(name)} has no meaning for {args.form}")
+    _refuse(args, dict.fromkeys(idle, args.form))
     if args.units != SI.name:
         raise ValueError(f"--units = {args.units}: {args.form} is in {SI.name}")
     check_writable(args.out)
     from ..robots.writing import written
 
-    try:
-        found = written(args.form, args.what, args.torque)
-    except ImportError as error:
-        raise without_package(error, "measure the file", "mujoco") from None
-    write_text(args.out, found.text)
-    if args.json:
-        print(json.dumps({"written": str(args.out), "format": args.form, **found.facts}))
-        return 0
-    print("\n".join([f"wrote {args.out}: {found.name} for {args.form}", *(f"  {x}" for x in found.lines)]))
-    return 0
+    with needing("measure the file", "mujoco"):
+        text, lines, facts = written(args.form, args.what, args.torque)
+    write_text(args.out, text)
+    return Answer(
+        document={"written": str(args.out), "format": args.form, **facts},
+        lines=[f"wrote {args.out}: {facts['drive']} for {args.form}", *(f"  {line}" for line in lines)],
+    )
 
 
 def _judged(args: argparse.Namespace, file: ParameterFile) -> Judgement:
@@ -194,13 +167,18 @@ def _state(args: argparse.Namespace, joint: str) -> Any:
     return offered.state(**{name: value or 0.0 for name, value in values.items()})
 
 
+def _refuse(args: argparse.Namespace, idle: Mapping[str, str]) -> None:
+    """Refuse what is stated of these: {name: for what it has no meaning}."""
+    for name, what in idle.items():
+        if getattr(args, name) is not None:
+            raise ValueError(f"{flag(name)} has no meaning for {what}")
+
+
 def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
     """Refuse a working point that would do nothing, or is missing."""
     wanted = {} if args.what == "contact" else exports.of(joint).working_point
-    stated = [name for name in _working_points() if getattr(args, name) is not None]
-    for name in stated:
-        if name not in wanted:
-            raise ValueError(f"{flag(name)} has no meaning for the {args.what} of a {joint}")
+    _refuse(args, {name: f"the {args.what} of a {joint}" for name in _working_points() if name not in wanted})
+    stated = [name for name in wanted if getattr(args, name) is not None]
     first, text = next(iter(wanted.items()), ("", ""))
     if stated and first not in stated:
         raise ValueError(f"{flag(stated[0])} needs {flag(first)}, {text}")
@@ -210,16 +188,15 @@ def _refuse_working_point(args: argparse.Namespace, joint: str) -> None:
 
 def _refuse_idle(args: argparse.Namespace, file: ParameterFile) -> None:
     """Refuse options that would do nothing, or are missing."""
-    springs = args.what == "springs"
     exports.required(file.joint, args.what)
     _refuse_working_point(args, file.joint)
-    for name in ("nodes", "first", "normal"):
-        if getattr(args, name) is not None and not springs:
-            raise ValueError(f"--{name} has no meaning for a {args.what}; it is for springs")
-    if args.error is not None and springs:
-        raise ValueError("--error has no meaning for springs; it is for tables")
-    if args.first_set is not None and args.form != "ansys":
-        raise ValueError(f"--first-set has no meaning for {args.form}; it is for ansys")
+    if args.what == "springs":
+        idle = {"error": "springs; it is for tables"}
+    else:
+        idle = dict.fromkeys(("nodes", "first", "normal"), f"a {args.what}; it is for springs")
+    if args.form != "ansys":
+        idle["first_set"] = f"{args.form}; it is for ansys"
+    _refuse(args, idle)
     for name, highest in (("first", 10_000_000), ("first_set", 100_000)):
         value, option = getattr(args, name), flag(name)
         if value is not None and not 1 <= value <= highest:

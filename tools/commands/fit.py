@@ -1,8 +1,6 @@
 """`jointfmu fit`: parameters from measured curves and catalogue rows."""
 
 import argparse
-import json
-import sys
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
@@ -12,7 +10,7 @@ from jointfmu.parameters import load
 from jointfmu.progress import step
 
 from .. import columns, plots
-from ..command_line.common import Commands, Parser, command, flag, tell, written
+from ..command_line.common import Answer, Commands, Parser, argument, command, flag, written
 from ..drawing.reading import number
 from ..fitting.outcome import percent
 from ..fitting.procedure import Procedure, procedures
@@ -37,18 +35,18 @@ def _declare(ways: Commands, choices: Mapping[str, Procedure]) -> None:
     text = "; ".join(procedure.text for procedure in choices.values())
     sub = command(ways, first.name, partial(_fit, choices), f"fit {text}")
     if first.file:
-        text = "CSV; the heading names columns and units"
-        sub.add_argument("file", type=Path, nargs="+" if first.many else None, metavar="FILE", help=text)
-    sub.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
-    sub.add_argument("--free", nargs="+", metavar="NAME", help="parameters to fit")
+        many = "+" if first.many else None
+        argument(sub, "file", Path, "CSV; the heading names columns and units", nargs=many)
+    argument(sub, "--params", Path, "parameter file to start from (TOML)")
+    argument(sub, "--free", str, "parameters to fit", nargs="+")
     written(sub)
     sub.add_argument("--force", action="store_true", help="write a fit that says nothing of the joint too")
-    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw data, law and residuals (.png, .svg)")
+    argument(sub, "--plot", Path, "draw data, law and residuals (.png, .svg)")
     for option in {option.name: option for p in choices.values() for option in p.options}.values():
         declare(sub, option)
 
 
-def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> int:
+def _fit(choices: Mapping[str, Procedure], args: argparse.Namespace) -> Answer:
     """Check what is to be written before the work, and fit."""
     check_files(args.out, plot=args.plot)
     joint = _joint(choices, args)
@@ -98,34 +96,35 @@ def _joint(choices: Mapping[str, Procedure], args: argparse.Namespace) -> str:
     return found[0]
 
 
-def _finish(args: argparse.Namespace, fit: Fit) -> int:
-    """Write and print what was found."""
+def _finish(args: argparse.Namespace, fit: Fit) -> Answer:
+    """Write what was found."""
     outcome = fit.outcome
     if args.plot:
         plots.save(fit.plot(), args.plot)
     doubt = None if args.force else outcome.doubt()
     if args.out and not doubt:
         fit.joint.save(args.out)
-    if args.json:
-        found, document = judge_file(outcome.parameters), outcome.document()
-        document["warnings"] += found.warnings
-        print(json.dumps(found.document() | document | {"doubt": doubt}))
-        return int(doubt is not None)
+    lines = []
     for row in outcome.rows():
         spread = row["relative_deviation"]
         shown = "spread unknown" if spread is None else percent(spread)
         shown = f"+- {shown}" if shown.endswith("%") else shown
         mark = "" if row["determined"] else "   not determined"
         ends = "  (95 %: {:.4g} to {:.4g})".format(*row["interval"]) if "interval" in row else ""
-        print(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
+        lines.append(f"{row['name']:24} {row['value']:.6g} {row['unit']}  {shown}{ends}{mark}")
     for name, (value, unit, text) in outcome.facts.items():
-        print(f"{name:24} {value:.4g} {unit}  {text}")
-    for line in outcome.warnings():
-        print(f"note: {line}", file=sys.stderr)
-    tell(judge_file(outcome.parameters))
-    for path in filter(None, (None if doubt else args.out, args.plot)):
-        print(f"wrote {path}")
+        lines.append(f"{name:24} {value:.4g} {unit}  {text}")
+    found, document = judge_file(outcome.parameters), outcome.document()
+    notes = [f"note: {line}" for line in document["warnings"]]
+    notes += [f"warning: {line}" for line in found.warnings]
     if doubt:
         unwritten = f"; {args.out} is not written, --force does it" if args.out else ""
-        print(f"the fit says nothing of the joint: {doubt}{unwritten}", file=sys.stderr)
-    return int(doubt is not None)
+        notes.append(f"the fit says nothing of the joint: {doubt}{unwritten}")
+    document["warnings"] += found.warnings
+    return Answer(
+        document=found.document() | document | {"doubt": doubt},
+        lines=[*lines, *found.lines()],
+        notes=notes,
+        written=(None if doubt else args.out, args.plot),
+        status=int(doubt is not None),
+    )

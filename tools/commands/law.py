@@ -1,7 +1,6 @@
 """`jointfmu law`: one interface law at pressures or largest spots."""
 
 import argparse
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from jointfmu.contact.laws import LAWS
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import flatten
 
-from ..command_line.common import Commands, command, settings, tell
+from ..command_line.common import Answer, Commands, argument, command, settings
 from ..judgement import judge, known_height, law_height
 from ..laws import ROW, first_joint, joints_of, law_file, law_parameters
 
@@ -24,15 +23,13 @@ def add(commands: Commands) -> None:
     laws = [name for name in LAWS if joints_of(name)]
     law.add_argument("law", choices=laws, metavar="LAW", help=f"one of {', '.join(laws)}")
     at = law.add_mutually_exclusive_group(required=True)
-    at.add_argument("--pressure", type=float, nargs="+", metavar="P", help="nominal pressure [Pa]")
-    at.add_argument(
-        "--largest-spot", type=float, nargs="+", metavar="A", help="area of the largest spot [m2]"
-    )
-    law.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
+    argument(at, "--pressure", float, "nominal pressure [Pa]", "P", nargs="+")
+    argument(at, "--largest-spot", float, "area of the largest spot [m2]", "A", nargs="+")
+    argument(law, "--params", Path, "parameter file of the joint (TOML)")
     settings(law)
 
 
-def _law(args: argparse.Namespace) -> int:
+def _law(args: argparse.Namespace) -> Answer:
     file = law_file(args.params, args.law) if args.params else None
     law = law_parameters(args.law, file, dict(args.settings))
     with np.errstate(over="ignore"):
@@ -44,16 +41,12 @@ def _law(args: argparse.Namespace) -> int:
     count = len(args.pressure or args.largest_spot)
     rows = [{n: _json_number(state[n], i) if n in state else None for n in names} for i in range(count)]
     found = judge(law, np.ravel(state["pressure"]).tolist(), _height(args, law, file))
-    if args.json:
-        shown = {"law": args.law, "parameters": flatten(law), "rows": rows}
-        print(json.dumps(shown | found.document()))
-        return 0
-    print("  ".join(f"{name:>12}" for name in names))
-    for row in rows:
-        cells = ("-" if row[n] is None else f"{row[n]:.6g}" for n in names)
-        print("  ".join(f"{cell:>12}" for cell in cells))
-    tell(found)
-    return 0
+    cells = [names, *(["-" if row[n] is None else f"{row[n]:.6g}" for n in names] for row in rows)]
+    return Answer(
+        document={"law": args.law, "parameters": flatten(law), "rows": rows},
+        lines=["  ".join(f"{cell:>12}" for cell in line) for line in cells],
+        judgement=found,
+    )
 
 
 def _height(args: argparse.Namespace, law: Any, file: ParameterFile | None) -> float | None:

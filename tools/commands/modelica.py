@@ -1,7 +1,6 @@
 """`jointfmu modelica`: the Modelica library, from parameters."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_folder
@@ -9,7 +8,7 @@ from jointfmu.joints import KINDS
 from jointfmu.joints.kind import Kind
 from jointfmu.parameters import ParameterFile, load
 
-from ..command_line.common import Commands, command, flag, tell, without_package
+from ..command_line.common import Answer, Commands, argument, command, flag, needing
 from ..judgement import Judgement
 from ..pressure import judge_file
 
@@ -17,39 +16,28 @@ from ..pressure import judge_file
 def add(commands: Commands) -> None:
     """Declare the command."""
     make = command(commands, "modelica", _modelica, "write the Modelica library JointStiffness")
-    make.add_argument("--params", type=Path, metavar="FILE", help="parameter file of one joint (TOML)")
+    argument(make, "--params", Path, "parameter file of one joint (TOML)")
     for name, kinds in _inputs().items():
         first = any(name == kind.working_point[0] for kind in kinds)
-        make.add_argument(
-            flag(name),
-            type=float,
-            nargs="+" if first else None,
-            metavar="VALUE",
-            help="; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
-            + ("" if first else " (default: 0)"),
-        )
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
+        text = "; ".join(f"{kind.title}: {_meaning(kind, name)}" for kind in kinds)
+        text += "" if first else " (default: 0)"
+        argument(make, flag(name), float, text, nargs="+" if first else None)
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
 
 
-def _modelica(args: argparse.Namespace) -> int:
+def _modelica(args: argparse.Namespace) -> Answer:
     check_folder(args.out)
     file = load(args.params) if args.params else None
     points = {kind.name: _points(kind, args) for kind in KINDS.values() if kind.working_point}
-    try:
+    with needing("write the library"):
         from ..modelica import library
 
         written = library.write(args.out, file, points)
-    except ImportError as error:
-        raise without_package(error, "write the library") from None
-    found = _judged(file, points) if file else None
-    if args.json:
-        said = found.document() if found else {}
-        print(json.dumps({"written": [str(path) for path in written]} | said))
-        return 0
-    print(f"wrote {args.out / library.NAME}: {len(written)} files")
-    if found:
-        tell(found)
-    return 0
+    return Answer(
+        document={"written": [str(path) for path in written]},
+        lines=[f"wrote {args.out / library.NAME}: {len(written)} files"],
+        judgement=_judged(file, points) if file else None,
+    )
 
 
 def _judged(file: ParameterFile, points: dict[str, list[tuple[float, ...]]]) -> Judgement:

@@ -1,7 +1,6 @@
 """`jointfmu modes`: natural frequencies of a bolted assembly that hangs freely."""
 
 import argparse
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
-from ..command_line.common import Commands, command, tell
+from ..command_line.common import Answer, Commands, argument, command
 from ..fem import installed
 from ..fields.clamped import clamping
 from .footprint.compute import assembly_arguments, joint_file, judge_assembly, with_assembly
@@ -26,16 +25,14 @@ def add(commands: Commands) -> None:
     text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
     sub = command(commands, "modes", run, text)
     assembly_arguments(sub)
-    sub.add_argument("--moment", type=float, default=0.0, metavar="M", help="about x [N.m] (default: 0)")
-    sub.add_argument("--count", type=int, default=6, metavar="N", help=f"modes, 1 to {MOST} (default: 6)")
-    sub.add_argument(
-        "--refinement", type=float, default=1.0, metavar="R", help="divides all element sizes (default: 1)"
-    )
-    sub.add_argument("--vtu", type=Path, metavar="FILE", help="write the shapes of the modes (.vtu)")
+    argument(sub, "--moment", float, "about x [N.m]", "M", default=0.0)
+    argument(sub, "--count", int, f"modes, 1 to {MOST}", default=6)
+    argument(sub, "--refinement", float, "divides all element sizes", "R", default=1.0)
+    argument(sub, "--vtu", Path, "write the shapes of the modes (.vtu)")
 
 
-def run(args: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+def run(args: argparse.Namespace) -> Answer:
+    """Run the command."""
     with installed("the finite-element analysis"):
         from ..fem import modes as assembly_modes
         from ..fem import results
@@ -54,15 +51,9 @@ def run(args: argparse.Namespace) -> int:
     if args.vtu:
         write_bytes(args.vtu, results.modes_vtu(contact.bodies, modes))
     found = judge_assembly(file, assembly, args.preload, force / assembly.contact_area, solution.peak)
-    if args.json:
-        print(json.dumps(_document(args, assembly.name, modes, even) | found.document()))
-    else:
-        print(
-            f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
-        )
-        print("\n".join(_table(modes, even)))
-        tell(found)
-    return 0
+    head = f"{assembly.name}: {args.preload:g} N per bolt, moment {args.moment:g} N.m, {modes.mass:.4g} kg"
+    document = _document(args, assembly.name, modes, even)
+    return Answer(document=document, lines=[head, *_table(modes, even)], judgement=found)
 
 
 def _check(args: argparse.Namespace) -> None:

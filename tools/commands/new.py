@@ -1,9 +1,8 @@
 """`jointfmu new`: a joint from its drawing; the shipped tables; `jointfmu catalogue`: the bought joints."""
 
 import argparse
-import json
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,7 +12,7 @@ from jointfmu.joints import KINDS
 from jointfmu.quantity.units import factor
 
 from ..catalogue import Column, Item
-from ..command_line.common import Commands, Parser, command, tell
+from ..command_line.common import Answer, Commands, Parser, argument, command
 from ..drawing.part import Drawing
 from ..interface.joint import Joint
 from ..interface.make import made
@@ -41,11 +40,11 @@ def _declare(things: Commands, name: str, drawing: Drawing) -> None:
     sub.example = f"new {name} {drawing.example} --out my.toml"
     for option in drawing.options:
         declare(sub, option)
-    sub.add_argument("--name", metavar="NAME", help="of the parameter set (default: by its sizes)")
-    sub.add_argument("--out", type=Path, metavar="FILE", help="write the parameter file (TOML)")
+    argument(sub, "--name", str, "of the parameter set (default: by its sizes)")
+    argument(sub, "--out", Path, "write the parameter file (TOML)")
 
 
-def _make(drawing: Drawing, args: argparse.Namespace) -> int:
+def _make(drawing: Drawing, args: argparse.Namespace) -> Answer:
     """Check what is to be written before the work, and make the joint."""
     check_files(args.out)
     joint = made(drawing, {option.name: getattr(args, option.name) for option in drawing.options})
@@ -53,17 +52,20 @@ def _make(drawing: Drawing, args: argparse.Namespace) -> int:
         joint = replace(joint, file=replace(joint.file, name=args.name))
     if args.out:
         joint.save(args.out)
-    if args.json:
-        print(json.dumps(_document(args, joint)))
-        return 0
-    for name, (value, unit, text) in joint.facts.items():
-        print(f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}")
-    tell(judge_file(joint.file).with_warnings(joint.notes))
-    print(f"wrote {args.out}" if args.out else "nothing is written: state --out FILE")
-    return 0
+    facts = [
+        f"{name:18} {value:.4g}{'' if unit == '1' else f' {unit}'}  {text}"
+        for name, (value, unit, text) in joint.facts.items()
+    ]
+    found = judge_file(joint.file).with_warnings(joint.notes)
+    end = f"wrote {args.out}" if args.out else "nothing is written: state --out FILE"
+    return Answer(
+        document=_document(joint) | found.document() | {"written": [str(args.out)] if args.out else []},
+        lines=[*facts, *found.lines(), end],
+        notes=[f"warning: {text}" for text in found.warnings],
+    )
 
 
-def _document(args: argparse.Namespace, joint: Joint) -> dict[str, object]:
+def _document(joint: Joint) -> dict[str, object]:
     return {
         "joint": joint.file.joint,
         "law": joint.file.law,
@@ -71,55 +73,40 @@ def _document(args: argparse.Namespace, joint: Joint) -> dict[str, object]:
         "parameters": joint.file.flat,
         "inputs": joint.file.inputs,
         "facts": {name: {"value": v, "unit": u, "text": t} for name, (v, u, t) in joint.facts.items()},
-        **judge_file(joint.file).with_warnings(joint.notes).document(),
-        "written": [str(args.out)] if args.out else [],
     }
 
 
-def _table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace) -> int:
-    """Print a table."""
+def _table(rows: Callable[[], Iterator[dict[str, Any]]], args: argparse.Namespace) -> Answer:
+    """A table."""
     content = list(rows())
-    if args.json:
-        print(json.dumps(content))
-        return 0
-    print("\n".join(aligned([[*content[0]], *([_shown(cell) for cell in row.values()] for row in content)])))
-    return 0
+    cells = [[*content[0]], *([_shown(cell) for cell in row.values()] for row in content)]
+    return Answer(document=content, lines=aligned(cells))
 
 
 def _shown(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _materials() -> Iterator[dict[str, object]]:
+_MATERIAL = {
+    "E [GPa]": ("E", 1e-9),
+    "nu": ("nu", 1.0),
+    "density [kg/m3]": ("density", 1.0),
+    "H [MPa]": ("H", 1e-6),
+}
+_FINISH = {"Ra [um]": ("Ra", 1e6), "from": ("Ra_low", 1e6), "to": ("Ra_high", 1e6), "slope": ("slope", 1.0)}
+"""{head: column, its number over that in SI}."""
+
+
+def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Iterator[dict[str, object]]:
+    """The rows of `materials` or `finishes`; `source` is made of those of their numbers."""
     from ..drawing.tables import table
 
-    for row in table("materials").values():
-        known = row.numbers
-        yield {
-            "name": row.name,
-            "E [GPa]": known["E"].value / 1e9,
-            "nu": known["nu"].value,
-            "density [kg/m3]": known["density"].value,
-            "H [MPa]": known["H"].value / 1e6,
-            "also": ", ".join(row.also),
-            "source": f"{known['E'].source}; H: {known['H'].source}",
+    for row in table(name).values():
+        numbers = {
+            head: round(row.numbers[column].value * times, 9) for head, (column, times) in heads.items()
         }
-
-
-def _finishes() -> Iterator[dict[str, object]]:
-    from ..drawing.tables import table
-
-    for row in table("finishes").values():
-        known = row.numbers
-        yield {
-            "name": row.name,
-            "Ra [um]": known["Ra"].value * 1e6,
-            "from": known["Ra_low"].value * 1e6,
-            "to": known["Ra_high"].value * 1e6,
-            "slope": known["slope"].value,
-            "also": ", ".join(row.also),
-            "source": known["Ra_low"].source,
-        }
+        also = {"also": ", ".join(row.also), "source": source.format(**row.numbers)}
+        yield {"name": row.name, **numbers, **also}
 
 
 def _bolts() -> Iterator[dict[str, object]]:
@@ -142,19 +129,22 @@ def _bolts() -> Iterator[dict[str, object]]:
         }
 
 
-TABLES = {"materials": _materials, "finishes": _finishes, "bolts": _bolts}
+TABLES: dict[str, Callable[[], Iterator[dict[str, Any]]]] = {
+    "materials": partial(_rows, "materials", _MATERIAL, "{E.source}; H: {H.source}"),
+    "finishes": partial(_rows, "finishes", _FINISH, "{Ra_low.source}"),
+    "bolts": _bolts,
+}
 """{name: its rows}."""
 
 
 def add_catalogue(commands: Commands) -> None:
     """Declare the command."""
     sub = command(commands, "catalogue", _catalogue, "list the bought joints that jointfmu new knows")
-    text = "parts of a name, as CSG-17, csg25-100 or csg 25 100"
-    sub.add_argument("words", nargs="*", metavar="WORD", help=text)
+    argument(sub, "words", str, "parts of a name, as CSG-17, csg25-100 or csg 25 100", "WORD", nargs="*")
 
 
-def _catalogue(args: argparse.Namespace) -> int:
-    """Print the joints whose names have the word in them."""
+def _catalogue(args: argparse.Namespace) -> Answer:
+    """The joints whose names have the word in them."""
     found = [
         (kind.name, own.CATALOGUE.columns, item)
         for kind in KINDS.values()
@@ -165,19 +155,15 @@ def _catalogue(args: argparse.Namespace) -> int:
     if not found:
         word = " ".join(args.words)
         raise ValueError(f"no joint of the catalogues has {word!r} in its name (jointfmu catalogue)")
-    if args.json:
-        print(json.dumps([_item_document(*row) for row in found]))
-        return 0
-    shown = None
+    lines, shown = [], None
     for joint, columns, item in found:
         if joint != shown:
-            head = (f"{c.name}{'' if c.shown == '1' else f' [{c.shown}]'}" for c in columns)
-            print(f"{joint.replace('_', '-'):13}  {'  '.join(head)}")
+            lines.append(f"{joint.replace('_', '-'):13}  {'  '.join(map(_head, columns))}")
             shown = joint
-        print(f"{item.name:13}  {'  '.join(map(_cell(item), columns))}".rstrip())
+        lines.append(f"{item.name:13}  {'  '.join(_cell(item, column) for column in columns)}".rstrip())
     if any(number.kind == "estimate" for _, _, item in found for number in item.numbers.values()):
-        print("~ is an estimate, < an upper limit; --json tells where each number comes from")
-    return 0
+        lines.append("~ is an estimate, < an upper limit; --json tells where each number comes from")
+    return Answer(document=[_item_document(*row) for row in found], lines=lines)
 
 
 def _in(words: Sequence[str], name: str) -> bool:
@@ -186,17 +172,17 @@ def _in(words: Sequence[str], name: str) -> bool:
     return wanted in own
 
 
-def _cell(item: Item) -> Any:
-    """What makes a cell of a column, as wide as the column's head."""
+def _head(column: Column) -> str:
+    return f"{column.name}{'' if column.shown == '1' else f' [{column.shown}]'}"
 
-    def cell(column: Column) -> str:
-        width = len(f"{column.name}{'' if column.shown == '1' else f' [{column.shown}]'}")
-        if (number := item.numbers.get(column.name)) is None:
-            return f"{'-':{width}}"
-        mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
-        return f"{mark + format(number.value * factor(column.unit, column.shown), '.4g'):{width}}"
 
-    return cell
+def _cell(item: Item, column: Column) -> str:
+    """As wide as the column's head."""
+    width = len(_head(column))
+    if (number := item.numbers.get(column.name)) is None:
+        return f"{'-':{width}}"
+    mark = ("~" if number.kind == "estimate" else "") + ("<" if number.bound else "")
+    return f"{mark + format(number.value * factor(column.unit, column.shown), '.4g'):{width}}"
 
 
 def _item_document(joint: str, columns: Any, item: Item) -> dict[str, Any]:

@@ -1,9 +1,7 @@
 """`jointfmu parameters`: what can be set of an FMU, a joint or an interface law."""
 
 import argparse
-import json
 import math
-from collections.abc import Iterator
 from dataclasses import Field
 from pathlib import Path
 from typing import Any
@@ -14,8 +12,9 @@ from jointfmu.joints import KINDS, MODELS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import flat_fields, flatten
 
-from ..command_line.common import Commands, command
+from ..command_line.common import Answer, Commands, argument, command
 from ..laws import law_file, law_parameters
+from ..shown import aligned
 
 _HEAD = ("name", "default", "unit", "allowed", "meaning")
 
@@ -24,21 +23,15 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "list what can be set of an FMU, a joint or an interface law"
     sub = command(commands, "parameters", _parameters, text)
-    sub.add_argument(
-        "name",
-        choices=[*MODELS, *KINDS, *LAWS],
-        metavar="NAME",
-        help=f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})",
-    )
+    text = f"an FMU ({', '.join(MODELS)}), a joint ({', '.join(KINDS)}) or a law ({', '.join(LAWS)})"
+    argument(sub, "name", str, text, choices=[*MODELS, *KINDS, *LAWS])
     own = sub.add_mutually_exclusive_group()
     laws = sorted({law for kind in KINDS.values() for law in kind.laws})
-    own.add_argument(
-        "--law", choices=laws, metavar="LAW", help=f"law of the FMU or joint ({', '.join(laws)})"
-    )
-    own.add_argument("--params", type=Path, metavar="FILE", help="parameter file with other values (TOML)")
+    argument(own, "--law", str, f"law of the FMU or joint ({', '.join(laws)})", "LAW", choices=laws)
+    argument(own, "--params", Path, "parameter file with other values (TOML)")
 
 
-def _parameters(args: argparse.Namespace) -> int:
+def _parameters(args: argparse.Namespace) -> Answer:
     name = args.name
     if name in LAWS:
         if args.law:
@@ -58,11 +51,7 @@ def _parameters(args: argparse.Namespace) -> int:
             fields = dict(flat_fields(type(file.values), names=values))
         head = {"name": name, "joint": file.joint, "law": file.law}
     rows = [_row(stated, field, values.get(stated)) for stated, field in fields.items()]
-    if args.json:
-        print(json.dumps({**head, "parameters": rows}))
-        return 0
-    print("\n".join(_lines(rows)))
-    return 0
+    return Answer(document={**head, "parameters": rows}, lines=aligned([_HEAD, *map(_cells, rows)]))
 
 
 def _joint_file(name: str, args: argparse.Namespace) -> ParameterFile:
@@ -87,14 +76,6 @@ def _row(name: str, field: Field[Any], value: Any) -> dict[str, Any]:
     low, high = (end if math.isfinite(end) else None for end in (interval.low, interval.high))
     whole = {"whole": True} if meta["whole"] else {}
     return row | {"unit": meta["unit"], "low": low, "high": high, "allowed": str(interval)} | whole
-
-
-def _lines(rows: list[dict[str, Any]]) -> Iterator[str]:
-    """The rows as a table."""
-    cells = [_HEAD, *map(_cells, rows)]
-    widths = [max(len(line[i]) for line in cells) for i in range(len(_HEAD) - 1)]
-    for *first, last in cells:
-        yield "  ".join([*(cell.ljust(width) for cell, width in zip(first, widths, strict=True)), last])
 
 
 def _cells(row: dict[str, Any]) -> tuple[str, ...]:

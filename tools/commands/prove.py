@@ -1,8 +1,6 @@
 """`jointfmu prove`: the experiments that an FMU carries; `jointfmu validate`: the published numbers."""
 
 import argparse
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 
@@ -10,7 +8,7 @@ from jointfmu.files.writing import check_folder
 from jointfmu.joints import KINDS
 from jointfmu.parameters import load
 
-from ..command_line.common import Commands, command
+from ..command_line.common import Answer, Commands, argument, command
 from ..fem import installed
 from ..fem.validation import natural_frequencies
 from ..proof import listing, report
@@ -23,47 +21,31 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run the experiments that an FMU carries (FMI-LS-REF) and compare with its reference results"
     sub = command(commands, "prove", _prove, text)
-    sub.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    sub.add_argument(
-        "--in",
-        dest="importer",
-        choices=list(IMPORTERS),
-        default="fmpy",
-        metavar="IMPORTER",
-        help=f"what runs the FMU: {', '.join(IMPORTERS)} (default: fmpy)",
-    )
-    sub.add_argument(
-        "--listing",
-        type=Path,
-        metavar="DIR",
-        help="if all passes, write the files of the FMI cross-check for lists of exporting tools",
-    )
-    sub.add_argument(
-        "--against",
-        type=Path,
-        metavar="FILE",
-        help="parameter file: this package computes start values and references from it, those that the FMU "
-        "carries are not read",
-    )
+    argument(sub, "fmu", Path, "path of the FMU", "FMU")
+    text = f"what runs the FMU: {', '.join(IMPORTERS)}"
+    choices = list(IMPORTERS)
+    argument(sub, "--in", str, text, "IMPORTER", dest="importer", choices=choices, default="fmpy")
+    text = "if all passes, write the files of the FMI cross-check for lists of exporting tools"
+    argument(sub, "--listing", Path, text, "DIR")
+    text = "parameter file: this package computes start values and references from it, those that the FMU "
+    argument(sub, "--against", Path, text + "carries are not read")
 
 
-def _prove(args: argparse.Namespace) -> int:
+def _prove(args: argparse.Namespace) -> Answer:
     if args.listing and args.against:
         raise ValueError("--listing is of the references that the FMU carries; expected it without --against")
     if args.listing:
         check_folder(args.listing)
     proof = prove(args.fmu, args.importer, _expected(args.fmu, args.against) if args.against else None)
     folders = listing.write(proof, args.listing) if args.listing and proof.passed else []
-    if args.json:
-        written = {"listing": [str(folder) for folder in folders]} if args.listing else {}
-        print(json.dumps(report.document(proof) | written))
-        return int(not proof.passed)
-    print("\n".join(report.lines(proof)))
-    for folder in folders:
-        print(f"wrote {folder}")
-    if args.listing and not folders:
-        print("no listing is written: not all passed", file=sys.stderr)
-    return int(not proof.passed)
+    listed = {"listing": [str(folder) for folder in folders]} if args.listing else {}
+    return Answer(
+        document=report.document(proof) | listed,
+        lines=report.lines(proof),
+        notes=["no listing is written: not all passed"] if args.listing and not folders else (),
+        written=folders,
+        status=int(not proof.passed),
+    )
 
 
 def _expected(fmu: Path, path: Path) -> Expected:
@@ -98,16 +80,15 @@ def add_validate(commands: Commands) -> None:
     )
 
 
-def _validate(args: argparse.Namespace) -> int:
+def _validate(args: argparse.Namespace) -> Answer:
     rows = validation.validate()
     if args.frequencies:
         with installed("the finite-element analysis"):
             rows += natural_frequencies()
     misses = validation.missed(rows)
-    if args.json:
-        counts = asdict(validation.counts(rows))
-        print(json.dumps({"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)}))
-        return int(bool(misses))
-    print(validation.table(rows))
-    print(validation.summary(rows))
-    return int(bool(misses))
+    counts = asdict(validation.counts(rows))
+    return Answer(
+        document={"rows": [row.as_dict() for row in rows], "counts": counts, "missed": len(misses)},
+        lines=[validation.table(rows), validation.summary(rows)],
+        status=int(bool(misses)),
+    )

@@ -1,7 +1,6 @@
 """`jointfmu ramp`: an FMU along a load ramp, or to and fro."""
 
 import argparse
-import json
 import math
 import sys
 from dataclasses import replace
@@ -10,11 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from jointfmu.files.writing import check_writable, write_text
+from jointfmu.files.writing import write_text
 
 from .. import plots
-from ..command_line.common import Commands, command, flag, settings
+from ..command_line.common import Answer, Commands, argument, command, flag, settings
 from ..ramps import loops, ramp
+from ..shown import aligned
+from . import check_files
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,28 +30,25 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run an FMU along a load ramp from zero, or to and fro, and print every output or the loops' loss"
     drive = command(commands, "ramp", _run, text)
-    drive.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    drive.add_argument("--input", required=True, metavar="NAME", help="input to drive")
-    drive.add_argument("--to", type=float, metavar="VALUE", help="end of the ramp (SI)")
-    drive.add_argument("--step", type=float, metavar="VALUE", help="step of the ramp (SI)")
-    drive.add_argument(
-        "--loop", type=float, nargs="+", metavar="VALUE", help="amplitudes of loops, each from rest (SI)"
-    )
-    drive.add_argument("--about", type=float, metavar="VALUE", help="middle of the loops (default: 0)")
+    argument(drive, "fmu", Path, "path of the FMU", "FMU")
+    argument(drive, "--input", str, "input to drive", required=True)
+    argument(drive, "--to", float, "end of the ramp (SI)")
+    argument(drive, "--step", float, "step of the ramp (SI)")
+    argument(drive, "--loop", float, "amplitudes of loops, each from rest (SI)", nargs="+")
+    argument(drive, "--about", float, "middle of the loops (default: 0)")
     drive.add_argument(
         "--shape", choices=loops.SHAPES, help=f"of a loop over time (default: {loops.SHAPES[0]})"
     )
-    drive.add_argument("--points", type=int, metavar="N", help=f"of a cycle (default: {loops.POINTS})")
-    drive.add_argument("--cycles", type=int, metavar="N", help=f"of a loop (default: {loops.CYCLES})")
-    drive.add_argument("--output", metavar="NAME", help="force or motion conjugate to the input of loops")
-    drive.add_argument("--columns", nargs="+", metavar="NAME", help="outputs of a ramp (default: all)")
+    argument(drive, "--points", int, f"of a cycle (default: {loops.POINTS})")
+    argument(drive, "--cycles", int, f"of a loop (default: {loops.CYCLES})")
+    argument(drive, "--output", str, "force or motion conjugate to the input of loops")
+    argument(drive, "--columns", str, "outputs of a ramp (default: all)", nargs="+")
     settings(drive)
-    drive.add_argument("--csv", type=Path, metavar="FILE", help="write every point to a file")
-    text = "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)"
-    drive.add_argument("--plot", type=Path, metavar="FILE", help=text)
+    argument(drive, "--csv", Path, "write every point to a file")
+    argument(drive, "--plot", Path, "draw the outputs of a ramp, or loops, loss and stiffness (.png, .svg)")
 
 
-def _run(args: argparse.Namespace) -> int:
+def _run(args: argparse.Namespace) -> Answer:
     """A ramp or loops, as the options say; ValueError if they say both or neither."""
     ramped, looped = ([name for name in names if getattr(args, name) is not None] for names in (RAMP, LOOP))
     if args.loop and ramped:
@@ -63,14 +61,11 @@ def _run(args: argparse.Namespace) -> int:
         raise ValueError("the drive is not stated; expected --to with --step, or --loop")
     if args.loop and args.columns:
         raise ValueError("--columns is given with --loop; allowed is with a ramp only")
-    if args.csv:
-        check_writable(args.csv)
-    if args.plot:
-        plots.check(args.plot)
+    check_files(args.csv, plot=args.plot)
     return _loops(args) if args.loop else _ramp(args)
 
 
-def _ramp(args: argparse.Namespace) -> int:
+def _ramp(args: argparse.Namespace) -> Answer:
     result = ramp.run(args.fmu, args.input, args.to, args.step, dict(args.settings))
     for message in result.messages:
         print(message, file=sys.stderr)
@@ -81,15 +76,11 @@ def _ramp(args: argparse.Namespace) -> int:
         count = len(result.columns) - 1
         with plots.drawing(args.plot, (4.0 * min(count, 3), 2.8 * math.ceil(count / 3))) as figure:
             _draw_ramp(figure, result)
-    points = len(next(iter(result.columns.values())))
-    if args.json:
-        columns = {name: column.tolist() for name, column in result.columns.items()}
-        print(json.dumps({"fmu": str(args.fmu), "units": result.units, "columns": columns}))
-    elif args.csv or args.plot:
-        print("\n".join(f"wrote {path}: {points} points" for path in (args.csv, args.plot) if path))
-    else:
-        sys.stdout.write(_table(result) if sys.stdout.isatty() else result.csv())
-    return 0
+    columns = {name: column.tolist() for name, column in result.columns.items()}
+    lines = [f"wrote {path}: {len(columns[args.input])} points" for path in (args.csv, args.plot) if path]
+    if not lines and not args.json:
+        lines = _table(result) if sys.stdout.isatty() else [result.csv()[:-1]]
+    return Answer(document={"fmu": str(args.fmu), "units": result.units, "columns": columns}, lines=lines)
 
 
 def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ramp.RampResult:
@@ -104,7 +95,7 @@ def _chosen(result: ramp.RampResult, driven: str, names: list[str] | None) -> ra
     )
 
 
-def _table(result: ramp.RampResult) -> str:
+def _table(result: ramp.RampResult) -> list[str]:
     """Some of the points for people, in the units in which they read best."""
     every = next(iter(result.columns.values())).size
     shown = np.unique(np.linspace(0, every - 1, min(every, ROWS)).round().astype(int))
@@ -117,9 +108,8 @@ def _table(result: ramp.RampResult) -> str:
                 *(f"{size * values[i] + 0.0:.5g}" for i in shown),
             ]
         )
-    rows = zip(*([f"{cell:>{max(map(len, column))}}" for cell in column] for column in columns), strict=True)
-    more = f"\n{len(shown)} of {every} points; --csv writes all" if len(shown) < every else ""
-    return "\n".join("  ".join(row) for row in rows) + more + "\n"
+    more = [f"{len(shown)} of {every} points; --csv writes all"] if len(shown) < every else []
+    return [*aligned([*zip(*columns, strict=True)], 0), *more]
 
 
 def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
@@ -136,7 +126,7 @@ def _draw_ramp(figure: "Figure", result: ramp.RampResult) -> None:
         one.set_visible(False)
 
 
-def _loops(args: argparse.Namespace) -> int:
+def _loops(args: argparse.Namespace) -> Answer:
     given = {name: getattr(args, name) for name in LOOP[:4] if getattr(args, name) is not None}
     swing = loops.Swing(**given)
     found = loops.run(args.fmu, args.input, args.loop, swing, args.output, dict(args.settings))
@@ -147,13 +137,8 @@ def _loops(args: argparse.Namespace) -> int:
     if args.plot:
         with plots.drawing(args.plot, (11.4, 3.8)) as figure:
             _draw(figure, found, swing)
-    if args.json:
-        print(json.dumps(_document(args.fmu, found)))
-        return 0
-    sys.stdout.write(found.table())
-    for path in filter(None, (args.csv, args.plot)):
-        print(f"wrote {path}")
-    return 0
+    lines, written = found.table().splitlines(), (args.csv, args.plot)
+    return Answer(document=_document(args.fmu, found), lines=lines, written=written)
 
 
 def _document(fmu: Path, found: loops.HysteresisLoops) -> dict[str, object]:

@@ -1,7 +1,6 @@
 """`jointfmu ring`: resonance of a joint in its system over the load or the amplitude, by running FMUs."""
 
 import argparse
-import json
 import math
 import sys
 from pathlib import Path
@@ -12,53 +11,34 @@ import numpy as np
 from jointfmu.files.writing import write_text
 from jointfmu.mechanics.steps import stable_steps
 
-from .. import columns, plots
-from ..command_line.common import Commands, command, settings, without_package
+from .. import columns
+from ..command_line.common import Answer, Commands, argument, command, needing, settings
 from ..systems.system import names, system
-from . import check_files
+from . import check_files, draw
 
 
 def add(commands: Commands) -> None:
     """Declare the command."""
     text = "run a joint's FMU with a body on it and find resonance and damping over load or amplitude"
     ring = command(commands, "ring", _ring, text)
-    ring.add_argument("system", metavar="SYSTEM", help=f"{', '.join(names())}, or a system's file (TOML)")
-    ring.add_argument("--joint", metavar="NAME", help="the joint, where the system has several")
-    ring.add_argument(
-        "--fmus",
-        type=Path,
-        default=Path("dist/fmi2"),
-        metavar="DIR",
-        help="folder with the FMUs of `jointfmu build --systems` (default: dist/fmi2)",
-    )
-    ring.add_argument(
-        "--load",
-        type=float,
-        nargs="+",
-        metavar="VALUE",
-        help="what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
-        "that show the joint)",
-    )
-    ring.add_argument(
-        "--inertia", type=float, metavar="VALUE", help="of the body [kg or kg.m2] (default: of the system)"
-    )
-    ring.add_argument(
-        "--amplitude",
-        type=float,
-        metavar="VALUE",
-        help="let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
-        "the motion in which the joint slips (default load: the largest of the several)",
-    )
+    argument(ring, "system", str, f"{', '.join(names())}, or a system's file (TOML)", "SYSTEM")
+    argument(ring, "--joint", str, "the joint, where the system has several")
+    text = "folder with the FMUs of `jointfmu build --systems`"
+    argument(ring, "--fmus", Path, text, "DIR", default=Path("dist/fmi2"))
+    text = "what loads the joint, SI: preload of a bolt [N], torque at the output [N.m] (default: several "
+    argument(ring, "--load", float, text + "that show the joint)", nargs="+")
+    argument(ring, "--inertia", float, "of the body [kg or kg.m2] (default: of the system)")
+    text = "let the body go from this deflection [m or rad]: frequency and damping over the amplitude, in "
+    text += "the motion in which the joint slips (default load: the largest of the several)"
+    argument(ring, "--amplitude", float, text)
     settings(ring)
-    ring.add_argument("--csv", type=Path, metavar="FILE", help="write the table to a file")
-    ring.add_argument("--plot", type=Path, metavar="FILE", help="draw resonance and decay (.png, .svg)")
+    argument(ring, "--csv", Path, "write the table to a file")
+    argument(ring, "--plot", Path, "draw resonance and decay (.png, .svg)")
 
 
-def _ring(args: argparse.Namespace) -> int:
-    try:
+def _ring(args: argparse.Namespace) -> Answer:
+    with needing("run a system"):
         from ..systems import ringing
-    except ImportError as error:
-        raise without_package(error, "run a system") from None
     example = ringing.vibrating_joint(system(args.system), args.joint)
     _check(args, example.inertia_unit)
     for name in (example.body.fmu, example.body.partner):
@@ -76,23 +56,21 @@ def _ring(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import SIZE, draw
+        from ..report.systems import SIZE, resonance_panels
 
-        with plots.drawing(args.plot, SIZE) as figure:
-            draw(figure, points, example, args.fmus)
+        draw(args.plot, resonance_panels(points, example, args.fmus), SIZE)
     misses = [line for point in points for line in point.misses]
-    if args.json:
-        print(json.dumps({"system": args.system, "rows": rows, "missed": len(misses)}))
-    else:
-        sys.stdout.write(table)
-        for path in filter(None, (args.csv, args.plot)):
-            print(f"wrote {path}")
     for line in misses:
         print(f"missed: {line}", file=sys.stderr)
-    return int(bool(misses))
+    return Answer(
+        document={"system": args.system, "rows": rows, "missed": len(misses)},
+        lines=table.splitlines(),
+        written=(args.csv, args.plot),
+        status=int(bool(misses)),
+    )
 
 
-def _decays(args: argparse.Namespace, example: Any) -> int:
+def _decays(args: argparse.Namespace, example: Any) -> Answer:
     """Frequency and damping over the amplitude."""
     from ..systems import decays
 
@@ -113,18 +91,12 @@ def _decays(args: argparse.Namespace, example: Any) -> int:
     if args.csv:
         write_text(args.csv, table)
     if args.plot:
-        from ..report.systems import WIDE, draw_decays
+        from ..report.systems import WIDE, decay_panels
 
-        with plots.drawing(args.plot, WIDE) as figure:
-            draw_decays(figure, points, body)
-    if args.json:
-        rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
-        print(json.dumps({"system": args.system, "rows": rows}))
-        return 0
-    sys.stdout.write(table)
-    for path in filter(None, (args.csv, args.plot)):
-        print(f"wrote {path}")
-    return 0
+        draw(args.plot, decay_panels(points, body), WIDE)
+    rows = [dict(zip(heads, row, strict=True)) for row in np.stack(values, axis=1).tolist()]
+    document, written = {"system": args.system, "rows": rows}, (args.csv, args.plot)
+    return Answer(document=document, lines=table.splitlines(), written=written)
 
 
 def _falling(point: Any) -> tuple[np.ndarray[Any, Any], ...]:

@@ -1,7 +1,6 @@
 """`jointfmu robot`: a robot of others, MJCF or URDF, with elastic axes."""
 
 import argparse
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from jointfmu.files.writing import check_folder, write_text
 from jointfmu.parameters import dump
 
 from .. import plots
-from ..command_line.common import Commands, command, without_package
+from ..command_line.common import Answer, Commands, argument, command, needing
 
 MOST = 1e4
 """Largest payload [kg] that is taken."""
@@ -20,17 +19,12 @@ def add(commands: Commands) -> None:
     """Declare the command."""
     text = "make named joints of a robot (MJCF, URDF) elastic with their drives"
     sub = command(commands, "robot", run, text)
-    sub.add_argument("robot", type=Path, metavar="ROBOT", help="the robot's file, MJCF or URDF")
-    sub.add_argument(
-        "--drive",
-        nargs="+",
-        action="extend",
-        required=True,
-        metavar="JOINT=NAME",
-        help="joints and their drives: a name of the catalogue or a parameter file",
-    )
-    sub.add_argument("--payload", type=float, default=1.0, metavar="M", help="mass at the tip [kg] (1)")
-    sub.add_argument("--tip", metavar="BODY", help="body whose origin is the tip (the last body)")
+    several: dict[str, Any] = {"nargs": "+", "action": "extend"}
+    argument(sub, "robot", Path, "the robot's file, MJCF or URDF", "ROBOT")
+    text = "joints and their drives: a name of the catalogue or a parameter file"
+    argument(sub, "--drive", str, text, "JOINT=NAME", required=True, **several)
+    argument(sub, "--payload", float, "mass at the tip [kg]", "M", default=1.0)
+    argument(sub, "--tip", str, "body whose origin is the tip (the last body)", "BODY")
     sub.add_argument(
         "--pose",
         nargs="+",
@@ -40,29 +34,23 @@ def add(commands: Commands) -> None:
         help="angles [rad] of the pose, of joints at zero or as in the first keyframe (for the payload: the "
         "pose of the grid at which the tip sinks most)",
     )
-    sub.add_argument(
-        "--plugin",
-        action="store_true",
-        help="the robot with MuJoCo's plugins of the drives too, compiled here",
-    )
-    sub.add_argument(
-        "--fmu", action="store_true", help="one FMU of the axes at the pose too, and the system's file of it"
-    )
-    sub.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    text = "the robot with MuJoCo's plugins of the drives too, compiled here"
+    sub.add_argument("--plugin", action="store_true", help=text)
+    text = "one FMU of the axes at the pose too, and the system's file of it"
+    sub.add_argument("--fmu", action="store_true", help=text)
+    argument(sub, "--out", Path, "folder to write", "DIR", required=True)
 
 
-def run(args: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+def run(args: argparse.Namespace) -> Answer:
+    """Run the command."""
     names, angles = _pairs(args.drive, "--drive", "NAME"), _pairs(args.pose, "--pose", "ANGLE")
     if not 0.0 <= args.payload <= MOST:
         raise ValueError(f"--payload = {args.payload:g} kg is outside [0, {MOST:g}] kg")
     check_folder(args.out)
     pictures = args.out / "frequencies.png", args.out / "payload.png"
     plots.check(pictures[0])
-    try:
+    with needing("read robots", "mujoco"):
         import mujoco  # noqa: F401
-    except ImportError as error:
-        raise without_package(error, "read robots", "mujoco") from None
     from ..interface import load
     from ..robots import elastic, poses
     from ..robots import pictures as drawn
@@ -87,13 +75,11 @@ def run(args: argparse.Namespace) -> int:
         pose = drawn.lowest(model, axes, pose, grid, args.payload, tip)
     wound, sunk = drawn.draw_payload(pictures[1], model, axes, pose, args.payload, tip)
     more = []
-    try:
+    with needing("compile", "mujoco"):
         if args.plugin:
             more += _plugged(args, spec, axes, files)
         if args.fmu:
             more += _system(args, model, axes, files, pose, tip)
-    except ImportError as error:
-        raise without_package(error, "compile", "mujoco") from None
     longest = poses.longest_step(model, axes, pose)
     notes = [line for axis in axes for line in axis.noted]
     if model.opt.timestep > longest:
@@ -111,8 +97,7 @@ def run(args: argparse.Namespace) -> int:
         "longest_step": longest,
         "notes": notes,
     }
-    print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
-    return 0
+    return Answer(document=facts, lines=_lines(facts))
 
 
 def _plugged(args: argparse.Namespace, spec: Any, axes: Any, files: Any) -> list[Path]:

@@ -1,40 +1,34 @@
 """`jointfmu system`: a file of joints, bodies and loads as FMUs, SSP archives, a Modelica model, one FMU."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_folder, write_text
 
-from .. import columns, plots
-from ..command_line.common import Commands, command, without_package
+from .. import columns
+from ..command_line.common import Answer, Commands, argument, command, needing
 from ..systems.system import names, system
-from . import check_files
+from . import check_files, draw
 
 
 def add(commands: Commands) -> None:
     """Declare the command."""
     text = "build a system of named joints: its FMUs, SSP archives and a Modelica model"
     make = command(commands, "system", _system, text)
-    make.add_argument("file", metavar="FILE", help=f"a system's file (TOML), or {', '.join(names())}")
-    make.add_argument("--out", type=Path, default=Path("dist"), metavar="DIR", help="folder (default: dist)")
-    make.add_argument(
-        "--fmu", action="store_true", help="one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
-    )
-    make.add_argument("--csv", type=Path, metavar="FILE", help="run it and write all connected outputs")
-    make.add_argument(
-        "--plot",
-        type=Path,
-        metavar="FILE",
-        help="run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)",
-    )
+    argument(make, "file", str, f"a system's file (TOML), or {', '.join(names())}", "FILE")
+    argument(make, "--out", Path, "folder", "DIR", default=Path("dist"))
+    text = "one FMU of the whole system too: NAME.fmu, FMI 2.0 and 3.0"
+    make.add_argument("--fmu", action="store_true", help=text)
+    argument(make, "--csv", Path, "run it and write all connected outputs")
+    text = "run it and draw the joints' loads; of an arm wind-up and the tip's error (.png, .svg)"
+    argument(make, "--plot", Path, text)
 
 
-def _system(args: argparse.Namespace) -> int:
+def _system(args: argparse.Namespace) -> Answer:
     found = system(args.file)
     check_folder(args.out)
     check_files(args.csv, plot=args.plot)
-    try:
+    with needing("build a system"):
         from ..modelica import library
         from ..modelica.systems import model_name
         from ..systems import ssp
@@ -47,8 +41,6 @@ def _system(args: argparse.Namespace) -> int:
             from ..systems.fmu.build import build_system
 
             built += build_system(whole, args.out)
-    except ImportError as error:
-        raise without_package(error, "build a system") from None
     written = args.out / "modelica" / f"{model_name(found)}.mo"
     write_text(written, model)
     paths = [*built, written]
@@ -62,11 +54,7 @@ def _system(args: argparse.Namespace) -> int:
             heads = [(name, units[name]) for name in run]
             write_text(args.csv, columns.text(heads, list(run.values()), digits=12))
         if args.plot:
-            with plots.drawing(args.plot, systems.MOTION_SIZE) as figure:
-                systems.draw_motion(figure, found, run)
+            draw(args.plot, systems.panels(found, run), systems.MOTION_SIZE)
         paths += [path for path in (args.csv, args.plot) if path]
-    if args.json:
-        print(json.dumps({"system": found.name, "built": [str(path) for path in paths]}))
-        return 0
-    print("\n".join(f"built {path}" for path in paths))
-    return 0
+    document = {"system": found.name, "built": [str(path) for path in paths]}
+    return Answer(document=document, lines=[f"built {path}" for path in paths])

@@ -1,7 +1,6 @@
 """`jointfmu uncertainty`: bands from uncertain parameters; `jointfmu sweep`: a study of an FMU."""
 
 import argparse
-import json
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, load
 from jointfmu.quantity import build
 
-from ..command_line.common import Commands, command, settings, tell
+from ..command_line.common import Answer, Commands, Parser, argument, command, settings
 from ..pressure import judge_file
 from . import check_files
 
@@ -28,26 +27,21 @@ def add(commands: Commands) -> None:
         commands, "uncertainty", _uncertainty, "bands of a joint's curves from uncertain parameters"
     )
     study.epilog = f"{SYNTAX}; NAME=interval: between the ends that the source in the file states"
-    study.add_argument(
-        "joint", nargs="?", choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
-    )
-    study.add_argument("--params", type=Path, metavar="FILE", help="parameter file of the joint (TOML)")
-    study.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
-    settings(study)
-    study.add_argument("--to", type=float, metavar="VALUE", help="end of the load ramp (SI)")
-    study.add_argument(
-        "--points", type=int, default=201, metavar="N", help="points of the ramp (default: 201)"
-    )
-    study.add_argument(
-        "--samples",
-        type=int,
-        default=16384,
-        metavar="N",
-        help="samples, rounded up to a power of two (default: 16384)",
-    )
-    study.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the Sobol' sequence")
-    study.add_argument("--csv", type=Path, metavar="FILE", help="write the bands to a file")
-    study.add_argument("--plot", type=Path, metavar="FILE", help="draw bands and indices, .png or .svg")
+    argument(study, "joint", str, f"one of {', '.join(KINDS)}", "JOINT", nargs="?", choices=list(KINDS))
+    argument(study, "--params", Path, "parameter file of the joint (TOML)")
+    _drawn(study, "samples", 16384)
+    argument(study, "--to", float, "end of the load ramp (SI)")
+    argument(study, "--points", int, "points of the ramp", default=201)
+    argument(study, "--csv", Path, "write the bands to a file")
+    argument(study, "--plot", Path, "draw bands and indices, .png or .svg")
+
+
+def _drawn(sub: Parser, what: str, samples: int) -> None:
+    """Declare what is uncertain, and how many samples are drawn."""
+    argument(sub, "--study", Path, "study file with the distributions (TOML)")
+    settings(sub)
+    argument(sub, "--samples", int, f"{what}, rounded up to a power of two", default=samples)
+    argument(sub, "--seed", int, "seed of the Sobol' sequence", default=0)
 
 
 def chosen(joint: str | None, params: Path | None) -> ParameterFile:
@@ -57,7 +51,7 @@ def chosen(joint: str | None, params: Path | None) -> ParameterFile:
     return load(params, joint) if params else default(str(joint))
 
 
-def _uncertainty(args: argparse.Namespace) -> int:
+def _uncertainty(args: argparse.Namespace) -> Answer:
     from ..uncertainty import problem, propagate, report, study
     from ..uncertainty.propagate import sensitivity
 
@@ -74,16 +68,10 @@ def _uncertainty(args: argparse.Namespace) -> int:
     if args.csv:
         write_text(args.csv, report.bands_csv(task, bands))
     if args.plot:
-        from ..uncertainty import report
-
         report.draw(args.plot, bands, indices, f"{task.reduced.load.name} [{task.reduced.load.unit}]")
     found = judge_file(replace(file, values=build(task.parameters, task.values)), report.loads(task))
-    if args.json:
-        print(json.dumps(report.as_json(task, bands, indices) | found.document()))
-    else:
-        print(report.table(task, bands, indices))
-        tell(found)
-    return 0
+    lines = [report.table(task, bands, indices)]
+    return Answer(document=report.as_json(task, bands, indices), lines=lines, judgement=found)
 
 
 def add_sweep(commands: Commands) -> None:
@@ -92,27 +80,18 @@ def add_sweep(commands: Commands) -> None:
         commands, "sweep", _sweep, "run an FMU along a load ramp for many samples of its parameters"
     )
     many.epilog = SYNTAX
-    many.add_argument("fmu", type=Path, metavar="FMU", help="path of the FMU")
-    many.add_argument("--study", type=Path, metavar="FILE", help="study file with the distributions (TOML)")
-    settings(many)
-    many.add_argument("--input", required=True, metavar="NAME", help="input to drive")
-    many.add_argument("--to", type=float, required=True, metavar="VALUE", help="end of the ramp (SI)")
-    many.add_argument("--step", type=float, required=True, metavar="VALUE", help="step of the ramp (SI)")
-    many.add_argument(
-        "--samples",
-        type=int,
-        default=256,
-        metavar="N",
-        help="runs, rounded up to a power of two (default: 256)",
-    )
-    many.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the Sobol' sequence")
-    many.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder of the results")
+    argument(many, "fmu", Path, "path of the FMU", "FMU")
+    _drawn(many, "runs", 256)
+    argument(many, "--input", str, "input to drive", required=True)
+    argument(many, "--to", float, "end of the ramp (SI)", required=True)
+    argument(many, "--step", float, "step of the ramp (SI)", required=True)
+    argument(many, "--out", Path, "folder of the results", "DIR", required=True)
     where = many.add_mutually_exclusive_group()
-    where.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler of a cluster, tcp://HOST:PORT")
-    where.add_argument("--workers", type=int, metavar="N", help="local processes (default: one per core)")
+    argument(where, "--scheduler", str, "dask scheduler of a cluster, tcp://HOST:PORT", "ADDRESS")
+    argument(where, "--workers", int, "local processes (default: one per core)")
 
 
-def _sweep(args: argparse.Namespace) -> int:
+def _sweep(args: argparse.Namespace) -> Answer:
     from ..uncertainty import journal, study
     from ..uncertainty.cluster import leave
     from ..uncertainty.sweep import plan, sweep
@@ -135,14 +114,15 @@ def _sweep(args: argparse.Namespace) -> int:
         )
         leave(130)
     failure = done.first_failure
-    if args.json:
-        example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
-        counts = {"runs": done.runs, "now": done.now, "failed": done.failed}
-        print(json.dumps({"out": str(args.out), **counts, "first_failure": example}))
-    else:
-        before = done.runs - done.now
-        print(f"{done.runs} runs in {args.out}: {done.now} now, {before} before, {done.failed} failed")
-        if failure:
-            values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
-            print(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
-    return int(done.failed == done.runs)
+    example = failure and {key: failure[key] for key in ("run", "parameters", "error")}
+    counts = {"runs": done.runs, "now": done.now, "failed": done.failed}
+    before = done.runs - done.now
+    lines = [f"{done.runs} runs in {args.out}: {done.now} now, {before} before, {done.failed} failed"]
+    if failure:
+        values = ", ".join(f"{k} = {v}" for k, v in failure["parameters"].items())
+        lines.append(f"the first failed, run {failure['run']}: {values}: {failure['error']}")
+    return Answer(
+        document={"out": str(args.out), **counts, "first_failure": example},
+        lines=lines,
+        status=int(done.failed == done.runs),
+    )

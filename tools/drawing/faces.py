@@ -11,11 +11,12 @@ from jointfmu.contact import roughness
 from jointfmu.quantity import Number
 
 from .. import fractal
+from ..catalogue import Printed
 from ..joint_parts import Option
 from ..surfaces import form, reading
 from .part import Given, Sheet
 from .reading import both, flag, number
-from .tables import Known, TableRow, row
+from .tables import TableRow, row
 
 OPTIONS = (
     Option(
@@ -55,9 +56,9 @@ class Face(NamedTuple):
     Rq: float
     low: float
     high: float
-    slope: Known
-    hurst: Known
-    wave: Known
+    slope: Printed
+    hurst: Printed
+    wave: Printed
     text: str
     stated: dict[str, float]
 
@@ -177,9 +178,9 @@ def faces(given: Given) -> tuple[Face, Face]:
     return pair[0], pair[1]
 
 
-def _cut_off(Ra: float) -> Known:
+def _cut_off(Ra: float) -> Printed:
     wave = next(cut_off for up_to, cut_off in CUT_OFFS if Ra <= up_to)
-    return Known(wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra counts no longer waves")
+    return Printed(wave, "estimate", f"cut-off of Ra {Ra * 1e6:.3g} um (ISO 4288): Ra counts no longer waves")
 
 
 def _of_finish(name: str) -> Face:
@@ -200,8 +201,8 @@ def _of_number(name: str, text: str, finish: TableRow | None) -> Face:
         most = roughness.ROUGHEST * 1e6
         raise ValueError(f"--{name} = {text!r} is outside (0, {most:g}] um: no roughness is as high")
     Rq = value if name == "Rq" else float(roughness.rms_of_mean(value))
-    slope = Known(SLOPE, "estimate", "usual of machined surfaces")
-    hurst = Known(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9")
+    slope = Printed(SLOPE, "estimate", "usual of machined surfaces")
+    hurst = Printed(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9")
     if finish:
         slope, hurst = finish.numbers["slope"], finish.numbers["hurst"]
     wave = _cut_off(Rq / roughness.FACTOR)
@@ -217,9 +218,9 @@ def _of_scan(path: str, unit: str | None) -> Face:
         found.h,
         found.h,
         found.h,
-        Known(found.slope, "user", f"{source}, waves down to {found.shortest_wave:.3g} m"),
-        Known(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9"),
-        Known(longest, "user", f"length of the {source}"),
+        Printed(found.slope, "user", f"{source}, waves down to {found.shortest_wave:.3g} m"),
+        Printed(HURST, "estimate", "usual of machined surfaces, 0.7 to 0.9"),
+        Printed(longest, "user", f"length of the {source}"),
         f"{source}, waves up to {longest:.3g} m",
         {"Rq": found.h},
     )

@@ -10,8 +10,8 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import build, flat_fields
 
+from ..catalogue import Printed
 from ..joint_parts import Option
-from .tables import Known
 
 Given = Mapping[str, Any]
 """{name of an option: its text, a list of texts, or whether a flag is there; None where it is left out}."""
@@ -67,15 +67,12 @@ class Sheet:
         self.ranges[name] = (low, high)
 
     def stated(self, name: str, value: object) -> None:
-        """A parameter that stands on the drawing."""
         self.put(name, value, "user", "stated on the drawing")
 
-    def take(self, name: str, known: Known) -> None:
-        """A parameter of a table."""
+    def take(self, name: str, known: Printed) -> None:
         self.put(name, known.value, known.kind, known.source)
 
     def value(self, name: str) -> Any:
-        """One of the values."""
         return self.known[name][0]
 
     def file(self, name: str, roughness: Mapping[str, float] | None = None) -> ParameterFile:

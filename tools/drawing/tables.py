@@ -5,20 +5,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from jointfmu.parameters import entries, read_document
 from jointfmu.quantity import quantity
 from jointfmu.quantity.units import factor
 
-
-class Known(NamedTuple):
-    """A number in its SI unit, where it comes from (one of parameters.ORIGINS), and the source."""
-
-    value: float
-    kind: str
-    source: str
-
+from ..catalogue import Printed
 
 MATERIAL = {
     "E": quantity("Pa", "Young's modulus"),
@@ -42,7 +35,7 @@ class TableRow:
     name: str
     also: tuple[str, ...]
     title: str
-    numbers: Mapping[str, Known]
+    numbers: Mapping[str, Printed]
 
 
 @cache
@@ -54,7 +47,7 @@ def table(name: str) -> dict[str, TableRow]:
     for title, body in document.items():
         plain = {key: body.pop(key) for key in ("also", "title")}
         values, kinds, sources = entries(path, columns, body)
-        known = {key: Known(float(value), kinds[key], sources[key]) for key, value in values.items()}
+        known = {key: Printed(float(value), kinds[key], sources[key]) for key, value in values.items()}
         rows[title] = TableRow(title, tuple(plain["also"]), plain["title"], known)
     return rows
 

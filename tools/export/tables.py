@@ -168,21 +168,17 @@ def springs_csv(springs: Springs, placing: Placing, about: Sequence[str]) -> str
     stiffness = placing.along(springs.K_t, springs.K_n)
     damping = placing.along(springs.C_t, springs.C_n)
     values = [*springs.position.T, springs.area, springs.pressure, *stiffness.T, *damping.T]
-    return _csv([*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placing.units, about)
-
-
-def table_csv(table: Array, heads: Heads, units: Units, about: Sequence[str]) -> str:
-    """A table (n, columns) of SI values."""
-    return _csv(list(table.T), heads, units, about)
+    return columns_csv([*springs.nodes.T, *values], [*LABEL_HEADS, *SPRING_HEADS], placing.units, about)
 
 
 def contact_csv(table: LoadTable, units: Units, about: Sequence[str]) -> str:
     """Overclosure, pressure and stiffness per area."""
     heads = (("overclosure", "m"), ("pressure", "Pa"), ("stiffness", "N/m3"))
-    return table_csv(table.rows, heads, units, about)
+    return columns_csv([*table.rows.T], heads, units, about)
 
 
-def _csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:
+def columns_csv(values: Sequence[Column], heads: Heads, units: Units, about: Sequence[str]) -> str:
+    """Columns (n) of SI values."""
     shown = [
         column if unit == "1" else units.of(column, unit)
         for column, (_, unit) in zip(values, heads, strict=True)

@@ -111,7 +111,7 @@ def curve(form: str, file: ParameterFile, state: object, units: Units, error: fl
     if form == "modelica":
         facts = {"table": load.name, **_facts(table)}
         return Written(tables.modelica_text(table.rows, load.name, about), facts, _warnings(table))
-    return Written(tables.table_csv(table.rows, heads, units, about), _facts(table), _warnings(table))
+    return Written(tables.columns_csv([*table.rows.T], heads, units, about), _facts(table), _warnings(table))
 
 
 def _warnings(table: tables.LoadTable) -> tuple[str, ...]:

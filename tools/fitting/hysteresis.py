@@ -211,7 +211,6 @@ class Free:
         return np.concatenate([data.frequency / frequency - 1.0, data.damping - damping])
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
-        """Misfit over the scale (2 n)."""
         return self.misfit(model) / scale
 
 
@@ -240,5 +239,4 @@ class Response:
         return np.log(self.amplitude / model.response(self.frequency, self.force, self.amplitude))
 
     def residuals(self, model: Oscillator, scale: Array) -> Array:
-        """Misfit over the scale (n)."""
         return self.misfit(model) / scale

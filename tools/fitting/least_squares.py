@@ -12,6 +12,7 @@ of the level the valley is straight.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -156,6 +157,27 @@ def solve(
     )
 
 
+def best_start(
+    unknowns: Sequence[Unknown],
+    starts: Mapping[str, Sequence[float]],
+    tried: Callable[[dict[str, float]], tuple[Mapping[str, float], float]],
+) -> Sequence[Unknown]:
+    """The unknowns at the best of the starting points; at their own starts where the model refuses all.
+
+    starts : {name: values beside the start's}
+    tried  : starting point -> the values there, which it may move, and their cost
+    """
+    best, least = unknowns, np.inf
+    for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
+        try:
+            values, cost = tried(dict(zip((u.name for u in unknowns), point, strict=True)))
+        except (ValueError, RuntimeError):
+            continue
+        if cost < least and all(u.low < values[u.name] < u.high for u in unknowns):
+            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
+    return best
+
+
 def _spread(residuals: Array) -> float:
     """Root mean square [1]."""
     return float(np.sqrt(np.mean(residuals**2)))
@@ -223,7 +245,6 @@ def covariance(jacobian: Array, noise: float) -> Array:
 
 EXACT, SECANTS = 1e-10, 40
 """Relative accuracy with which the quantity is met [1], and the steps for that."""
-"""Step of the differences in a logarithm [1]."""
 
 
 @dataclass(frozen=True, slots=True)

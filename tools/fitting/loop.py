@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from jointfmu.quantity import Array
 
@@ -147,12 +148,7 @@ def _separated(torque: Array, angle: Array, used: list[_Branch], low: float, hig
 
 def _hats(T: Array, grid: Array) -> scipy.sparse.csr_matrix:
     """Piecewise linear basis (n, k) at torques (n)."""
-    place = np.clip((T - grid[0]) / (grid[1] - grid[0]), 0.0, grid.size - 1.0)
-    left = np.minimum(place.astype(int), grid.size - 2)
-    part = place - left
-    rows = np.arange(T.size)
-    entries = (np.concatenate([1.0 - part, part]), (np.tile(rows, 2), np.concatenate([left, left + 1])))
-    return scipy.sparse.csr_matrix(entries, shape=(T.size, grid.size))
+    return scipy.sparse.csr_matrix(BSpline.design_matrix(T, np.pad(grid, 1, mode="edge"), 1))
 
 
 def _turns(used: list[_Branch], end: float, span: float, side: int) -> bool:

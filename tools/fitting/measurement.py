@@ -41,7 +41,6 @@ class Heads:
 
     @property
     def columns(self) -> Mapping[str, Sizes]:
-        """All columns that are read."""
         return {
             self.motion: self.motions,
             self.force: self.forces,
@@ -71,9 +70,9 @@ def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
     table.require(heads.motion, heads.columns)
     have = set(table.columns)
     if {"frequency", heads.force} <= have:
-        return "response", _positive(table, heads, "frequency", heads.force)
+        return "response", table.positive((heads.motion, "frequency", heads.force), heads.columns)
     if {"frequency", "damping"} <= have:
-        return "backbone", _positive(table, heads, "frequency", "damping")
+        return "backbone", table.positive((heads.motion, "frequency", "damping"), heads.columns)
     if "frequency" not in have and heads.force in have:
         return "loops", table
     if "frequency" not in have and "time" in have:
@@ -83,19 +82,6 @@ def read(path: str | Path, heads: Heads) -> tuple[str, columns.Columns]:
         f"{table.path}: has {', '.join(table.columns)} alone; expected {heads.motion} with "
         f"{', or with '.join(' and '.join(names) for names in beside)}"
     )
-
-
-def _positive(table: columns.Columns, heads: Heads, *names: str) -> columns.Columns:
-    for name in (heads.motion, *names):
-        column = table.columns[name]
-        if np.any(wrong := column <= 0.0):
-            first = int(np.argmax(wrong))
-            unit = next(iter(heads.columns[name]))
-            raise ValueError(
-                f"{table.path}: line {table.lines[first]}: {name} = {column[first]:g} {unit} is outside "
-                "(0, inf)"
-            )
-    return table
 
 
 def runs(table: columns.Columns) -> list[tuple[str, dict[str, Array]]]:
@@ -155,7 +141,6 @@ class Measurement:
 
     @property
     def span(self) -> str:
-        """What it is and up to which amplitude."""
         return f"{self.kind} up to {self.heads.motion} {self.amplitude:.4g} {self.heads.unit[1]}"
 
 

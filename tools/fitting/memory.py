@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -12,13 +11,14 @@ from jointfmu.quantity.refusal import Refusal
 from ..plots import shown
 from .branches import Loops, ordered
 from .hysteresis import Free, HysteresisLaw, Oscillator, Response
-from .least_squares import Exchange, Residuals, Solution, Unknown, solve
+from .least_squares import Exchange, Residuals, Solution, Unknown, best_start, solve
 from .measurement import Measurement
-from .outcome import Picture, systematic
+from .outcome import Facts, Picture, systematic
 
 DAMPING = "damping_ratio"
 """Unknown that is no parameter of the joint: the damping ratio of the structure beside it [1]."""
-FIRST_DAMPING, MOST_DAMPING = 1e-3, 0.3
+MOST_DAMPING = 0.3
+DAMPING_UNKNOWN = Unknown(DAMPING, "1", 1e-3, 1e-9, MOST_DAMPING)
 ROUGH, TOLERANCE = 1e-3, 1e-6
 """Relative change of cost or parameters at which the first and the second fit end [1]."""
 ROUGH_NOISE = 0.01
@@ -43,18 +43,15 @@ class MeasurementModel:
     damping: float
 
     def of(self, values: Mapping[str, float]) -> HysteresisLaw:
-        """The law of the loop at the values."""
         return self.law({name: value for name, value in values.items() if name != DAMPING})
 
     def residuals(self, data: Loops | Free | Response, values: Mapping[str, float], scale: Array) -> Array:
-        """Residuals of the data at the values."""
         law = self.of(values)
         if isinstance(data, Loops):
             return data.residuals(law, scale)
         return data.residuals(self.oscillator(law, values), scale)
 
     def oscillator(self, law: HysteresisLaw, values: Mapping[str, float]) -> Oscillator:
-        """The mass on the joint."""
         assert self.inertia is not None
         return Oscillator(law, self.inertia, values.get(DAMPING, self.damping))
 
@@ -77,11 +74,6 @@ def model(
     if not 0.0 <= damping < MOST_DAMPING:
         raise ValueError(f"damping ratio = {damping:g} is outside [0, {MOST_DAMPING:g})")
     return MeasurementModel(law, inertia, damping)
-
-
-def damping_unknown() -> Unknown:
-    """The damping ratio of the structure as an unknown."""
-    return Unknown(DAMPING, "1", FIRST_DAMPING, 1e-9, MOST_DAMPING)
 
 
 def search(
@@ -115,7 +107,17 @@ def search(
 
     rough = data.scale
     seen = None if level is None else measurement.rest_stiffness(model.inertia)
-    own = {u.name: u for u in _best(unknowns, residuals(rough), starts, level, seen)}
+
+    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """At the stiffness that the data have, whatever else the point has."""
+        if level is not None and seen is not None:
+            rest = {name: value for name, value in values.items() if name != level.name}
+            values |= level.values(rest | {level.label: seen}, values[level.name])
+        if any(not u.low < values[u.name] < u.high for u in unknowns):
+            return values, np.inf
+        return values, float(np.sum(residuals(rough)(values) ** 2))
+
+    own = {u.name: u for u in best_start(unknowns, starts, tried)}
     exchange = level if moved else None
     found = [exchange.unknown(own) if exchange and u.name == exchange.name else u for u in own.values()]
     first = solve(found, exchanged(residuals(rough)), noise=ROUGH_NOISE, tolerance=ROUGH)
@@ -132,37 +134,7 @@ def _inside(unknown: Unknown, value: float) -> float:
     return float(min(max(value, low), unknown.high * (1.0 - 1e-6)))
 
 
-def _best(
-    unknowns: Sequence[Unknown],
-    residuals: Residuals,
-    starts: Mapping[str, Sequence[float]],
-    level: Exchange | None,
-    seen: float | None,
-) -> Sequence[Unknown]:
-    """The unknowns at the best of the starting points; at their own starts where no other is allowed.
-
-    seen : stiffness that `level` has at every starting point
-    """
-    best, least = unknowns, np.inf
-    for point in product(*((u.start, *starts.get(u.name, ())) for u in unknowns)):
-        values = dict(zip((u.name for u in unknowns), point, strict=True))
-        try:
-            if level is not None and seen is not None:
-                rest = {name: value for name, value in values.items() if name != level.name}
-                values |= level.values(rest | {level.label: seen}, values[level.name])
-            if not all(u.low < values[u.name] < u.high for u in unknowns):
-                continue
-            cost = float(np.sum(residuals(values) ** 2))
-        except (ValueError, RuntimeError):
-            continue
-        if cost < least:
-            least, best = cost, [replace(u, start=values[u.name]) for u in unknowns]
-    return best
-
-
-def facts(
-    measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array
-) -> dict[str, tuple[float, str, str]]:
+def facts(measurement: Measurement, solution: Solution, law: HysteresisLaw, scale: Array) -> Facts:
     """What was read off the data beside the parameters; `scale` (n), the noise of the data."""
     data, (_, unit) = measurement.data, measurement.heads.unit
     found = {
@@ -195,14 +167,14 @@ _LINE = 120
 
 def pictures(
     measurement: Measurement, model: MeasurementModel, values: Mapping[str, float], scale: Array
-) -> tuple[Picture, Picture | None]:
+) -> Sequence[Picture]:
     """Loops, or amplitudes over the frequency; or frequency and, beside it, damping over the amplitude."""
     law = model.of(values)
     match measurement.data:
         case Loops() as loops:
-            return _loops(measurement, loops, law, scale), None
+            return [_loops(measurement, loops, law, scale)]
         case Response() as response:
-            return _response(measurement, response, model.oscillator(law, values)), None
+            return [_response(measurement, response, model.oscillator(law, values))]
         case Free() as free:
             return _free(measurement, free, model.oscillator(law, values))
 

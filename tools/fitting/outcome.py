@@ -120,30 +120,26 @@ class Picture:
     also: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
 
+Facts = dict[str, tuple[float, str, str]]
+"""{name: (value, unit, meaning)}."""
+
+
 @dataclass(frozen=True, slots=True)
 class FitResult:
     """A fit.
 
     facts : {name: (value, unit, meaning)} beside the parameters
     notes : what the user should know, one line each
-    second_picture : drawn beside the first
-    more_pictures  : beside these
+    pictures : drawn beside each other
     intervals : {name: ends of its 95 % interval}, where they are told
     """
 
     parameters: ParameterFile
     solution: Solution
-    facts: Mapping[str, tuple[float, str, str]]
-    picture: Picture
+    facts: Facts
+    pictures: Sequence[Picture]
     notes: Sequence[str] = ()
-    second_picture: Picture | None = None
-    more_pictures: Sequence[Picture] = ()
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-
-    @property
-    def pictures(self) -> list[Picture]:
-        """All of them."""
-        return [self.picture, *filter(None, (self.second_picture,)), *self.more_pictures]
 
     def rows(self) -> list[dict[str, Any]]:
         """Every unknown with value, unit, relative standard deviation and whether it is determined."""
@@ -210,7 +206,6 @@ class FitResult:
         return lines + list(self.notes)
 
     def document(self) -> dict[str, Any]:
-        """Everything as one JSON object."""
         return {
             "joint": self.parameters.joint,
             "unknowns": self.rows(),
@@ -279,17 +274,14 @@ def model(start: ParameterFile, predict: Callable[[Any], Array]) -> Callable[[Ma
 def fitted(
     start: ParameterFile, values: Mapping[str, float], origin: str, data: str, span: str
 ) -> ParameterFile:
-    """The file with fitted values; their source says from what, when and over which range."""
-    file = start.with_values(values, origin, f"fitted to {data}, {today()}, {span}")
-    return replace(file, name=f"fitted to {data}")
+    """The file with fitted values; their source says from what, over which range and when: today, or at
+    SOURCE_DATE_EPOCH where that is set, for files that repeat.
 
-
-def today() -> str:
-    """The date, or that of SOURCE_DATE_EPOCH where it is set (for files that repeat).
-
-    Raises ValueError if the variable is no number of seconds.
+    Raises ValueError if that variable is no number of seconds.
     """
-    return build_time().date().isoformat()
+    today = build_time().date().isoformat()
+    file = start.with_values(values, origin, f"fitted to {data}, {today}, {span}")
+    return replace(file, name=f"fitted to {data}")
 
 
 def size(outcome: FitResult) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from jointfmu.joints import KINDS
@@ -34,6 +35,16 @@ class Procedure:
     column: str = ""
     options: Sequence[Option] = ()
     run: "Callable[..., FitResult]"
+
+
+def fit_of(module: str) -> "Callable[..., FitResult]":
+    """The function `fit` of a module, which is loaded when it is called."""
+
+    def run(*given: object, **options: object) -> "FitResult":
+        found: FitResult = import_module(module).fit(*given, **options)
+        return found
+
+    return run
 
 
 def procedures() -> dict[str, dict[str, Procedure]]:

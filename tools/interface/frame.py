@@ -43,7 +43,10 @@ class Table:
     lines: Sequence[str] = ()
 
     def __str__(self) -> str:
-        cells = [[_cut(cell) for cell in row] for row in (self.heads, *self.rows)]
+        cells = [
+            [cell if len(cell) <= LONGEST else f"{cell[: LONGEST - 3]}..." for cell in row]
+            for row in (self.heads, *self.rows)
+        ]
         return "\n".join([self.title, *self.lines, *aligned(cells)])
 
     __repr__ = __str__
@@ -57,10 +60,6 @@ class Table:
             f"<div><b>{escape(self.title)}</b></div>{lines}"
             f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
         )
-
-
-def _cut(cell: str) -> str:
-    return cell if len(cell) <= LONGEST else f"{cell[: LONGEST - 3]}..."
 
 
 ENDS = 5

@@ -15,7 +15,7 @@ from jointfmu.joints.model import Memory, Model, Spring
 from jointfmu.parameters import ParameterFile, dump
 
 from .. import plots
-from ..command_line.common import without_package
+from ..command_line.common import needing
 from ..pressure import judge_file
 from ..ramps.ramp import broadcast
 from ..shown import quantity, stated
@@ -195,12 +195,10 @@ class Joint(Tabled):
     @plots.style()
     def plot(self, fmu: str | None = None) -> "Figure":
         """Draw the curves over the load, and loops where there is friction: a matplotlib figure."""
-        try:
+        with needing("draw"):
             from ..report.course import Course
             from ..report.figure import drawn
             from ..report.joint import curves, looped
-        except ImportError as error:
-            raise without_package(error, "draw") from None
         course = Course(self.model(fmu), self.file)
         panels = list(curves(course).panels)
         loops = course.loops() if course.model.loop else None
@@ -237,18 +235,14 @@ class Joint(Tabled):
         """
         flavours = [flavour] if isinstance(flavour, str) else [*flavour]
         names = [*self.fmus] if fmu is None else [self.model(fmu).name]
-        try:
+        with needing("build"):
             from jointfmu_fmu_src import building
 
             return building.build(names, flavours, self.file, Path(out), alias=name)
-        except ImportError as error:
-            raise without_package(error, "build") from None
 
     def report(self, path: str | Path, fmu: str | None = None) -> Path:
         """Write a page about the joint that opens in a browser: curves, loops, sources of its numbers."""
-        try:
+        with needing("write a report"):
             from ..report.joint import write_joint_report
-        except ImportError as error:
-            raise without_package(error, "write a report") from None
         write_joint_report(Path(path), self.file, fmu)
         return Path(path)

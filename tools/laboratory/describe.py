@@ -1,7 +1,6 @@
 """What the page knows of a module: its variables, parameter sets, curves, points; JSON in the end."""
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -9,7 +8,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from jointfmu_fmu_src.joint_parts import RampPanel
 from jointfmu_fmu_src.native.compiled.compiler import webassembly
 from jointfmu_fmu_src.native.compiled.kept import keeping
 from jointfmu_fmu_src.native.page import panels
@@ -24,6 +22,7 @@ from jointfmu.quantity import units
 from ..joint_parts import part
 from ..published.computed import published
 from ..published.reference import ROLES, points
+from ..ramps.loops import suffix
 from ..shown import shown_unit
 from .part import LaboratoryModel
 
@@ -84,9 +83,12 @@ def compiled(some: Sequence[Module]) -> list[bytes]:
 
 
 def _of(kind: Kind, model: Model) -> Iterator[Module]:
+    """Files share the C if they have the same law, and the same of all that cannot be set."""
     groups: dict[tuple[object, ...], list[ParameterFile]] = {}
     for file in _files(kind):
-        groups.setdefault(_baked(model.of(kind.name, file.values), file), []).append(file)
+        exposed = model.of(kind.name, file.values).parameter_fields()
+        baked = tuple((name, value) for name, value in file.flat.items() if name not in exposed)
+        groups.setdefault((file.law, baked), []).append(file)
     for files in groups.values():
         yield Module(model.of(kind.name, files[0].values), files)
 
@@ -97,12 +99,6 @@ def _files(kind: Kind) -> list[ParameterFile]:
     return [
         load(path, kind.name) for path in sorted(default.parent.glob("*.toml"), key=lambda p: p != default)
     ]
-
-
-def _baked(model: Model, file: ParameterFile) -> tuple[object, ...]:
-    """What the C of a model has of a parameter file that cannot be set: two files with the same share it."""
-    exposed = model.parameter_fields()
-    return file.law, tuple((name, value) for name, value in file.flat.items() if name not in exposed)
 
 
 _NOMINALS = 2.0
@@ -116,6 +112,7 @@ def described(module: Module) -> dict[str, object]:
     model, first = module.model, module.files[0]
     kind, bench = KINDS[model.joint], _bench(model)
     bound = set(_bound(first))
+    curves = (*panels(model), *bench.panels)  # those of the documentation, or its default, come first
     rows = [_row(v, model, bench) | {"bound": v.name in bound} for v in listed(model, first)]
     return {
         "name": model.name,
@@ -127,7 +124,7 @@ def described(module: Module) -> dict[str, object]:
         "surfaces": [surface.prefix for surface in kind.surfaces],
         "sets": [_set(file, model) for file in module.files],
         "ramp": {"input": model.ramp.input, "end": model.ramp.end},
-        "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in _panels(model, bench)],
+        "panels": [{"over": p.over, "quantities": list(p.quantities)} for p in curves],
         "pairs": pairs(model),
         "path": list(bench.path or (model.ramp.input,)),
         "points": list(_points(model, bench)),
@@ -142,21 +139,11 @@ def pairs(model: Model) -> dict[str, str]:
     """{input: the output whose product with it is an energy}, of the same suffix, else the first one."""
     found = {}
     for i in model.inputs:
-        fitting = [o.name for o in model.outputs if _is_energy(i.unit, o.unit)]
-        same = [name for name in fitting if _ending(name) == _ending(i.name)]
-        if same or (fitting and not _ending(i.name) and i.name == model.ramp.input):
+        fitting = [o.name for o in model.outputs if {i.unit, o.unit} in ({"N", "m"}, {"N.m", "rad"})]
+        same = [name for name in fitting if suffix(name) == suffix(i.name)]
+        if same or (fitting and not suffix(i.name) and i.name == model.ramp.input):
             found[i.name] = (same or fitting)[0]
     return found
-
-
-def _ending(name: str) -> str:
-    """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
-    match = re.search(r"(_[xyz]|\d+)$", name)
-    return match[0] if match else ""
-
-
-def _is_energy(one: str, other: str) -> bool:
-    return {one, other} in ({"N", "m"}, {"N.m", "rad"})
 
 
 def _bench(model: Model) -> LaboratoryModel:
@@ -164,11 +151,6 @@ def _bench(model: Model) -> LaboratoryModel:
     module = part(KINDS[model.joint], "laboratory")
     benches: dict[str, LaboratoryModel] = module.LABORATORY if module else {}
     return benches.get(model.name, LaboratoryModel())
-
-
-def _panels(model: Model, bench: LaboratoryModel) -> Sequence[RampPanel]:
-    """The documentation's panels, or its default, and those of the bench."""
-    return (*panels(model), *bench.panels)
 
 
 def _row(v: Listed, model: Model, bench: LaboratoryModel) -> dict[str, object]:

@@ -51,11 +51,10 @@ def wrapper(model: Model) -> dict[str, object]:
     """Content of the model that puts an FMU between flanges."""
     flanges = terminals(model)
     members = {variable for t in flanges for variable, _ in t.members.values()}
-    note = (
-        _TAKES_MOTION
-        if _takes_motion(model)
-        else _TAKES_FORCE.format(between_inertias=_between_inertias(model))
-    )
+    note = _TAKES_MOTION
+    if not _takes_motion(model):  # that of the same joint which does belongs between inertias
+        others = [one.name for one in KINDS[model.joint].models if _takes_motion(one)]
+        note = _TAKES_FORCE.format(between_inertias=f" or the FMU {others[0]}" if others else "")
     parameters = [
         {
             "name": v.name,
@@ -79,12 +78,6 @@ def wrapper(model: Model) -> dict[str, object]:
 
 def _takes_motion(model: Model) -> bool:
     return all(flow != "inflow" for t in terminals(model) for _, flow in t.members.values())
-
-
-def _between_inertias(model: Model) -> str:
-    """The FMU of the same joint that belongs between inertias, if there is one."""
-    names = [sibling.name for sibling in KINDS[model.joint].models if _takes_motion(sibling)]
-    return f" or the FMU {names[0]}" if names else ""
 
 
 def _ports(model: Model) -> dict[str, tuple[float, float]]:

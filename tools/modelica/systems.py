@@ -162,11 +162,6 @@ def _inertia(part: Part, declare: Declare, connect: Connect) -> None:
         connect(f"{part.name}.flange_b", f"{name}.flange")
 
 
-def _mass(part: Part, declare: Declare, connect: Connect) -> None:
-    values = [*_numbers(part.values, ("m",)), *_states("s", "v")]
-    declare(f"{_MSL}.Translational.Components.Mass", part.name, values)
-
-
 def _source(block: str, domain: str, kind: str, signal: str) -> Callable[[Part, Declare, Connect], None]:
     def add(part: Part, declare: Declare, connect: Connect) -> None:
         values = part.values
@@ -182,17 +177,19 @@ def _source(block: str, domain: str, kind: str, signal: str) -> Callable[[Part, 
     return add
 
 
-def _angle(part: Part, declare: Declare, connect: Connect) -> None:
-    declare(f"{_LIBRARY}.AngleProfile", part.name, _numbers(part.values))
-
-
 _PARTNERS: dict[str, Callable[[Part, Declare, Connect], None]] = {
     "RotationalInertia": _inertia,
-    "TranslationalMass": _mass,
+    "TranslationalMass": lambda part, declare, _: declare(
+        f"{_MSL}.Translational.Components.Mass",
+        part.name,
+        [*_numbers(part.values, ("m",)), *_states("s", "v")],
+    ),
     "TorqueProfile": _source("Load", "Rotational", "Torque", "tau"),
     "ForceProfile": _source("Load", "Translational", "Force", "f"),
     "TorqueCurve": _source("TorqueCurve", "Rotational", "Torque", "tau"),
-    "AngleProfile": _angle,
+    "AngleProfile": lambda part, declare, _: declare(
+        f"{_LIBRARY}.AngleProfile", part.name, _numbers(part.values)
+    ),
 }
 
 

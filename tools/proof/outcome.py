@@ -21,12 +21,10 @@ class WorstPoint:
 
     @property
     def error(self) -> float:
-        """How far it is off."""
         return abs(self.value - self.reference)
 
     @property
     def finite(self) -> bool:
-        """Whether the value is a number."""
         return bool(np.isfinite(self.value))
 
     @property
@@ -36,7 +34,6 @@ class WorstPoint:
 
     @property
     def passed(self) -> bool:
-        """Whether the value is a number, near enough."""
         return bool(self.share <= 1.0)
 
 
@@ -55,7 +52,6 @@ class Outcome:
 
     @property
     def name(self) -> str:
-        """Of the experiment and the interface."""
         return f"{self.experiment.name}, {self.interface}" if self.interface else self.experiment.name
 
     @property
@@ -66,12 +62,10 @@ class Outcome:
 
     @property
     def worst(self) -> WorstPoint | None:
-        """The worst of all outputs."""
         return max(self.points, key=lambda point: point.share, default=None)
 
     @property
     def passed(self) -> bool:
-        """Whether nothing missed."""
         return not self.error and all(point.passed for point in self.points)
 
 
@@ -93,7 +87,6 @@ class Proof:
 
     @property
     def runs(self) -> int:
-        """Runs of experiments."""
         return sum(bool(outcome.interface) for outcome in self.outcomes)
 
     @property
@@ -104,7 +97,6 @@ class Proof:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing failed."""
         return not self.misses
 
     @property

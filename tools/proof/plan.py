@@ -73,7 +73,6 @@ class ExperimentPlan:
         return cls(experiment, interface, nominal, task(fmu, folder, interface, **values))
 
     def outcome(self, answer: Mapping[str, Any] | None) -> Outcome:
-        """What an importer's answer means."""
         if answer is None:
             return Outcome(self.experiment, self.interface, error=self.refused)
         if "error" in answer:

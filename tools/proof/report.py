@@ -1,9 +1,10 @@
 """A proof as text and as one JSON object."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 from jointfmu_fmu_src.proof.standard import PURPOSES
 
+from ..shown import aligned
 from .outcome import Outcome, Proof, WorstPoint
 
 _NUMBERS = ("time [s]", "value", "reference", "off by", "allowed")
@@ -26,11 +27,11 @@ def lines(proof: Proof) -> Iterator[str]:
     yield f"{proof.fmu} in {proof.importer}, {' and '.join(proof.interfaces)}: {count_of(proof)}"
     if proof.outcomes:
         yield ""
-        yield from _table(experiments)
+        yield from aligned(experiments, len(_EXPERIMENT) - len(_NUMBERS))
     if worst:
         yield ""
         rows = [(n, o.experiment.name, o.interface, *_cells(p)) for n, (o, p) in worst.items()]
-        yield from _table([_OUTPUT, *rows])
+        yield from aligned([_OUTPUT, *rows], len(_OUTPUT) - len(_NUMBERS))
     yield ""
     yield from (f"missed: {text}" for text in proof.misses)
     yield summary(proof)
@@ -106,15 +107,3 @@ def _verdict(outcome: Outcome) -> str:
 def _cells(point: WorstPoint) -> tuple[str, ...]:
     numbers = (f"{point.time:g}", f"{point.value:.10g}", f"{point.reference:.10g}")
     return (*numbers, f"{point.error:.1e}", f"{point.allowed:.1e}")
-
-
-def _table(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
-    """Rows under each other, names left and numbers right."""
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    words = len(rows[0]) - len(_NUMBERS)
-    for row in rows:
-        cells = (
-            cell.ljust(width) if i < words else cell.rjust(width)
-            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-        )
-        yield "  ".join(cells).rstrip()

@@ -134,11 +134,9 @@ class HysteresisLoops:
 
     @property
     def messages(self) -> tuple[str, ...]:
-        """What the FMU logged, once each."""
         return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
 
     def rows(self) -> list[dict[str, float]]:
-        """What each loop gives, see `Loop.row`."""
         return [loop.row() for loop in self.loops]
 
     def table(self) -> str:
@@ -241,11 +239,11 @@ def conjugate(
             f"{source}: no output makes an energy with {input_name} [{own}]; expected a displacement, an "
             "angle, a force or a torque as input"
         )
-    same = [name for name in fitting if _suffix(name) == _suffix(input_name)]
+    same = [name for name in fitting if suffix(name) == suffix(input_name)]
     return (same or fitting)[0]
 
 
-def _suffix(name: str) -> str:
+def suffix(name: str) -> str:
     """The axis or flange of a name: `_x` of `f_x`, `2` of `tau2`."""
     match = re.search(r"(_[xyz]|\d+)$", name)
     return match[0] if match else ""

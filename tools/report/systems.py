@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure as Canvas
 
 from jointfmu.joints import KINDS
 from jointfmu.quantity import Array
@@ -14,7 +13,7 @@ from ..systems.decays import Decay
 from ..systems.ringing import Body, Ringing, VibratingJoint, stiffness_line, vibrating_joints
 from ..systems.system import System
 from ..systems.wiring import model_of, wires
-from .figure import Figure, Panel, Series, drawn
+from .figure import Figure, Panel, Series
 
 SIZE, WIDE = (9.6, 4.0), (11.4, 3.8)
 _WAYS = ((1.0, "above"), (-1.0, "below"))
@@ -22,10 +21,12 @@ _WAYS = ((1.0, "above"), (-1.0, "below"))
 
 def resonances(found: Mapping[str, Sequence[Ringing]], joint: str, folder: Path) -> list[Figure]:
     """A figure per system of a joint that rings; `folder` has the FMUs (FMI 2.0)."""
-    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
-    return [
-        _resonance(name, bodies[name], points, folder) for name, points in found.items() if name in bodies
-    ]
+    return [_resonance(name, one, found[name], folder) for name, one in _ringing(joint) if name in found]
+
+
+def _ringing(joint: str) -> list[tuple[str, VibratingJoint]]:
+    """The systems in which a joint of the kind rings."""
+    return [(name, one) for name, one in vibrating_joints().items() if one.joint.kind == joint]
 
 
 def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder: Path) -> Figure:
@@ -41,8 +42,7 @@ def _resonance(name: str, one: VibratingJoint, points: Sequence[Ringing], folder
 
 def ring_downs(decays: Mapping[str, Sequence[Decay]], joint: str) -> list[Figure]:
     """A figure per system of a joint that slips."""
-    bodies = {name: one for name, one in vibrating_joints().items() if one.joint.kind == joint}
-    return [_ring_down(name, bodies[name], points) for name, points in decays.items() if name in bodies]
+    return [_ring_down(name, one, decays[name]) for name, one in _ringing(joint) if name in decays]
 
 
 def _ring_down(name: str, one: VibratingJoint, points: Sequence[Decay]) -> Figure:
@@ -110,16 +110,6 @@ def decay_panels(points: Sequence[Decay], body: Body) -> list[Panel]:
     ]
 
 
-def draw(canvas: Canvas, points: Sequence[Ringing], one: VibratingJoint, folder: Path) -> None:
-    """Resonance and decay as a picture; `folder` has the FMUs (FMI 2.0)."""
-    drawn(canvas, resonance_panels(points, one, folder))
-
-
-def draw_decays(canvas: Canvas, points: Sequence[Decay], body: Body) -> None:
-    """Frequency and damping over the amplitude as a picture."""
-    drawn(canvas, decay_panels(points, body))
-
-
 MOTION_SIZE = (11.4, 3.8)
 _THIN = 20
 """Points of a run from one that is drawn to the next."""
@@ -178,11 +168,6 @@ def panels(system: System, run: Run) -> list[Panel]:
         tip = [Series("tip", time, 1e3 * error[::_THIN])]
         found.append(Panel("Error of the tip", over, "error [mm]", tip))
     return found
-
-
-def draw_motion(canvas: Canvas, system: System, run: Run) -> None:
-    """The same as a picture."""
-    drawn(canvas, panels(system, run))
 
 
 def motions(runs: Mapping[str, tuple[System, Run]], joint: str) -> list[Figure]:

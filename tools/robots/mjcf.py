@@ -42,7 +42,6 @@ class Miss:
     area: float | None
 
     def lines(self, torque: float) -> Iterator[str]:
-        """What is measured, in words."""
         yield _verdict(f"wind-up at {torque:g} N.m", self.wind_up, WIND_UP)
         if self.area is None:
             yield "loop: none, the drive has no hysteresis"

@@ -1,24 +1,16 @@
 """A drive as a file of a robot's simulator."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 from ..interface import load
 from . import mjcf, urdf
 from .transmission import transmission
 
 
-@dataclass(frozen=True, slots=True)
-class RobotFile:
-    """A file's text, the drive's name, what is worth saying about it, and the same as numbers (SI)."""
-
-    text: str
-    name: str
-    lines: tuple[str, ...]
-    facts: dict[str, object]
-
-
-def written(form: str, source: str, torque: float | None) -> RobotFile:
+def written(form: str, source: str, torque: float | None) -> tuple[str, list[str], dict[str, object]]:
     """A drive by its file or name in a format of robots, fitted up to a torque [N.m], rated unless stated.
+
+    Returns the text, what is worth saying about it, and the same as numbers (SI) with the name of the drive.
 
     Raises ValueError for what is no drive or a torque outside its table, ImportError without mujoco.
     """
@@ -29,13 +21,8 @@ def written(form: str, source: str, torque: float | None) -> RobotFile:
             f"--torque = {reached:g} N.m is outside (0, {drive.max_torque:g}] N.m of {drive.name}"
         )
     text, miss = WRITERS[form](drive, reached)
-    lines = (*miss.lines(reached), *(f"not carried: {line}" for line in drive.lacks))
-    return RobotFile(
-        text,
-        drive.name,
-        lines,
-        {"drive": drive.name, "torque": reached, **asdict(miss), "lacks": [*drive.lacks]},
-    )
+    lines = [*miss.lines(reached), *(f"not carried: {line}" for line in drive.lacks)]
+    return text, lines, {"drive": drive.name, "torque": reached, **asdict(miss), "lacks": [*drive.lacks]}
 
 
 WRITERS = {"mjcf": mjcf.text, "urdf": urdf.text}

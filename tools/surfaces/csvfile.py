@@ -87,8 +87,10 @@ def titles(path: Path) -> list[Head] | None:
     return [head(word) for word in words] if named and below else None
 
 
-def titled(path: Path, heads: Sequence[Head], given: Mapping[str, str | None]) -> tuple[Heights, str]:
-    """Columns under a line of titles, and the unit of x.
+def titled(
+    path: Path, heads: Sequence[Head], given: Mapping[str, str | None], above: int = 1
+) -> tuple[Heights, str]:
+    """Columns under so many lines of titles, and the unit of x.
 
     given : {"x", "z": unit of columns that state none}; y is as x
 
@@ -105,7 +107,7 @@ def titled(path: Path, heads: Sequence[Head], given: Mapping[str, str | None]) -
             )
         stated.append(str(own or other))
     factors = [unit(text, f"{path}: {name}") for text, (name, _) in zip(stated, heads, strict=True)]
-    return columns(path, table(path, 1), factors), stated[0]
+    return columns(path, table(path, above), factors), stated[0]
 
 
 def _spacing(path: Path, text: str, name: str) -> tuple[float, str]:

@@ -74,7 +74,6 @@ class SelfAffineLaw:
 
     @property
     def decades(self) -> float:
-        """Length of the range."""
         return float(np.log10(self.high / self.low))
 
 

@@ -41,7 +41,6 @@ class Profile:
         return (self.z.size * self.dx,)
 
     def with_heights(self, z: Array) -> "Profile":
-        """The same line with other heights."""
         return replace(self, z=z)
 
 
@@ -71,7 +70,6 @@ class Areal:
         return self.z.shape[1] * self.dx, self.z.shape[0] * self.dy
 
     def with_heights(self, z: Array) -> "Areal":
-        """The same map with other heights."""
         return replace(self, z=z)
 
 

@@ -97,7 +97,8 @@ def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
             f"{second.scale[0]:.3g} to {second.scale[-1]:.3g} m"
         )
     first = first.within(keep)
-    at = _interpolation(np.log(first.scale), np.log(second.scale))
+    x, known = np.log(first.scale), np.log(second.scale)
+    at = np.stack([np.interp(x, known, unit) for unit in np.eye(known.size)], axis=1)
     value, raw = (np.exp(at @ np.log(a)) for a in (second.value, second.raw))
     share = first.value / (first.value + value)
 
@@ -106,11 +107,6 @@ def added(first: ScaleSeries, second: ScaleSeries) -> ScaleSeries:
         return np.asarray(np.outer(share, share) * covariance1 + np.outer(1 - share, 1 - share) * covariance2)
 
     return replace(first, value=first.value + value, raw=first.raw + raw, covariance=covariance)
-
-
-def _interpolation(at: Array, x: Array) -> Array:
-    """Matrix of linear interpolation from x to `at`."""
-    return np.stack([np.interp(at, x, unit) for unit in np.eye(x.size)], axis=1)
 
 
 def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
@@ -131,17 +127,13 @@ def _result(series: ScaleSeries, fitted: SelfAffineLaw) -> Result:
         direction=series.direction,
         series=series,
         fit=fitted,
-        profile=ProfileFractal(D=_estimate(2.0 - H), G=_roughness(profile)),
-        areal=ArealFractal(D_s=_estimate(3.0 - H), G_s=_roughness(areal)),
+        profile=ProfileFractal(
+            D=Estimate(*_interval(2.0 - H)), G=RoughnessEstimate.of_logarithms(*_interval(profile))
+        ),
+        areal=ArealFractal(
+            D_s=Estimate(*_interval(3.0 - H)), G_s=RoughnessEstimate.of_logarithms(*_interval(areal))
+        ),
     )
-
-
-def _estimate(values: Array) -> Estimate:
-    return Estimate(*_interval(values))
-
-
-def _roughness(logarithms: Array) -> RoughnessEstimate:
-    return RoughnessEstimate.of_logarithms(*_interval(logarithms))
 
 
 def _interval(values: Array) -> tuple[float, float, float]:

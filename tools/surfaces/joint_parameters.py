@@ -1,7 +1,6 @@
 """Which parameters of a joint a surface decides, and a parameter file with them."""
 
 import math
-from dataclasses import replace
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
 from jointfmu.joints import KINDS
@@ -66,7 +65,8 @@ def with_surface(
     if sure:
         file = _with_fractal(file, identified, method)
     for side, scan in identified.sides.items():
-        source = f"measured: {_file(identified, side)}; waves up to {scan.longest_wave:.4g} m"
+        name = identified.names[min(side, len(identified.names)) - 1]
+        source = f"measured: {name}; waves up to {scan.longest_wave:.4g} m"
         file = file.with_roughness({f"Rq{side}": scan.h}, "user", source)
     return file
 
@@ -98,16 +98,6 @@ def _with_fractal(file: ParameterFile, identified: Identification, method: str |
         source = _source(identified, result, surfaces[prefix], which)
         file = file.with_values({name: value}, "user", source)
     return file
-
-
-def without_roughness(file: ParameterFile) -> ParameterFile:
-    """The parameter file of another surface: what it states of the old one's roughness is left out."""
-    return replace(file, roughness={})
-
-
-def _file(identified: Identification, side: int) -> str:
-    """The scanned file of a side."""
-    return identified.names[min(side, len(identified.names)) - 1]
 
 
 def _files(identified: Identification) -> str:

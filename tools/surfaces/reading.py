@@ -3,7 +3,6 @@
 import contextlib
 import io
 import warnings
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -65,8 +64,11 @@ def read(
         heights, stated = csvfile.read(path, line)
     elif text and (titles := csvfile.titles(path)):
         heights, stated = csvfile.titled(path, titles, given)
-    elif text and _bare(path):
-        heights, stated = _bare_columns(path, given), str(given["x"])
+    elif text and (count := _bare(path)):
+        if not all(given.values()):
+            raise _without_unit(path)
+        names = csvfile.LAYOUTS["profile" if count == 2 else "points"]
+        heights, stated = csvfile.titled(path, [(name, None) for name in names], given, above=0)
     elif unit_x or unit_z:
         one = "unit_x" if unit_x else "unit_z"
         raise Refusal(f"{path}: is no table of columns; expected one unit for all axes", one)
@@ -98,22 +100,13 @@ def _without_unit(path: Path) -> Refusal:
     return Refusal(f"{path}: states no length unit; state it, one of {csvfile.ALLOWED}", "unit")
 
 
-def _bare(path: Path) -> bool:
-    """Whether a text file begins with a line of two or three numbers, or holds nothing readable."""
+def _bare(path: Path) -> int:
+    """Number of columns, two or three, if a text file begins with a line of numbers; else 0."""
     with path.open("rb") as file:
         first = file.readline(10000).decode("utf-8-sig", errors="replace").rstrip("\r\n")
     mark = separator(first)
     row = cells(first, mark) if mark else first.split()
-    return len(row) in (2, 3) and all(number(cell) is not None for cell in row)
-
-
-def _bare_columns(path: Path, given: Mapping[str, str | None]) -> Heights:
-    values = csvfile.table(path)
-    x, z = given["x"], given["z"]
-    if x is None or z is None:
-        raise _without_unit(path)
-    across = [csvfile.LENGTHS[x]] * (values.shape[1] - 1)
-    return csvfile.columns(path, values, [*across, csvfile.LENGTHS[z]])
+    return len(row) if len(row) in (2, 3) and all(number(cell) is not None for cell in row) else 0
 
 
 def _instrument(path: Path, unit: str | None) -> tuple[Heights, str]:

@@ -47,7 +47,6 @@ class ScaleSeries:
     covariance: Callable[[float], Array]
 
     def within(self, keep: NDArray[Any]) -> "ScaleSeries":
-        """The values of a boolean or index array."""
         return replace(
             self,
             scale=self.scale[keep],
@@ -176,13 +175,10 @@ def _mean_of_directions(heights: Areal) -> ScaleSeries:
     both = (lag >= lag_y[0] * 0.999) & (lag <= lag_y[-1] * 1.001)
     lag = lag[both]
     value, raw = (
-        0.5 * (x[both] + _interpolate(lag, lag_y, y)) for x, y in zip(along_x, along_y, strict=True)
+        0.5 * (x[both] + np.exp(np.interp(np.log(lag), np.log(lag_y), np.log(y))))
+        for x, y in zip(along_x, along_y, strict=True)
     )
     return _smoothed("areal", lag, value, raw, _areal_covariance(lag, heights.lengths))
-
-
-def _interpolate(at: Array, scale: Array, value: Array) -> Array:
-    return np.asarray(np.exp(np.interp(np.log(at), np.log(scale), np.log(value))))
 
 
 HANN = 35.0 / 18.0

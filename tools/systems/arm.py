@@ -222,7 +222,7 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sec
     phase = np.linspace(0.0, 1.0, 201)
     q, speed, acceleration = arm.motion(arm.start + arm.duration * phase)
     left = inertia * acceleration[:, k] - arm.torques(q, speed, acceleration)[:, k]
-    points = TorqueCurve.fitted(phase, left)
+    points = TorqueCurve.fitted(phase, left)  # digits beyond 1e-8 N.m depend on the processor
     times = {"start": (arm.start, "s"), "duration": (arm.duration, "s")}
     return {
         f"{name}_motor": _section("AngleProfile", times | {"height": (ratio * link.travel, "rad")}),
@@ -231,14 +231,9 @@ def _axis(arm: Arm, name: str, drive: Mapping[str, object], ratio: float) -> Sec
             "RotationalInertia", {"J": (inertia, "kg.m2"), "m": (0.0, "kg"), "l": (0.0, "m")}
         ),
         f"{name}_load": _section(
-            "TorqueCurve", times | {key: (_clean(value), "N.m") for key, value in points.items()}
+            "TorqueCurve", times | {key: (round(value, 8) + 0.0, "N.m") for key, value in points.items()}
         ),
     }
-
-
-def _clean(torque: float) -> float:
-    """To 1e-8 N.m: later digits depend on the processor."""
-    return round(torque, 8) + 0.0
 
 
 def _section(model: str, values: Mapping[str, tuple[float, str]]) -> dict[str, object]:

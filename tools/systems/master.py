@@ -45,15 +45,12 @@ class Slave:
             self._entered = entered.pop_all()
 
     def set(self, *values: float) -> None:
-        """Give the inputs their values."""
         self._call(self._in.set, *values)
 
     def get(self) -> list[float]:
-        """The outputs at the present inputs."""
         return self._call(self._out.get)
 
     def step(self, time: float, size: float) -> None:
-        """One step."""
         self._call(self._fmu.advance, time, size)
 
     def _call(self, function: Callable[..., T], *arguments: float) -> T:

@@ -93,7 +93,6 @@ class Axis(NamedTuple):
 
     @property
     def label(self) -> str:
-        """Name and unit."""
         return f"{self.name} [{self.unit}]"
 
 
@@ -173,18 +172,15 @@ class VibratingJoint:
 
     @property
     def inertia_unit(self) -> str:
-        """Its unit."""
         fields = dict(flat_fields(PARTNERS[self.moving.model].parameters))
         return str(fields[self.key].metadata["unit"])
 
     @property
     def motion_unit(self) -> str:
-        """Unit of the deflection."""
         return KINDS[self.joint.kind].variables[self.body.motion[0]].unit
 
     @property
     def load_unit(self) -> str:
-        """Unit of what loads the joint."""
         return KINDS[self.joint.kind].variables[self.body.over].unit
 
 

@@ -105,7 +105,6 @@ class System:
 
     @property
     def joints(self) -> dict[str, Component]:
-        """The joints by name."""
         return {name: part for name, part in self.components.items() if part.file}
 
     @property

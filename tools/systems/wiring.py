@@ -35,17 +35,14 @@ class End(NamedTuple):
 
     @property
     def joint(self) -> bool:
-        """Whether it is a joint's."""
         return self.component is not None and self.component.file is not None
 
     @property
     def load(self) -> bool:
-        """Whether it is a load over time."""
         return self.component is not None and self.flange is None
 
     @property
     def body(self) -> bool:
-        """Whether it is a body's."""
         return not self.joint and self.flange is not None
 
     @property

@@ -20,12 +20,10 @@ class FmuDistribution(WorkerPlugin):  # type: ignore[misc]
         self.key, self.file_name, self.data = key, file_name, data
 
     def setup(self, worker: Any) -> None:
-        """Write the file into the worker's folder."""
         folder = Path(tempfile.mkdtemp(prefix="fmu-", dir=worker.local_directory))
         (folder / self.file_name).write_bytes(slim(self.data))
         FILES[self.key] = folder / self.file_name
 
     def teardown(self, worker: Any) -> None:
-        """Remove it."""
         if path := FILES.pop(self.key, None):
             shutil.rmtree(path.parent, ignore_errors=True)

@@ -44,7 +44,6 @@ class Reduced:
 
     @property
     def units(self) -> dict[str, str]:
-        """{output: unit}."""
         return {v.name: v.unit for v in self.outputs}
 
 
@@ -86,7 +85,6 @@ class Problem:
 
     @property
     def reduced(self) -> Reduced:
-        """How the joint's curves are computed."""
         return reduced(KINDS[self.joint])
 
     def sampled(self, points: Array) -> tuple[dict[str, object], Array]:

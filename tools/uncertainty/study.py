@@ -54,7 +54,6 @@ class Uncertain:
 
     @property
     def support(self) -> tuple[float, float]:
-        """Least and largest value."""
         low, high = self.law.support()
         return float(low), float(high)
 

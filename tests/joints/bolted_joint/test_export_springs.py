@@ -13,7 +13,7 @@ import pytest
 from jointfmu_tools.export import ansys, keywords, tables
 from jointfmu_tools.export.mesh import Mesh, read_pairs
 from jointfmu_tools.export.placing import AXES, SI, UNITS, Placing
-from jointfmu_tools.joints.bolted_joint.export.springs import SUMS, of_joint, on_mesh, under_pressure
+from jointfmu_tools.joints.bolted_joint.export import SUMS, of_joint, on_mesh, under_pressure
 
 from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring

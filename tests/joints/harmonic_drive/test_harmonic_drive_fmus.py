@@ -11,7 +11,7 @@ from browser import PROGRAM, Browser, browser
 from conftest import made_once
 from joint_cases import SAME, TABLE, law, parameters, random_inputs
 from jointfmu_tools.joints.harmonic_drive.efficiency import spring_bench
-from jointfmu_tools.joints.harmonic_drive.laboratory import LABORATORY
+from jointfmu_tools.joints.harmonic_drive.job import LABORATORY
 from jointfmu_tools.laboratory.assemble import write_laboratory
 from jointfmu_tools.ramps import ramp
 from jointfmu_tools.systems.master import Slave

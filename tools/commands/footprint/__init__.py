@@ -1,7 +1,6 @@
 """`jointfmu footprint`: the pressure field of a bolted joint, brought along or computed."""
 
 import argparse
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from jointfmu.files.writing import write_text
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, dump
 
-from ...command_line.common import Commands, Parser, command, tell
+from ...command_line.common import Answer, Commands, Parser, argument, command
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
 from .. import check_files
@@ -37,43 +36,30 @@ OPTIONS = {"length": "length_unit", "pressure": "pressure_unit", "beside": "with
 
 def _import(steps: Commands) -> None:
     step = command(steps, "import", _run_import, "bring a nodal contact result into a joint's parameter file")
-    step.add_argument(
-        "file", type=Path, metavar="FILE", help="CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh"
-    )
-    step.add_argument(
-        "--preload", type=float, required=True, metavar="F", help="force of each bolt in the file [N]"
-    )
-    step.add_argument(
-        "--params", type=Path, metavar="FILE", help="parameters of the joint (default: Zhao 2018)"
-    )
-    step.add_argument("--out", type=Path, metavar="FILE", help="write the joint with the field (TOML)")
-    step.add_argument("--plot", type=Path, metavar="FILE", help="draw the field (.png, .svg)")
-    step.add_argument(
-        "--format", metavar="FORMAT", help="csv, mesh, ansys, abaqus or frd (default: by the name)"
-    )
-    step.add_argument("--length-unit", metavar="UNIT", help="of the file: m, mm, um; a CSV file states it")
-    step.add_argument("--pressure-unit", metavar="UNIT", help="of the file: Pa, kPa, MPa, GPa")
-    step.add_argument("--data", metavar="NAME", help="mesh: point data, NAME or NAME:COMPONENT")
-    step.add_argument("--normal", default="z", metavar="AXIS", help="normal to the contact (default: z)")
-    step.add_argument("--rows", metavar="AXIS", help="axis along the bolt rows (default: the next, x for z)")
-    step.add_argument("--side", metavar="SIDE", help="where both bodies have pressure: below or above")
-    step.add_argument("--open", default="refuse", metavar="WHAT", help="nodes without pressure: keep or drop")
+    argument(step, "file", Path, "CSV, CalculiX .frd, ANSYS or Abaqus listing or a mesh")
+    argument(step, "--preload", float, "force of each bolt in the file [N]", "F", required=True)
+    argument(step, "--params", Path, "parameters of the joint (default: Zhao 2018)")
+    argument(step, "--out", Path, "write the joint with the field (TOML)")
+    argument(step, "--plot", Path, "draw the field (.png, .svg)")
+    argument(step, "--format", str, "csv, mesh, ansys, abaqus or frd (default: by the name)", "FORMAT")
+    argument(step, "--length-unit", str, "of the file: m, mm, um; a CSV file states it", "UNIT")
+    argument(step, "--pressure-unit", str, "of the file: Pa, kPa, MPa, GPa", "UNIT")
+    argument(step, "--data", str, "mesh: point data, NAME or NAME:COMPONENT")
+    argument(step, "--normal", str, "normal to the contact", "AXIS", default="z")
+    argument(step, "--rows", str, "axis along the bolt rows (default: the next, x for z)", "AXIS")
+    argument(step, "--side", str, "where both bodies have pressure: below or above", "SIDE")
+    argument(step, "--open", str, "nodes without pressure: keep or drop", "WHAT", default="refuse")
     beside = "further listings, or the mesh of a listing: ANSYS archive .cdb, Abaqus deck .inp"
     step.add_argument("--with", dest="beside", nargs="+", type=Path, default=[], metavar="FILE", help=beside)
-    step.add_argument(
-        "--force-tolerance",
-        type=float,
-        metavar="P",
-        help="part by which the force of the pressures may differ from that of the bolts, to which they are "
-        "scaled (0.01)",
-    )
-    step.add_argument("--moment", type=float, metavar="M", help="bending moment of --moment-file [N.m]")
-    step.add_argument("--moment-file", type=Path, metavar="FILE", help="the same nodes under a moment too")
+    text = "part by which the force of the pressures may differ from that of the bolts, to which they are "
+    argument(step, "--force-tolerance", float, text + "scaled (0.01)", "P")
+    argument(step, "--moment", float, "bending moment of --moment-file [N.m]", "M")
+    argument(step, "--moment-file", Path, "the same nodes under a moment too")
     bodies.arguments(step)
     step.set_defaults(options=OPTIONS)
 
 
-def _run_import(args: argparse.Namespace) -> int:
+def _run_import(args: argparse.Namespace) -> Answer:
     if (args.moment is None) != (args.moment_file is None):
         raise ValueError("--moment and --moment-file belong together: expected both or none")
     check_files(args.out, plot=args.plot)
@@ -116,12 +102,7 @@ def _run_import(args: argparse.Namespace) -> int:
     if abs(scaled) > FORCE_ERROR:
         text = f"the pressures are scaled by {100.0 * scaled:+.2g} % to the force of the bolts"
         found = found.with_warnings([f"{text}: ask the run's own contact force which of the two is wrong"])
-    if args.json:
-        print(json.dumps(facts | found.document()))
-    else:
-        print("\n".join(_lines(facts, start.values.A_0)))
-        tell(found)
-    return 0
+    return Answer(document=facts, lines=_lines(facts, start.values.A_0), judgement=found)
 
 
 def _reading(args: argparse.Namespace) -> Any:

@@ -8,6 +8,7 @@ import numpy as np
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
+from ...command_line.common import argument
 from ...drawing.reading import number, numbers
 from ...drawing.tables import threads
 from ...fields.clamped import clamping
@@ -38,19 +39,11 @@ def arguments(step: argparse.ArgumentParser) -> None:
         choices=("faces", "edge", "heads"),
         help="what moves with the bodies that the joint connects (default: faces)",
     )
-    step.add_argument(
-        "--bolts",
-        nargs="+",
-        metavar="X,Y",
-        help="place of each bolt in the plane of the file [mm] (default: of --params, about the centroid)",
-    )
-    step.add_argument("--hole", metavar="D", help="clearance hole [mm] (default: of --params)")
-    step.add_argument(
-        "--head",
-        metavar="D",
-        help="outer diameter of what presses [mm] (default: of --params, else the hexagon head of the "
-        "largest bolt that passes the hole)",
-    )
+    text = "place of each bolt in the plane of the file [mm] (default: of --params, about the centroid)"
+    argument(step, "--bolts", str, text, "X,Y", nargs="+")
+    argument(step, "--hole", str, "clearance hole [mm] (default: of --params)", "D")
+    text = "outer diameter of what presses [mm] (default: of --params, else the hexagon head of the "
+    argument(step, "--head", str, text + "largest bolt that passes the hole)", "D")
 
 
 def check(args: argparse.Namespace, file: ParameterFile) -> None:

@@ -3,7 +3,6 @@ with it.
 """
 
 import argparse
-import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +13,7 @@ from jointfmu.joints import KINDS
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.parameters import ParameterFile, default, dump, load
 
-from ...command_line.common import Commands, command, tell
+from ...command_line.common import Answer, Commands, argument, command
 from ...drawing.vdi2230 import proof_load
 from ...fem import installed
 from ...fields.clamped import clamped, clamping
@@ -30,11 +29,9 @@ if TYPE_CHECKING:
 
 def assembly_arguments(sub: argparse.ArgumentParser) -> None:
     """Declare the assembly, `--preload` and `--params`."""
-    sub.add_argument("assembly", type=Path, metavar="ASSEMBLY", help="bodies and bolts (TOML)")
-    sub.add_argument("--preload", type=float, default=9e3, metavar="F", help="per bolt [N] (default: 9000)")
-    sub.add_argument(
-        "--params", type=Path, metavar="FILE", help="parameters of the interface (default: box specimen)"
-    )
+    argument(sub, "assembly", Path, "bodies and bolts (TOML)", "ASSEMBLY")
+    argument(sub, "--preload", float, "per bolt [N]", "F", default=9e3)
+    argument(sub, "--params", Path, "parameters of the interface (default: box specimen)")
 
 
 def joint_file(path: Path | None) -> ParameterFile:
@@ -98,32 +95,22 @@ def add(commands: Commands) -> None:
     text = "compute the contact pressure of a bolted joint by finite elements"
     sub = command(commands, "compute", run, text)
     assembly_arguments(sub)
-    sub.add_argument("--moment", type=float, metavar="M", help="bending moment about x [N.m] (default: 0)")
-    sub.add_argument(
-        "--out", type=Path, metavar="FILE", help="write the joint with this field, for FMUs (TOML)"
-    )
+    argument(sub, "--moment", float, "bending moment about x [N.m] (default: 0)", "M")
+    argument(sub, "--out", Path, "write the joint with this field, for FMUs (TOML)")
     sub.add_argument(
         "--attached",
         choices=("faces", "edge", "heads"),
         help="write the whole joint (sides = elastic) between these parts of the bodies: outer faces, edges "
         "(side 1 at -x, side 2 at +x), or what lies under the heads (default: the interface alone)",
     )
-    sub.add_argument("--field", type=Path, metavar="FILE", help="write the field (.csv, .vtu)")
-    sub.add_argument("--plot", type=Path, metavar="FILE", help="draw the pressure (.png, .svg)")
-    sub.add_argument(
-        "--refine", type=int, default=1, metavar="N", help=f"number of meshes, 1 to {FINEST} (default: 1)"
-    )
-    sub.add_argument(
-        "--refinement",
-        type=float,
-        default=1.0,
-        metavar="R",
-        help="divides the sizes of elements (default: 1)",
-    )
+    argument(sub, "--field", Path, "write the field (.csv, .vtu)")
+    argument(sub, "--plot", Path, "draw the pressure (.png, .svg)")
+    argument(sub, "--refine", int, f"number of meshes, 1 to {FINEST}", default=1)
+    argument(sub, "--refinement", float, "divides the sizes of elements", "R", default=1.0)
 
 
-def run(args: argparse.Namespace) -> int:
-    """Run the command; returns the exit status."""
+def run(args: argparse.Namespace) -> Answer:
+    """Run the command."""
     with installed("the finite-element analysis"):
         from ...fem import convergence, results
         from ...fem.assembly import load as read
@@ -144,14 +131,9 @@ def run(args: argparse.Namespace) -> int:
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
     found = found.with_warnings(unlike_holes(solution.field, assembly.bolts.positions, moment != 0.0))
-    if args.json:
-        shown = facts | {"meshes": list(_meshes(rows)), "written": written}
-        print(json.dumps(shown | found.document()))
-    else:
-        print("\n".join([*_lines(facts), *_table(rows)]))
-        tell(found)
-        print("\n".join(f"wrote {path}" for path in written), end="\n" if written else "")
-    return 0
+    document = facts | {"meshes": [_mesh(row) for row in rows], "written": written}
+    lines = [*_lines(facts), *_table(rows)]
+    return Answer(document=document, lines=lines, judgement=found, written=written)
 
 
 def _law(file: ParameterFile) -> Curve:
@@ -223,9 +205,8 @@ def _lines(facts: dict[str, Any]) -> Iterator[str]:
     yield f"interface K_N {facts['K_N']:.5g} N/m, K_rx {facts['K_rx']:.5g}, K_ry {facts['K_ry']:.5g} N.m/rad"
 
 
-def _meshes(rows: list["MeshResult"]) -> Iterator[dict[str, object]]:
-    for row in rows:
-        yield {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
+def _mesh(row: "MeshResult") -> dict[str, object]:
+    return {"refinement": row.refinement, "elements": row.elements, "unknowns": row.unknowns, **row.values}
 
 
 def _table(rows: list["MeshResult"]) -> Iterator[str]:

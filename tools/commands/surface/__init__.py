@@ -1,6 +1,7 @@
 """`jointfmu surface`: D and G from measured heights; `jointfmu surface synthesize`: made heights."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default, dump, load
 from jointfmu.quantity.refusal import Refusal
 
-from ...command_line.common import IMPLIED, Commands, Parser, command, joint_name, written
+from ...command_line.common import IMPLIED, Answer, Commands, Parser, argument, command, joint_name, written
 from ...surfaces.heights import FORMS
 from ...surfaces.reading import ROUGHEST, read
 from ...surfaces.spectrum import METHODS, SIDES
@@ -32,58 +33,40 @@ def add(commands: Commands) -> None:
     top.usage = f"{top.prog} [-h] [{'|'.join(SUBCOMMANDS)}] ..."
     top.epilog = f"{top.prog} FILE ... is {top.prog} {SUBCOMMANDS[0]} FILE ..."
     find = command(steps, SUBCOMMANDS[0], _identify, text)
-    find.add_argument("files", nargs="+", type=Path, metavar="FILE", help="one surface, or the two of a pair")
-    find.add_argument("--unit", help="length unit of files that state none: m, mm, um, nm")
-    find.add_argument("--unit-x", metavar="UNIT", help="the same of x and y alone, in columns")
-    find.add_argument("--unit-z", metavar="UNIT", help="the same of z alone")
+    argument(find, "files", Path, "one surface, or the two of a pair", nargs="+")
+    argument(find, "--unit", str, "length unit of files that state none: m, mm, um, nm", "UNIT")
+    argument(find, "--unit-x", str, "the same of x and y alone, in columns", "UNIT")
+    argument(find, "--unit-z", str, "the same of z alone", "UNIT")
     find.add_argument("--form", choices=FORMS, default=FORMS[0], help="form to remove (default: tilt)")
     find.add_argument("--keep-spikes", action="store_true", help="take spikes for heights, not as missing")
-    find.add_argument(
-        "--range",
-        dest="span",
-        nargs=2,
-        type=float,
-        metavar=("LOW", "HIGH"),
-        help="scaling range: lags and wavelengths [m] (default: the longest straight one)",
-    )
-    find.add_argument(
-        "--longest-wave",
-        type=float,
-        metavar="L",
-        help="longest wave of h [m] (default: the length of a profile, the shorter side of a map)",
-    )
+    text = "scaling range: lags and wavelengths [m] (default: the longest straight one)"
+    find.add_argument("--range", dest="span", nargs=2, type=float, metavar=("LOW", "HIGH"), help=text)
+    text = "longest wave of h [m] (default: the length of a profile, the shorter side of a map)"
+    argument(find, "--longest-wave", float, text, "L")
     find.add_argument(
         "--side",
         choices=SIDES,
         help="side of the contact that a single file is, the other one smooth; or both alike",
     )
     find.add_argument("--method", choices=METHODS, help="method to take for the joint (default: the surer)")
-    find.add_argument(
-        "--gamma", type=float, default=1.5, help="frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
-    )
+    text = "frequency ratio of Zhao's Eq. 30; only G_eq30 depends on it"
+    argument(find, "--gamma", float, text, "GAMMA", default=1.5)
     find.add_argument(
         "--joint", type=joint_name, choices=list(KINDS), metavar="JOINT", help=f"one of {', '.join(KINDS)}"
     )
     laws = dict.fromkeys(law for kind in KINDS.values() if kind.surfaces for law in kind.laws)
-    find.add_argument(
-        "--law",
-        choices=[*laws],
-        metavar="LAW",
-        help=f"of the joint: {ROUGHNESS_LAW} (default), on which h acts, "
-        f"or one on which D and G do: {', '.join(law for law in laws if law != ROUGHNESS_LAW)}",
-    )
-    find.add_argument("--params", type=Path, metavar="FILE", help="parameter file to start from (TOML)")
+    text = f"of the joint: {ROUGHNESS_LAW} (default), on which h acts, or one on which D and G do: "
+    text += ", ".join(law for law in laws if law != ROUGHNESS_LAW)
+    argument(find, "--law", str, text, "LAW", choices=[*laws])
+    argument(find, "--params", Path, "parameter file to start from (TOML)")
     written(find)
-    find.add_argument("--plot", type=Path, metavar="FILE", help="picture of data, law and range (.png, .svg)")
-    find.add_argument(
-        "--force",
-        action="store_true",
-        help="take a field of any size; write D and G although they are not determined",
-    )
+    argument(find, "--plot", Path, "picture of data, law and range (.png, .svg)")
+    text = "take a field of any size; write D and G although they are not determined"
+    find.add_argument("--force", action="store_true", help=text)
     synthesize.add(steps, SUBCOMMANDS[1])
 
 
-def _identify(args: argparse.Namespace) -> int:
+def _identify(args: argparse.Namespace) -> Answer:
     base = _base(args)
     _check(args)
     heights = [read(path, args.unit, args.force, args.unit_x, args.unit_z) for path in args.files]
@@ -101,8 +84,7 @@ def _identify(args: argparse.Namespace) -> int:
         from ...surfaces.results import draw
 
         draw(identified, args.plot)
-    results.show(identified, heights, file, args)
-    return 0
+    return results.answer(identified, heights, file, args)
 
 
 def _usual(identified: "Identification", force: bool) -> None:
@@ -147,9 +129,7 @@ def _base(args: argparse.Namespace) -> ParameterFile | None:
         law = args.law or ROUGHNESS_LAW
         if law not in KINDS[args.joint].laws:
             raise Refusal(f"{args.joint} has no law {law!r}, but {', '.join(KINDS[args.joint].laws)}", "law")
-        from ...surfaces.joint_parameters import without_roughness
-
-        return without_roughness(default(args.joint, law))
+        return replace(default(args.joint, law), roughness={})  # that of another surface
     if args.law:
         raise Refusal(f"law {args.law} needs --joint, one of {', '.join(KINDS)}", "law")
     if args.out:

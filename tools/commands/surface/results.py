@@ -1,9 +1,7 @@
 """What `jointfmu surface` found: one JSON object, or lines and a table."""
 
 import argparse
-import json
 import math
-import sys
 from collections.abc import Mapping, Sequence
 
 from jointfmu.contact.laws import ROUGHNESS_LAW
@@ -12,7 +10,7 @@ from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Number
 
-from ...command_line.common import tell
+from ...command_line.common import Answer
 from ...fractal import zhao_roughness
 from ...judgement import Judgement
 from ...pressure import judge_file
@@ -143,46 +141,35 @@ def warnings(identified: Identification, file: ParameterFile | None, args: argpa
     return lines
 
 
-def show(
+def answer(
     identified: Identification,
     heights: Sequence[Heights],
     file: ParameterFile | None,
     args: argparse.Namespace,
-) -> None:
-    """Print everything; `file` is the parameter file with the surface, if one is made."""
-    if args.json:
-        print(json.dumps(as_dict(identified, heights, file, args)))
-        return
-    _print(identified, heights, file, args)
-    for warning in warnings(identified, file, args):
-        print(f"warning: {warning}", file=sys.stderr)
-
-
-def _print(
-    identified: Identification,
-    heights: Sequence[Heights],
-    file: ParameterFile | None,
-    args: argparse.Namespace,
-) -> None:
-    for surface, scan in zip(heights, identified.scans, strict=True):
-        print(f"{surface.name}: {synthesize.size(surface)}; {_scan(scan)}")
-    print(_level(identified, file))
+) -> Answer:
+    """Everything; `file` is the parameter file with the surface, if one is made."""
+    lines = [
+        f"{surface.name}: {synthesize.size(surface)}; {_scan(scan)}"
+        for surface, scan in zip(heights, identified.scans, strict=True)
+    ]
+    lines.append(_level(identified, file))
     if len(heights) == 2:
-        print("equivalent surface of the pair: structure functions and spectra added")
-    for name, repair in identified.repairs:
-        print(f"repaired in {name}: {repair}")
+        lines.append("equivalent surface of the pair: structure functions and spectra added")
+    lines += [f"repaired in {name}: {repair}" for name, repair in identified.repairs]
     heads = ("method", "direction", "range [m]", "D, profile", "G, profile [m]", "D_s, surface", "G_s [m]")
-    rows = [heads, *(_row(result) for result in identified.results)]
-    print("\n".join(aligned(rows)))
-    print("brackets: 95 % confidence intervals")
+    lines += aligned([heads, *(_row(result) for result in identified.results)])
+    lines.append("brackets: 95 % confidence intervals")
     for joint in joints_shown(args, file):
-        print(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
-    if file and file.law != ROUGHNESS_LAW:
-        tell(judge_file(file), of=f"law {file.law}: ")
-    if args.out:
-        print(f"wrote {args.out}")
-    if args.plot:
-        print(f"wrote {args.plot}")
+        lines.append(f"{joint} ({meaning(joint)}, {_values(identified, joint, args)}")
+    judged = judge_file(file) if file and file.law != ROUGHNESS_LAW else Judgement(None, ())
+    of = f"law {file.law}: " if file else ""
+    warned = [*(f"{of}{text}" for text in judged.warnings), *warnings(identified, file, args)]
+    return Answer(
+        document=as_dict(identified, heights, file, args),
+        lines=[*lines, *(f"{of}{line}" for line in judged.lines())],
+        notes=[f"warning: {text}" for text in warned],
+        written=(args.out, args.plot),
+    )
 
 
 def _scan(scan: ScanRoughness) -> str:

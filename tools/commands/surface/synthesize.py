@@ -1,12 +1,11 @@
 """`jointfmu surface synthesize`: a seeded Weierstrass-Mandelbrot surface."""
 
 import argparse
-import json
 from pathlib import Path
 
 from jointfmu.files.writing import check_writable, write_text
 
-from ...command_line.common import Commands, command
+from ...command_line.common import Answer, Commands, argument, command
 from ...surfaces import csvfile, synthesis
 from ...surfaces.heights import Areal, Heights
 
@@ -24,28 +23,18 @@ def add(steps: Commands, name: str) -> None:
     make.add_argument(
         "--shape", choices=SHAPES, default=SHAPES[0], help="default: isotropic (Hu 2023, Eq. 1)"
     )
-    make.add_argument("--size", type=float, required=True, help="side length [m]")
-    make.add_argument("--points", type=int, required=True, help="points along a side")
-    make.add_argument(
-        "--D",
-        type=float,
-        nargs="+",
-        required=True,
-        help="isotropic: D_s of the surface (2 to 3); textured: D along x and y; profile: D (1 to 2)",
-    )
-    make.add_argument("--G", type=float, nargs="+", required=True, help="[m], as many as D")
-    make.add_argument("--gamma", type=float, default=1.5, help="frequency ratio (default: 1.5)")
-    make.add_argument(
-        "--ridges",
-        type=int,
-        default=20,
-        help="M of an isotropic surface, superposed directions (default: 20)",
-    )
-    make.add_argument("--seed", type=int, default=0, help="of the random phases (default: 0)")
-    make.add_argument("--out", type=Path, required=True, metavar="FILE", help="file to write (.csv)")
+    argument(make, "--size", float, "side length [m]", "SIZE", required=True)
+    argument(make, "--points", int, "points along a side", "POINTS", required=True)
+    text = "isotropic: D_s of the surface (2 to 3); textured: D along x and y; profile: D (1 to 2)"
+    argument(make, "--D", float, text, "D", nargs="+", required=True)
+    argument(make, "--G", float, "[m], as many as D", "G", nargs="+", required=True)
+    argument(make, "--gamma", float, "frequency ratio", "GAMMA", default=1.5)
+    argument(make, "--ridges", int, "M of an isotropic surface, superposed directions", "RIDGES", default=20)
+    argument(make, "--seed", int, "of the random phases", "SEED", default=0)
+    argument(make, "--out", Path, "file to write (.csv)", required=True)
 
 
-def _synthesize(args: argparse.Namespace) -> int:
+def _synthesize(args: argparse.Namespace) -> Answer:
     if args.out.suffix.lower() != ".csv":
         raise ValueError(f"{args.out}: suffix {args.out.suffix!r}, allowed is .csv")
     check_writable(args.out)
@@ -61,11 +50,8 @@ def _synthesize(args: argparse.Namespace) -> int:
         "gamma": args.gamma,
         "seed": args.seed,
     }
-    if args.json:
-        print(json.dumps(shown))
-    else:
-        print(f"wrote {args.out}: {size(heights)}, rms height {shown['rms']:.4g} m")
-    return 0
+    lines = [f"wrote {args.out}: {size(heights)}, rms height {shown['rms']:.4g} m"]
+    return Answer(document=shown, lines=lines)
 
 
 def _check_memory(args: argparse.Namespace) -> None:

@@ -4,9 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("export", "field", "fit", "laboratory", "modelica", "new", "published", "reduced", "report"),
+    ("export", "field", "fit", "modelica", "new", "published", "reduced", "report"),
     checks="job",
     figures="job",
+    laboratory="job",
     ringing="job",
     frequencies="field",
     pressure="field",

@@ -1,16 +1,22 @@
-"""The joint in the main job: what must hold of its ramp, published points, figures, a mass that rings on
-it.
+"""The joint in the main job: what must hold of its ramp, published points, figures, a mass that rings on it,
+the laboratory with pressure map and measured joints.
 """
 
-from collections.abc import Mapping
+import tomllib
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from jointfmu_fmu_src.joint_parts import RampPanel
 from scipy.integrate import cumulative_simpson
 
+from jointfmu.joints.bolted_joint.law import bolt_pattern
 from jointfmu.parameters import default
 
 from ...job.checks import deviation
+from ...laboratory.part import LaboratoryModel, Map, MeasuredCurve, Shown
 from ...published.reference import Point
 from ...ramps import ramp
 from ...ramps.ramp import RampResult
@@ -43,11 +49,12 @@ def through_fmu(point: Point, folder: Path) -> float | None:
 
 
 _CASES = ((9e3, 0.0), (15e3, 4500.0))
-"""Preload [N] and moment [N.m] of the maps."""
+"""Preload [N] and moment [N.m] of the maps of the box specimen, without and with that of the paper."""
 
 
 def figures(outcome: Any) -> list[Figure]:
     """The figures of an outcome of the main job."""
+    joint = default("bolted_joint").values
     return [
         Figure(
             "Stiffness and damping over preload",
@@ -59,7 +66,7 @@ def figures(outcome: Any) -> list[Figure]:
             "Contact pressure",
             "Bolts are numbered. First the preload of the published pressures, then the moment that shifts "
             "the bolt forces of the two rows by 5 kN.",
-            pictures=pressure_maps(),
+            pictures=[plan(joint, *case) for case in _CASES],
         ),
     ]
 
@@ -72,12 +79,6 @@ def stiffness(result: RampResult) -> list[Panel]:
         Panel("Stiffness", over, "K [N/um]", [Series(n, load, c[n] / 1e6) for n in ("K_zz", "K_xx")]),
         Panel("Damping", over, "C [kN s/m]", [Series(n, load, c[n] / 1e3) for n in ("C_zz", "C_xx")]),
     ]
-
-
-def pressure_maps() -> list[str]:
-    """Contact pressure of the box specimen, without and with the bending moment of the paper."""
-    joint = default("bolted_joint").values
-    return [plan(joint, *case) for case in _CASES]
 
 
 PRELOADS = (3e3, 9e3, 15e3, 30e3)
@@ -109,3 +110,42 @@ RINGING = Body(
     stiffness="K_xx",
     pull=Pull(15e3, 8e-7, "half of the friction limit"),
 )
+
+
+_PRESSURES = (0.3e6, 8e6)
+"""Of the measured curves [Pa]: the mean pressures of the load ramp, as far as they were measured."""
+_SHARE = 41
+
+
+def _bolts(joint: Any) -> tuple[Sequence[Sequence[float]], str]:
+    try:
+        return bolt_pattern(joint).bolts.tolist(), "bolts"
+    except ValueError:  # a field of nodal pressures, or a plate
+        return [], ""
+
+
+def _measured() -> list[MeasuredCurve]:
+    """Normal stiffness of measured joints per area: approach = C p^m gives p^(1 - m)/(C m)."""
+    text = (files("jointfmu_models") / "reference" / "measured_joints.toml").read_text(encoding="utf-8")
+    curves = []
+    for row in tomllib.loads(text)["normal"]:
+        unit = row["pressure_unit"]
+        C, m = (float(np.mean(row[name])) for name in "Cm")
+        p = np.geomspace(_PRESSURES[0], min(_PRESSURES[1], row["to"] * unit), _SHARE)
+        k = p / (C * m * 1e-6 * (p / unit) ** m)
+        label = row["finish"]
+        curves.append(MeasuredCurve(label, row["source"], "p_mean", "K_zz", p.tolist(), k.tolist(), "A_0"))
+    return curves
+
+
+LABORATORY = {
+    _FMU: LaboratoryModel(
+        panels=(RampPanel("preload", ("p_max", "p_mean")), RampPanel("p_mean", ("K_zz",))),
+        spans={"moment": (-5e3, 5e3), "bolt_stiffness": (0.0, 2e9), "preload": (0.0, 30e3)},
+        path=("s_rel_x", "s_rel_y"),
+        points={"p_max": Shown("p_max", {"preload": "preload"})},
+        measured=_measured(),
+        picture=Map("contact pressure", "Pa", "MPa", "of the nodes that the FMU carries", _bolts),
+    )
+}
+"""{FMU: what the page shows beside its variables}."""

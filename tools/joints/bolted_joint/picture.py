@@ -43,14 +43,12 @@ class Svg:
         self.parts.append(f"<{kind} {told}>{escape(text)}</{kind}>" if text else f"<{kind} {told}/>")
 
     def line(self, x1: float, y1: float, x2: float, y2: float, stroke: str = INK, dash: str = "") -> None:
-        """A line, perhaps dashed."""
         more = {"stroke_dasharray": dash} if dash else {}
         self.put("line", x1=x1, y1=y1, x2=x2, y2=y2, stroke=stroke, **more)
 
     def text(
         self, x: float, y: float, text: str, anchor: str = "middle", fill: str = INK, /, **more: object
     ) -> None:
-        """A line of text."""
         self.put("text", text, x=x, y=y, text_anchor=anchor, fill=fill, **more)
 
     def held(self, x1: float, y1: float, x2: float, y2: float) -> None:
@@ -65,7 +63,6 @@ class Svg:
             self.line(x, y, x + out[0], y + out[1], RED)
 
     def arrow(self, x: float, y: float, dx: float, dy: float) -> None:
-        """Of a load, from a place."""
         self.put("line", x1=x, y1=y, x2=x + dx, y2=y + dy, stroke=RED, stroke_width=2.5)
         tip, back = np.array([x + dx, y + dy]), np.array([dx, dy]) / np.hypot(dx, dy) * 10.0
         side = 0.4 * np.array([back[1], -back[0]])
@@ -73,7 +70,6 @@ class Svg:
         self.put("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in corners), fill=RED)
 
     def svg(self, label: str) -> str:
-        """The picture."""
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} {self.height:.0f}" '
             f'width="{self.width:.0f}" role="img" aria-label="{escape(label)}" font-size="13" '

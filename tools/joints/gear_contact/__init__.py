@@ -4,9 +4,10 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    ("modelica", "new", "published", "reduced"),
-    checks="job",
-    figures="job",
+    ("modelica", "new", "published"),
+    checks="ramp",
+    figures="ramp",
+    reduced="ramp",
     export="load",
     laboratory="load",
     pressure="load",

@@ -3,5 +3,11 @@
 from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
-    __name__, ("modelica", "new", "reduced"), checks="job", figures="job", export="load", pressure="load"
+    __name__,
+    ("modelica", "new"),
+    checks="ramp",
+    figures="ramp",
+    reduced="ramp",
+    export="load",
+    pressure="load",
 )

@@ -4,13 +4,13 @@ from ...joint_parts import ToolParts
 
 PARTS = ToolParts(
     __name__,
-    (
-        *("catalogue", "fit", "interface", "laboratory", "modelica", "new"),
-        *("published", "reduced", "report", "transmission"),
-    ),
+    ("catalogue", "fit", "modelica", "new", "published", "reduced", "report"),
     checks="job",
     figures="job",
+    laboratory="job",
     ringing="job",
     export="load",
     pressure="load",
+    interface="wind_up",
+    transmission="wind_up",
 )

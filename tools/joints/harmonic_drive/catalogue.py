@@ -19,13 +19,18 @@ from jointfmu.quantity.units import factor
 from ...catalogue import Catalogue, Column, Item, Printed
 from .friction import known, with_friction
 
-COLUMNS = (
-    Column("ratio", "1", "speed ratio", "1"),
+ROW = (
     Column("K1", "N.m/rad", "stiffness below T1", "N.m/rad"),
     Column("K2", "N.m/rad", "stiffness between T1 and T2", "N.m/rad"),
     Column("K3", "N.m/rad", "stiffness above T2", "N.m/rad"),
     Column("T1", "N.m", "torque at the first corner", "N.m"),
     Column("T2", "N.m", "torque at the second corner", "N.m"),
+)
+LINES = tuple(column.name for column in ROW)
+"""The torsional stiffness, and its names."""
+COLUMNS = (
+    Column("ratio", "1", "speed ratio", "1"),
+    *ROW,
     Column("rated_torque", "N.m", "rated torque", "N.m"),
     Column("peak_torque", "N.m", "repeated peak torque", "N.m"),
     Column("hysteresis_loss", "rad", "angle between the branches at zero torque", "arcmin"),

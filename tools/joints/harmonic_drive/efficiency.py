@@ -1,11 +1,11 @@
 """What catalogues quote of a drive, found by running it: efficiency, torques without load, its loop."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from scipy.optimize import brentq
 
@@ -37,16 +37,6 @@ def parameters(item: Item) -> dict[str, float]:
     return {name: number.value for name, number in numbers.items()}
 
 
-class Driven(Protocol):
-    """What a bench turns: set phi1, w1, phi2, w2, get tau and tau1 and maybe more, accept by a step."""
-
-    def set(self, *values: float) -> None: ...
-
-    def get(self) -> list[float]: ...
-
-    def step(self, time: float, size: float) -> None: ...
-
-
 class PythonDrive:
     """The Python drive in the place of an FMU; it begins at rest with all angles zero."""
 
@@ -59,7 +49,6 @@ class PythonDrive:
         self.step(0.0, 0.0)
 
     def set(self, *values: float) -> None:
-        """Give the inputs their values."""
         self._inputs = {**self._rest, **dict(zip(_MOTION, values, strict=True))}
 
     def get(self) -> list[float]:
@@ -76,11 +65,28 @@ class PythonDrive:
         return self._model.evolve(self._spring, self._inputs, self._memory)
 
 
+def wound_up(carried: Callable[[float], float], torque: float, stiffness: float) -> float:
+    """Wind-up [rad] at which a drive of about this stiffness [N.m/rad] carries a torque [N.m]."""
+
+    def missing(angle: float) -> float:
+        return carried(angle) - torque
+
+    if not torque:
+        return 0.0
+    far = torque / stiffness
+    while missing(far) * torque < 0.0:
+        far *= 2.0
+    return float(brentq(missing, 0.0, far, xtol=1e-16))
+
+
 @dataclass(slots=True)
 class Bench:
-    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`."""
+    """A drive between two flanges that is turned and loaded; see `bench` and `spring_bench`.
 
-    drive: Driven
+    drive : takes phi1, w1, phi2, w2, gives tau and tau1 and maybe more, and is accepted by a step
+    """
+
+    drive: Slave | PythonDrive
     ratio: float
     presliding: float
     stiffness: float
@@ -121,16 +127,11 @@ class Bench:
     def _wind_up(self, torque: float) -> float:
         """Wind-up [rad] under a torque [N.m]."""
 
-        def missing(angle: float) -> float:
+        def carried(angle: float) -> float:
             self.drive.set(self.angle, 0.0, self.angle / self.ratio + angle, 0.0)
-            return self.drive.get()[0] - torque
+            return self.drive.get()[0]
 
-        if not torque:
-            return 0.0
-        far = torque / self.stiffness
-        while missing(far) * torque < 0.0:
-            far *= 2.0
-        return float(brentq(missing, 0.0, far, xtol=1e-16))
+        return wound_up(carried, torque, self.stiffness)
 
 
 @contextmanager

@@ -1,16 +1,20 @@
 """The drive in the main job: what must hold of its ramps, published points, figures, a link that rings on
-it.
+it, the laboratory.
 """
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq
+
+from jointfmu.joints import MODELS
+from jointfmu.joints.harmonic_drive.drive import HARMONICS
 
 from ...job.checks import deviation
+from ...laboratory.part import Example, LaboratoryModel, Shown, Turn
 from ...published.reference import Point
 from ...published.validation import ValidatedPoint
 from ...ramps import ramp
@@ -180,19 +184,15 @@ def _rest(folder: Path, torque: float, parameters: Mapping[str, float]) -> Rest:
 
 
 def _wound_up(drive: Slave, torque: float) -> tuple[float, float]:
-    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m], which grows with the wind-up."""
+    """Wind-up [rad] and stiffness [N.m/rad] of a drive under a torque [N.m]."""
 
-    def missing(angle: float) -> float:
+    def at(angle: float) -> tuple[float, float]:
         drive.set(angle, 0.0)
-        return float(drive.get()[0] - torque)
+        carried, stiffness = drive.get()
+        return carried, stiffness
 
-    drive.set(0.0, 0.0)
-    end = torque / drive.get()[1]
-    while missing(end) * torque < 0.0:
-        end *= 2.0
-    angle = brentq(missing, 0.0, end, xtol=1e-12 * abs(end), rtol=1e-13) if torque else 0.0
-    drive.set(angle, 0.0)
-    return angle, drive.get()[1]
+    angle = efficiency.wound_up(lambda angle: at(angle)[0], torque, at(0.0)[1])
+    return angle, at(angle)[1]
 
 
 RINGING = Body(
@@ -212,3 +212,58 @@ RINGING = Body(
     pull=Pull(0.0, 5e-4, "three lengths of its hysteresis"),
     elastic={"hysteresis_loss": 0.0},
 )
+
+
+_SPANS = {
+    "hysteresis_loss": (0.0, 1e-3),
+    "hysteresis_stiffness": (0.0, 2e4),
+    "lost_motion": (0.0, 1e-3),
+    "friction_coulomb": (0.0, 0.1),
+    "friction_stribeck": (0.0, 0.1),
+    "friction_viscous": (0.0, 1e-3),
+    "load_loss": (0.0, 0.5),
+    "load_loss_back": (-1.0, 0.5),
+    "temperature_factor": (0.5, 5.0),
+    "viscous_temperature_coefficient": (0.0, 0.1),
+    "dry_temperature_coefficient": (0.0, 0.1),
+    "temperature": (253.15, 353.15),
+    "phi1": (-0.1, 0.1),
+    **{f"error_{n}": (0.0, 1e-3) for n in HARMONICS},
+    **{f"error_{n}_phase": (-math.pi, math.pi) for n in HARMONICS},
+}
+_ARGUMENTS = {"torque": "tau", "deformation": "radial_deformation", "eccentricity": "eccentricity"}
+
+_TURN = Turn(
+    driven="phi1",
+    speed="w1",
+    follower="phi2",
+    follower_speed="w2",
+    torque="tau1",
+    load="tau",
+    error="phi_error",
+    ratio="ratio",
+    rated="rated_torque",
+    usual=200.0,
+)
+_LOOP = MODELS["HarmonicDriveSpring"].loop
+_PRINTED = efficiency.printed_drives()[0]
+_EXAMPLE = Example(
+    f"friction of the catalogue's {_PRINTED.name}, 1 arcmin of hysteresis and of kinematic error",
+    {k: v for k, v in efficiency.parameters(_PRINTED).items() if k != "ratio"}
+    | {k: float(v) for k, v in (_LOOP.settings if _LOOP else {}).items()}
+    | {"error_2": 1.5e-4},
+)
+
+LABORATORY = {
+    "HarmonicDriveSpring": LaboratoryModel(spans=_SPANS, path=("phi2",), turn=_TURN, example=_EXAMPLE),
+    "HarmonicDriveCompliance": LaboratoryModel(
+        spans=_SPANS,
+        path=("tau",),
+        points={
+            "K_TS": Shown("K_TS_pair", _ARGUMENTS),
+            "K_WTS": Shown("K_WTS", _ARGUMENTS),
+            "peak_pressure": Shown("p_max", _ARGUMENTS),
+        },
+    ),
+}
+"""{FMU: what the page shows beside its variables}."""

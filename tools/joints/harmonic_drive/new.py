@@ -11,14 +11,14 @@ from ...catalogue import Printed
 from ...drawing.part import Drawing, Given, NewJoint
 from ...drawing.reading import flag, number, temperature
 from ...joint_parts import Option
+from .catalogue import COLUMNS, LINES, ROW, find
 from .friction import QUOTED, SPEED, efficiency, friction, interval_text
 
 if TYPE_CHECKING:
     from .fit.drive import Row
 
-_ROW: Mapping[str, str] = {"K1": "N.m/rad", "K2": "N.m/rad", "K3": "N.m/rad", "T1": "N.m", "T2": "N.m"}
-_FRICTION: Mapping[str, str] = {**dict.fromkeys(QUOTED[:-1], "N.m"), QUOTED[-1]: "1"}
-_UNITS: Mapping[str, str] = {"ratio": "1", **_ROW, "rated_torque": "N.m", **_FRICTION}
+_STATED = ("ratio", *LINES, "rated_torque", *QUOTED)
+_UNITS = {column.name: column.unit for column in COLUMNS if column.name in _STATED}
 DAMPING = 1e-4
 """d over K1 [s]: 2 % of critical where the drive swings with 60 Hz."""
 FIXED: Mapping[str, str] = {
@@ -33,7 +33,7 @@ PEAK = 4.0
 
 def _drive(given: Given) -> NewJoint:
     source = given["source"] or given["catalogue"] or "catalogue"
-    printed = _bought(given["catalogue"]) if given["catalogue"] else {}
+    printed = dict(find(given["catalogue"]).numbers) if given["catalogue"] else {}
     for name, unit in _UNITS.items():
         if given[name] is not None:
             value = number(name, given[name], _unit(given, name), unit, None if name == "ratio" else 0.0)
@@ -44,7 +44,7 @@ def _drive(given: Given) -> NewJoint:
         printed["hysteresis_loss"] = _stated(
             given, number("hysteresis", given["hysteresis"], "arcmin", "rad")
         )
-    if missing := [flag(name) for name in ("ratio", *_ROW) if name not in printed]:
+    if missing := [flag(name) for name in ("ratio", *LINES) if name not in printed]:
         raise ValueError(f"{', '.join(missing)} missing: state the row of the catalogue, or --catalogue NAME")
     if "rated_torque" not in printed:
         text = "no rated torque given; T2 of the catalogue"
@@ -138,12 +138,6 @@ def _with_drag(brakes: dict[str, Printed], stated: str | None) -> dict[str, Prin
     return {**brakes, "friction_coulomb": total}
 
 
-def _bought(name: str) -> dict[str, Printed]:
-    from . import catalogue
-
-    return dict(catalogue.find(name).numbers)
-
-
 def _stated(given: Given, value: float) -> Printed:
     """A number of the row, or one that takes the place of the named drive's."""
     kind = "user" if given["catalogue"] and not given["source"] else "catalogue"
@@ -201,7 +195,8 @@ def _of_pair(printed: Mapping[str, Printed], brakes: Mapping[str, Printed], name
     from .fit import catalogue
 
     kind, ratio = printed["rated_torque"].kind, printed["ratio"].value
-    found = catalogue.fit_pair(_row(printed), None, None, kind, ratio, name)
+    row = _row(printed)
+    found = catalogue.fit_pair(row, printed=catalogue.stated_numbers(row, kind, ratio, name), source=name)
     file = replace(found.parameters, name=name)
     loss = printed.get("hysteresis_loss")
     if loss is not None and loss.kind != "estimate":
@@ -220,7 +215,7 @@ def _row(printed: Mapping[str, Printed]) -> "Row":
     """The row, checked."""
     from .fit.drive import Row
 
-    return Row(**{name: printed[name].value for name in _ROW}, rated=printed["rated_torque"].value)
+    return Row(**{name: printed[name].value for name in LINES}, rated=printed["rated_torque"].value)
 
 
 NEW = Drawing(
@@ -234,11 +229,7 @@ NEW = Drawing(
             "what is held, which decides the sign of the ratio (circular-spline: it is negative)",
             choices=tuple(FIXED),
         ),
-        Option("K1", "stiffness below T1 [N.m/rad]", "K"),
-        Option("K2", "stiffness between T1 and T2 [N.m/rad]", "K"),
-        Option("K3", "stiffness above T2 [N.m/rad]", "K"),
-        Option("T1", "torque at the first corner [N.m]", "T"),
-        Option("T2", "torque at the second corner [N.m]", "T"),
+        *(Option(column.name, f"{column.text} [{column.unit}]", column.name[0]) for column in ROW),
         Option(
             "stiffness_unit",
             "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",

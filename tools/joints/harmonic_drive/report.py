@@ -13,10 +13,10 @@ from jointfmu.parameters import ParameterFile
 from ...catalogue import Item, Printed
 from ...report.course import Course
 from ...report.figure import OWN, PREDICTED, SET, Beside, Figure, Panel, Series
-from .catalogue import find
+from .catalogue import COLUMNS, LINES, find
 from .efficiency import Bench, hysteresis_loss, lost_motion, spring_bench
 from .fit.drive import Row
-from .friction import SET_BY, SPEED
+from .friction import QUOTED, SET_BY, SPEED
 
 SPEEDS = (500, 2000, 3500)
 """Of the motor [rev/min]."""
@@ -75,10 +75,8 @@ def _over_speed(file: ParameterFile) -> Figure:
     return Figure("Friction over speed and temperature", text, [panel])
 
 
-_LINES = ("K1", "K2", "K3", "T1", "T2")
 _LOOP = {"hysteresis_loss": (hysteresis_loss, OWN), "lost_motion": (lost_motion, PREDICTED)}
-_UNITS = {"starting_torque": "N.m", "running_torque": "N.m", "back_driving_torque": "N.m", "efficiency": "1"}
-"""Torque up to which back-driving is sought, over the published one [1]."""
+_UNITS = {column.name: column.unit for column in COLUMNS if column.name in QUOTED}
 
 
 def beside(model: Model, file: ParameterFile) -> list[Beside]:
@@ -119,7 +117,7 @@ def _rows(model: Model, file: ParameterFile, item: Item) -> Iterator[Beside]:
 
 def _angles(spring: HarmonicDriveSpring, printed: Mapping[str, Printed], role: str) -> Iterator[Beside]:
     """Wind-up at the corners, at rated and at peak torque: of the lines, and of the midline."""
-    lines = {name: printed[name].value for name in _LINES}
+    lines = {name: printed[name].value for name in LINES}
     torques = {name: printed[name] for name in ("T1", "T2", "rated_torque", "peak_torque") if name in printed}
     row = Row(**lines, rated=torques.get("rated_torque", printed["T2"]).value)
     for name, torque in torques.items():

@@ -1,52 +1,7 @@
 """What fits the bolted joint: a curve over preload, loops in shear."""
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
-
-from jointfmu.parameters import ParameterFile
-
-from ....fitting.procedure import DAMPING_RATIO, Procedure
+from ....fitting.procedure import DAMPING_RATIO, Procedure, fit_of
 from ....joint_parts import Option
-
-if TYPE_CHECKING:
-    from ....fitting.outcome import FitResult
-
-
-def _preload(
-    path: Path,
-    start: ParameterFile | None,
-    free: Sequence[str] | None,
-    direction: str,
-    modal_mass: float | None,
-    series_stiffness: float | None,
-) -> "FitResult":
-    from . import preload
-
-    return preload.fit(path, start, free, direction=direction, modal_mass=modal_mass, series=series_stiffness)
-
-
-def _loop(
-    path: Path,
-    start: ParameterFile | None,
-    free: Sequence[str] | None,
-    preload: float | None,
-    modal_mass: float | None,
-    damping_ratio: float,
-    series_stiffness: float | None,
-) -> "FitResult":
-    from . import loop
-
-    return loop.fit(
-        path,
-        start,
-        free,
-        preload=preload,
-        modal_mass=modal_mass,
-        damping_ratio=damping_ratio,
-        series_stiffness=series_stiffness,
-    )
-
 
 SERIES = Option(
     "series_stiffness",
@@ -65,7 +20,7 @@ FITS = (
             Option("modal_mass", "what vibrates on the joint [kg]", number=True),
             SERIES,
         ),
-        run=_preload,
+        run=fit_of(f"{__name__}.preload"),
     ),
     Procedure(
         name="loop",
@@ -78,6 +33,6 @@ FITS = (
             DAMPING_RATIO,
             SERIES,
         ),
-        run=_loop,
+        run=fit_of(f"{__name__}.loop"),
     ),
 )

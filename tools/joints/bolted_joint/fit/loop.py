@@ -26,8 +26,8 @@ from jointfmu.quantity.units import sizes
 from ....fitting import memory
 from ....fitting.hysteresis import HysteresisLaw
 from ....fitting.least_squares import Exchange, Unknown
-from ....fitting.measurement import Heads, Measurement, measured
-from ....fitting.outcome import FitResult, fitted, unknowns
+from ....fitting.measurement import Heads, measured
+from ....fitting.outcome import Facts, FitResult, fitted, unknowns
 from .preload import SERIES, even_shape
 
 HEADS = Heads("force", "displacement", sizes("N", "kN"), sizes("m", "mm", "um", "nm"))
@@ -44,9 +44,7 @@ _NODES = 48
 """Steps of the table of first loading, graded towards rest."""
 
 
-def first_loading(
-    joint: Bolted, preload: float, series: float | None = None
-) -> tuple[HysteresisLaw, dict[str, tuple[float, str, str]]]:
+def first_loading(joint: Bolted, preload: float, series: float | None = None) -> tuple[HysteresisLaw, Facts]:
     """The law of the joint's loops in shear at a preload [N] of each bolt, and what describes it.
 
     series : stiffness [N/m] of a structure in series; the motion is that of both, B(u) of the force that both
@@ -154,7 +152,7 @@ def fit(
             SERIES,
         )
     wanted = unknowns(file, [name for name in names if name not in BESIDE], {})
-    wanted += [memory.damping_unknown()] * (memory.DAMPING in names)
+    wanted += [memory.DAMPING_UNKNOWN] * (memory.DAMPING in names)
     wanted += [Unknown(SERIES, "N/m", SERIES_STARTS[0] * seen, 0.0, np.inf)] * (SERIES in names)
 
     def rest(values: Mapping[str, float]) -> float:
@@ -169,16 +167,15 @@ def fit(
         file, _own(solution.values), "calibration", data.path.name, f"{data.span}, preload {force:g} N"
     )
     law, described = first_loading(result.values, force, beside(solution.values))
-    picture, second = memory.pictures(data, model, solution.values, scale)
+    reached = float(law.friction(np.array([data.amplitude]))[0]) / described["friction_limit"][0]
+    text = "largest friction force of the data over friction_limit"
+    facts = described | {"slip_reached": (reached, "1", text)}
     return FitResult(
         result,
         solution,
-        described
-        | _reached(data, law, described["friction_limit"][0])
-        | memory.facts(data, solution, law, scale),
-        picture,
+        facts | memory.facts(data, solution, law, scale),
+        memory.pictures(data, model, solution.values, scale),
         notes=memory.notes(data, solution),
-        second_picture=second,
     )
 
 
@@ -195,9 +192,3 @@ def _level(
 def _own(values: Mapping[str, float]) -> dict[str, float]:
     """Those of the joint."""
     return {name: value for name, value in values.items() if name not in BESIDE}
-
-
-def _reached(data: Measurement, law: HysteresisLaw, limit: float) -> dict[str, tuple[float, str, str]]:
-    """How near to gross slip the data come."""
-    force = float(law.friction(np.array([data.amplitude]))[0])
-    return {"slip_reached": (force / limit, "1", "largest friction force of the data over friction_limit")}

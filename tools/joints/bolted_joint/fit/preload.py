@@ -14,7 +14,6 @@ and G stays as it is.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +28,8 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, factor, sizes
 
 from .... import columns
-from ....fitting.least_squares import Solution, Unknown, solve
-from ....fitting.outcome import FitResult, Picture, fitted, unknowns
+from ....fitting.least_squares import Solution, Unknown, best_start, solve
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, unknowns
 
 SERIES = "series_stiffness"
 """Unknown that is no parameter of the joint: the structure's own stiffness [N/m]."""
@@ -76,7 +75,7 @@ def fit(
     *,
     direction: str = "normal",
     modal_mass: float | None = None,
-    series: float | None = None,
+    series_stiffness: float | None = None,
 ) -> FitResult:
     """Fit a file with the columns preload (of each bolt) and stiffness or frequency (COLUMNS).
 
@@ -85,20 +84,20 @@ def fit(
     free       : names to fit; None: surface.D with surface.G, or with mass if it is not stated
     direction  : of the motion, one of DIRECTIONS
     modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
-    series     : [N/m] stiffness of the structure in series; None: none, unless SERIES is in `free`
+    series_stiffness : [N/m] of the structure, in series; None: rigid, unless SERIES is in `free`
 
     Raises ValueError, one line: the file, its units, its values; a name that cannot be fitted.
     RuntimeError if the fit finds no end.
     """
     curve = _measured(Path(path))
-    file = _stated(start or default("bolted_joint"), curve, modal_mass, series)
+    file = _stated(start or default("bolted_joint"), curve, modal_mass, series_stiffness)
     mass = curve.of == "frequency" and modal_mass is None
     names = list(free if free is not None else ("surface.D", "mass" if mass else "surface.G"))
 
     def predict(values: Mapping[str, float]) -> Array:
         own = {name: value for name, value in values.items() if name != SERIES}
         joint = replace(file, origins={}, sources={}).with_values(own, "calibration", "fit").values
-        return curve.predicted(joint, values.get(SERIES, series), direction)
+        return curve.predicted(joint, values.get(SERIES, series_stiffness), direction)
 
     def miss(values: Mapping[str, float]) -> Array:
         return np.log(predict(values) / curve.value)
@@ -107,7 +106,7 @@ def fit(
     own = {name: value for name, value in solution.values.items() if name != SERIES}
     span = f"preload {curve.preload[0]:g} to {curve.preload[-1]:g} N, {direction} {curve.of}"
     result = fitted(file, own, "calibration", Path(path).name, span)
-    stiffness = solution.values.get(SERIES, series)
+    stiffness = solution.values.get(SERIES, series_stiffness)
     grid = np.linspace(curve.preload[0], curve.preload[-1], 200)
     finer = replace(curve, preload=grid, value=np.ones_like(grid))
     unit, size = ("Hz", 1.0) if curve.of == "frequency" else ("N/um", factor("N/m", "N/um"))
@@ -119,7 +118,7 @@ def fit(
         line=(grid / kN, finer.predicted(result.values, stiffness, direction) * size),
         labels=("preload of each bolt [kN]", f"{curve.of} [{unit}]", "data / law - 1 [%]"),
     )
-    return FitResult(result, solution, _facts(curve, solution), picture, notes=_notes(names, mass))
+    return FitResult(result, solution, _facts(curve, solution), [picture], notes=_notes(names, mass))
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,11 +147,7 @@ def _measured(path: Path) -> PreloadCurve:
         raise ValueError(
             f"{path}: has {have} of stiffness and frequency; expected one: {columns.heading(choice)}"
         )
-    for name in ("preload", given[0]):
-        if np.any(bad := table.columns[name] <= 0.0):
-            unit = next(iter(COLUMNS[name]))
-            worst = table.columns[name][bad][0]
-            raise ValueError(f"{path}: {name} = {worst:g} {unit} is outside (0, inf)")
+    table.positive(("preload", given[0]), COLUMNS)
     order = np.argsort(preload, kind="stable")
     preload, value = preload[order], table.columns[given[0]][order]
     if np.unique(preload).size < LEAST:
@@ -186,7 +181,7 @@ def _best_start(
     names: Sequence[str],
     curve: PreloadCurve,
     miss: Callable[[Mapping[str, float]], Array],
-) -> list[Unknown]:
+) -> Sequence[Unknown]:
     """The unknowns at the best of some starting points."""
     wanted = unknowns(file, [name for name in names if name != SERIES], {})
     level = (
@@ -195,23 +190,19 @@ def _best_start(
         else (2.0 * np.pi * curve.value[-1]) ** 2 * file.values.mass
     )
     wanted += [Unknown(SERIES, "N/m", 3.0 * float(level), 0.0, np.inf)] * (SERIES in names)
-    grids = [(u.start, *STARTS.get(u.name, ())) for u in wanted]
-    best, least = wanted, np.inf
-    for point in product(*grids):
-        values = dict(zip((u.name for u in wanted), point, strict=True))
-        try:
-            rest = miss(values)
-        except (ValueError, RuntimeError):
-            continue
+
+    def tried(values: dict[str, float]) -> tuple[Mapping[str, float], float]:
+        """With the mass that suits the data best, whose square root the frequencies have."""
+        rest = miss(values)
         if "mass" in values:
             values["mass"] *= float(np.exp(2.0 * np.mean(rest)))
             rest = rest - np.mean(rest)
-        if (cost := float(rest @ rest)) < least:
-            least, best = cost, [replace(u, start=values[u.name]) for u in wanted]
-    return best
+        return values, float(rest @ rest)
+
+    return best_start(wanted, STARTS, tried)
 
 
-def _facts(curve: PreloadCurve, solution: Solution) -> dict[str, tuple[float, str, str]]:
+def _facts(curve: PreloadCurve, solution: Solution) -> Facts:
     power = float(np.polyfit(np.log(curve.preload), np.log(curve.value), 1)[0])
     return {
         "points": (float(curve.preload.size), "1", "points used"),

@@ -1,76 +1,8 @@
 """What fits the harmonic drive: a measured torque-angle curve, its loops, a robot's log, a catalogue row."""
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from jointfmu.parameters import ParameterFile
-
-from ....fitting.procedure import Procedure
+from ....fitting.procedure import Procedure, fit_of
 from ....joint_parts import Option
-
-if TYPE_CHECKING:
-    from ....fitting.outcome import FitResult
-
-Names = Sequence[str] | None
-
-
-def _torque_angle(
-    path: Path, start: ParameterFile | None, free: Names, rated_torque: float | None, law: str | None
-) -> "FitResult":
-    from . import torque_angle
-
-    if law is None:
-        return torque_angle.fit(path, start, free, rated_torque)
-    if free:
-        raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
-    return torque_angle.fit_table(path, start, rated_torque)
-
-
-def _loop(path: Path, start: ParameterFile | None, free: Names, inertia: float | None) -> "FitResult":
-    from . import hysteresis
-
-    return hysteresis.fit(path, start, free, inertia)
-
-
-def _log(
-    paths: Sequence[Path],
-    start: ParameterFile | None,
-    free: Names,
-    columns: Names,
-    torque_constant: float | None,
-    ratio: float | None,
-    motor_inertia: float | None,
-) -> "FitResult":
-    from . import log
-
-    return log.fit(paths, start, free, columns, torque_constant, ratio, motor_inertia)
-
-
-def _catalogue(
-    start: ParameterFile | None,
-    free: Names,
-    rated_torque: float | None,
-    source: str,
-    ratio: float | None,
-    law: str,
-    **row: float,
-) -> "FitResult":
-    from . import catalogue
-    from .drive import Row
-
-    rated, origin = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
-    fit = catalogue.fit_lines if law == "catalogue" else catalogue.fit_pair
-    return fit(Row(**row, rated=rated), start, free, origin, ratio, source)
-
-
-_PER_ANGLE: Any = {"unit": "N.m/rad", "unit_by": "stiffness_unit"}
-_STIFFNESSES = (
-    ("K1", "stiffness below T1 [N.m/rad]"),
-    ("K2", "stiffness between T1 and T2 [N.m/rad]"),
-    ("K3", "stiffness above T2 [N.m/rad]"),
-)
-
+from ..catalogue import ROW
 
 FITS = (
     Procedure(
@@ -85,7 +17,7 @@ FITS = (
                 choices=("table",),
             ),
         ),
-        run=_torque_angle,
+        run=fit_of(f"{__name__}.torque_angle"),
     ),
     Procedure(
         name="loop",
@@ -95,7 +27,7 @@ FITS = (
         options=(
             Option("inertia", "what vibrates on the drive [kg.m2]; with decays and responses", number=True),
         ),
-        run=_loop,
+        run=fit_of(f"{__name__}.hysteresis"),
     ),
     Procedure(
         name="log",
@@ -114,16 +46,23 @@ FITS = (
             Option("ratio", "speed ratio (default: that of the start)", number=True),
             Option("motor_inertia", "of the rotor [kg.m2], which the teeth do not carry (0)", number=True),
         ),
-        run=_log,
+        run=fit_of(f"{__name__}.log"),
     ),
     Procedure(
         name="catalogue",
         text="a catalogue row to the harmonic drive",
         file=False,
         options=(
-            *(Option(name, text, required=True, **_PER_ANGLE) for name, text in _STIFFNESSES),
-            Option("T1", "torque at the first corner [N.m]", required=True, unit="N.m"),
-            Option("T2", "torque at the second corner [N.m]", required=True, unit="N.m"),
+            *(
+                Option(
+                    column.name,
+                    f"{column.text} [{column.unit}]",
+                    required=True,
+                    unit=column.unit,
+                    unit_by="stiffness_unit" if column.name.startswith("K") else "",
+                )
+                for column in ROW
+            ),
             Option(
                 "stiffness_unit",
                 "of K1, K2, K3 without one of their own, as '1e4 N.m/rad' or kgf.m/arcmin (N.m/rad)",
@@ -139,6 +78,6 @@ FITS = (
                 choices=("catalogue", "hu2023"),
             ),
         ),
-        run=_catalogue,
+        run=fit_of(f"{__name__}.catalogue"),
     ),
 )

@@ -16,11 +16,12 @@ import numpy as np
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import CORNER, CatalogueDrive
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import Array, build, flat_fields
+from jointfmu.quantity import Array
 
 from ....catalogue import Printed
 from ....fitting.least_squares import NOTHING, Solution, solve
-from ....fitting.outcome import FitResult, fitted, model, unknowns
+from ....fitting.outcome import Facts, FitResult, fitted, model, unknowns
+from ..catalogue import LINES
 from . import drive
 from .drive import Row, angle_picture, stiffness, stiffness_picture
 
@@ -37,24 +38,52 @@ MAX_OVER_RATED = 4.0
 """max_torque over rated torque [1]: about the repeated peak torque of catalogue drives."""
 
 
+def fit(
+    start: ParameterFile | None,
+    free: Sequence[str] | None,
+    rated_torque: float | None,
+    source: str,
+    ratio: float | None,
+    law: str,
+    **row: float,
+) -> FitResult:
+    """The law of a row, `catalogue` (`fit_lines`) or `hu2023` (`fit_pair`); its rated torque is T2 unless it
+    is stated."""
+    rated, kind = (row["T2"], "estimate") if rated_torque is None else (rated_torque, "catalogue")
+    stated = Row(**row, rated=rated)
+    printed = stated_numbers(stated, kind, ratio, source)
+    return (fit_lines if law == "catalogue" else fit_pair)(stated, start, free, printed, source)
+
+
+def stated_numbers(
+    row: Row, rated_kind: str = "catalogue", ratio: float | None = None, source: str = "catalogue"
+) -> dict[str, Printed]:
+    """{parameter: number} of a row that is printed in `source`, and of a ratio, if it is known."""
+    origin = f"{source} ({row})"
+    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
+    found = {name: Printed(getattr(row, name), "catalogue", origin) for name in LINES}
+    found["rated_torque"] = Printed(row.rated, rated_kind, rated)
+    return found if ratio is None else found | {"ratio": Printed(ratio, "catalogue", origin)}
+
+
 def fit_pair(
     row: Row,
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
-    rated_kind: str = "catalogue",
-    ratio: float | None = None,
+    printed: Mapping[str, Printed] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
-    """The smooth law of a row; `free` None: FREE, and FURTHER if need be; `source`: where it is printed.
+    """The smooth law of a row; `free` None: FREE, and FURTHER if need be.
+
+    printed : of the row, as `stated_numbers` gives them;  source : where it is printed
 
     Raises ValueError for a name that cannot be fitted, RuntimeError if no law keeps the angles.
     """
-    file = start or default("harmonic_drive")
-    origin = f"{source} ({row})"
-    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
-    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated_kind, rated)
-    if ratio is not None:
-        file = file.with_values({"ratio": ratio}, "catalogue", origin)
+    printed = printed or stated_numbers(row)
+    file, rated, origin = start or default("harmonic_drive"), printed["rated_torque"], printed["T1"].source
+    file = drive.resized(file, row.rated, MAX_OVER_RATED, rated.kind, rated.source)
+    if "ratio" in printed:
+        file = file.with_values({"ratio": printed["ratio"].value}, "catalogue", origin)
     file = file.with_values({FURTHER: row.T1}, "catalogue", f"T1 of {origin}")
     torque, most = torques(row, file.values.max_torque), file.values.max_torque
     choices = [tuple(free)] if free else [FREE, (*FREE, FURTHER)]
@@ -63,32 +92,16 @@ def fit_pair(
     result = fitted(file, solution.values, "catalogue", origin, f"torque 0 to {most:g} N.m")
     result = replace(result, name=f"fitted to {source}")
     miss = drive.windup(result.values, torque) / row.angle(torque) - 1.0
-    facts = {
-        f"angle_error_{name}": (
-            float(miss[np.flatnonzero(torque == T)[0]]),
-            "1",
-            f"law over catalogue - 1 at {T:g} N.m",
-        )
-        for name, T in (("T1", row.T1), ("T2", row.T2), ("rated", row.rated))
-    }
-    facts["angle_error_largest"] = (
-        float(miss[np.argmax(np.abs(miss))]),
-        "1",
-        f"at {torque[np.argmax(np.abs(miss))]:.3g} N.m, largest between {torque[0]:.3g} and {most:g} N.m",
-    )
-    facts["max_torque"] = (most, "N.m", f"{MAX_OVER_RATED:g} times the rated torque {row.rated:g} N.m")
+    worst = int(np.argmax(np.abs(miss)))
+    text = f"at {torque[worst]:.3g} N.m, largest between {torque[0]:.3g} and {most:g} N.m"
+    facts = _angle_errors(row, result.values, {})
+    facts["angle_error_largest"] = float(miss[worst]), "1", text
     note = (
         f"standard deviations: the angle known to {100 * tight:g} % at T1, T2 and rated torque, "
         f"{100 * LOOSE:g} % elsewhere"
     )
-    return FitResult(
-        result,
-        solution,
-        facts,
-        angle_picture(row, result.values, {}, torque),
-        notes=[note],
-        second_picture=stiffness_picture(row, result.values, {}, most),
-    )
+    pictures = angle_picture(row, result.values, {}, torque), stiffness_picture(row, result.values, {}, most)
+    return FitResult(result, solution, facts | _most(row, most), pictures, notes=[note])
 
 
 def torques(row: Row, most: float) -> Array:
@@ -142,25 +155,18 @@ def made(name: str, printed: Mapping[str, Printed], start: ParameterFile | None 
     Raises ValueError for a number outside its interval.
     """
     file = start or default("harmonic_drive")
-    shared = [label for label, _ in flat_fields(Drive) if label in file.flat]
-    if isinstance(file.values, CatalogueDrive):
-        shared.append("corner")
-    values = {label: file.flat[label] for label in shared} | {k: p.value for k, p in printed.items()}
-    origins = {k: v for k, v in file.origins.items() if k in shared} | {k: p.kind for k, p in printed.items()}
-    sources = {k: v for k, v in file.sources.items() if k in shared}
-    sources |= {k: p.source for k, p in printed.items()}
-    if "corner" not in values:
-        values["corner"], origins["corner"] = CORNER, "user"
-        sources["corner"] = "default choice: the angle at the corners of catalogue drives within 0.4 %"
-    return ParameterFile("harmonic_drive", name, build(CatalogueDrive, values), origins, sources)
+    kept = ["corner"] if isinstance(file.values, CatalogueDrive) else []
+    if not (kept or "corner" in printed):
+        text = "default choice: the angle at the corners of catalogue drives within 0.4 %"
+        printed = {**printed, "corner": Printed(CORNER, "user", text)}
+    return drive.with_law(file, CatalogueDrive, name, printed, kept)
 
 
 def fit_lines(
     row: Row,
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
-    rated_kind: str = "catalogue",
-    ratio: float | None = None,
+    printed: Mapping[str, Printed] | None = None,
     source: str = "catalogue",
 ) -> FitResult:
     """The law of a row's lines; arguments as those of `fit_pair`, but that nothing is free.
@@ -169,31 +175,18 @@ def fit_lines(
     """
     if free:
         raise ValueError("the law catalogue has nothing to fit; --free is allowed with --law hu2023")
-    origin = f"{source} ({row})"
-    rated = origin if rated_kind == "catalogue" else "no rated torque given; T2 of the catalogue"
     most = MAX_OVER_RATED * row.rated
-    printed = {
-        name: Printed(getattr(row, name), "catalogue", origin) for name in ("K1", "K2", "K3", "T1", "T2")
-    }
-    printed["rated_torque"] = Printed(row.rated, rated_kind, rated)
-    printed["max_torque"] = Printed(most, "estimate", f"{MAX_OVER_RATED:g} times rated_torque")
-    if ratio is not None:
-        printed["ratio"] = Printed(ratio, "catalogue", origin)
-    file = made(source, printed, start)
+    largest = Printed(most, "estimate", f"{MAX_OVER_RATED:g} times rated_torque")
+    file = made(source, {**(printed or stated_numbers(row)), "max_torque": largest}, start)
     pair, note = _pair(row, start if start and start.law == "hu2023" else None)
-    facts = _facts(row, file.values, most)
+    facts = _angle_errors(row, file.values, {"max": most}) | _most(row, most)
     also = {}
     if pair is not None:
         also = {PAIR: pair}
         facts |= _pair_facts(row, pair, most)
-    torque = torques(row, most)
+    angle = angle_picture(row, file.values, also, torques(row, most))
     return FitResult(
-        file,
-        NOTHING,
-        facts,
-        angle_picture(row, file.values, also, torque),
-        notes=note,
-        second_picture=stiffness_picture(row, file.values, also, most),
+        file, NOTHING, facts, (angle, stiffness_picture(row, file.values, also, most)), notes=note
     )
 
 
@@ -206,17 +199,21 @@ def _pair(row: Row, start: ParameterFile | None) -> tuple[Drive | None, list[str
     return drive, []
 
 
-def _facts(row: Row, law: CatalogueDrive, most: float) -> dict[str, tuple[float, str, str]]:
-    """How far the law's angle is from the lines."""
+def _angle_errors(row: Row, law: Drive, more: Mapping[str, float]) -> Facts:
+    """How far the law's angle is from the lines at the row's torques, and at more [N.m]."""
     facts = {}
-    for name, T in (("T1", row.T1), ("T2", row.T2), ("rated", row.rated), ("max", most)):
+    for name, T in {"T1": row.T1, "T2": row.T2, "rated": row.rated, **more}.items():
         miss = float(drive.windup(law, np.array(T)) / row.angle(T)) - 1.0
         facts[f"angle_error_{name}"] = (miss, "1", f"law over catalogue - 1 at {T:g} N.m")
+    return facts
+
+
+def _most(row: Row, most: float) -> Facts:
     text = f"{MAX_OVER_RATED:g} times the rated torque {row.rated:g} N.m"
-    return facts | {"max_torque": (most, "N.m", text)}
+    return {"max_torque": (most, "N.m", text)}
 
 
-def _pair_facts(row: Row, pair: Drive, most: float) -> dict[str, tuple[float, str, str]]:
+def _pair_facts(row: Row, pair: Drive, most: float) -> Facts:
     """What the law of the contact pair, which is smooth, makes of the lines."""
     torque = np.linspace(0.0, most, 401)[1:]
     angle = drive.windup(pair, torque) / row.angle(torque) - 1.0

@@ -5,7 +5,7 @@ Catalogue practice is K1 up to T1, K2 up to T2, K3 beyond,
     theta(T) = T1/K1 + (T2 - T1)/K2 + (T - T2)/K3   for T > T2.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,11 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.joints.harmonic_drive.spring import torque_curve
 from jointfmu.parameters import ParameterFile
-from jointfmu.quantity import Array, check, quantity
+from jointfmu.quantity import Array, build, check, flat_fields, quantity
 from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import Sizes, factor, measured
+from jointfmu.quantity.units import Sizes, factor, measured, sizes
 
+from ....catalogue import Printed
 from ....fitting.outcome import Picture
 
 LEVELS: Mapping[str, tuple[str, ...]] = {"hu2023": ("K_FTS0", "drive_scale"), "catalogue": ("K1", "K2", "K3")}
@@ -40,29 +41,35 @@ NEAR = 5.0
 """The same [1] within which another unit explains it."""
 
 
-def check_level(
-    path: Path, ratio: float, units: Mapping[str, str], spec: Mapping[str, Sizes], start: ParameterFile
-) -> None:
+COLUMNS: Mapping[str, Sizes] = {
+    "torque": sizes("N.m", "mN.m", "kN.m"),
+    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
+}
+"""Of a measured torque and wind-up."""
+ARCMIN = COLUMNS["angle"]["arcmin"]
+
+
+def check_level(path: Path, ratio: float, units: Mapping[str, str], start: ParameterFile) -> None:
     """Refuse a measurement whose stiffness is `ratio` times the start's, if that is FAR off.
 
-    units : of the columns torque and angle in the heading;  spec : units that they may have
+    units : of COLUMNS in the heading
     """
     if 1.0 / FAR < ratio < FAR:
         return
     raise Refusal(
         f"{path}: the stiffness is {ratio:.3g} times that of {start.name}, "
         f"allowed are {1.0 / FAR:g} to {FAR:g}: "
-        f"{likely_unit(ratio, units, spec)}; if both are right, start from a drive of its size",
+        f"{likely_unit(ratio, units)}; if both are right, start from a drive of its size",
         "params",
     )
 
 
-def likely_unit(ratio: float, units: Mapping[str, str], spec: Mapping[str, Sizes]) -> str:
+def likely_unit(ratio: float, units: Mapping[str, str]) -> str:
     """Which unit of a column would bring a stiffness that is `ratio` times what it should be to its place."""
     found = []
     for column, power in (("angle", -1.0), ("torque", 1.0)):
-        said = measured(units[column], spec[column])
-        found += [(ratio * (size / said) ** power, column, unit) for unit, size in spec[column].items()]
+        said = measured(units[column], COLUMNS[column])
+        found += [(ratio * (size / said) ** power, column, unit) for unit, size in COLUMNS[column].items()]
     left, column, unit = min(found, key=lambda one: abs(np.log(one[0])))
     if not 1.0 / NEAR < left < NEAR:
         return "check the units of both columns, no usual one explains it"
@@ -101,6 +108,22 @@ def scaled(start: ParameterFile, names: tuple[str, ...], torque: Array, angle: A
     level = {name: start.flat[name] * ratio for name in LEVELS.get(start.law, ()) if name in names}
     whole = level and len(level) == len(LEVELS[start.law])
     return start.with_values(level, "calibration", "start") if whole else start
+
+
+def with_law(
+    start: ParameterFile,
+    law: type[Drive],
+    name: str,
+    printed: Mapping[str, Printed],
+    kept: Sequence[str] = (),
+) -> ParameterFile:
+    """The drive of `start` with another law, whose numbers are printed; `kept` are those of its own law."""
+    shared = [label for label, _ in flat_fields(Drive) if label in start.flat] + [*kept]
+    values = {label: start.flat[label] for label in shared} | {k: p.value for k, p in printed.items()}
+    kinds = {k: v for k, v in start.origins.items() if k in shared} | {k: p.kind for k, p in printed.items()}
+    sources = {k: v for k, v in start.sources.items() if k in shared}
+    sources |= {k: p.source for k, p in printed.items()}
+    return ParameterFile(start.joint, name, build(law, values), kinds, sources)
 
 
 def bounds(start: ParameterFile) -> Mapping[str, tuple[float, float]]:
@@ -183,7 +206,6 @@ class Row:
         )
 
 
-ARCMIN = np.pi / 10800.0
 _GRID = 400
 
 

@@ -21,7 +21,6 @@ from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, default
 from jointfmu.quantity import Array
-from jointfmu.quantity.units import sizes
 
 from ....fitting import memory
 from ....fitting.branches import Loops
@@ -30,14 +29,11 @@ from ....fitting.least_squares import Solution, Unknown, solve
 from ....fitting.measurement import Heads, measured
 from ....fitting.outcome import FitResult, Picture, fitted, undetermined, unknowns
 from . import drive
+from .drive import ARCMIN, COLUMNS
 from .log_reading import Samples
 
-HEADS = Heads(
-    "torque", "angle", sizes("N.m", "mN.m", "kN.m"), sizes("rad", "mrad", "deg", "arcmin", "arcsec")
-)
-_UNITS = {HEADS.force: HEADS.forces, HEADS.motion: HEADS.motions}
+HEADS = Heads("torque", "angle", *COLUMNS.values())
 LOSS, STIFFNESS = FREE = ("hysteresis_loss", "hysteresis_stiffness")
-ARCMIN = HEADS.motions["arcmin"]
 FIRST = {LOSS: ARCMIN, STIFFNESS: 1.0}
 """Where the fit starts if the file has no hysteresis: [rad], and over K_WTS without torque [1]."""
 LOSSES = tuple(ARCMIN * np.geomspace(0.03, 10.0, 7))
@@ -91,7 +87,7 @@ def fit(
     if isinstance(data.data, Loops):
         reach = 0.5 * float(np.ptp(data.data.force))
         wound = float(drive.windup(begun.values, np.array(reach)))
-        drive.check_level(data.path, wound / data.amplitude, data.units, _UNITS, begun)
+        drive.check_level(data.path, wound / data.amplitude, data.units, begun)
     file, rest = _begun(begun, names)
 
     def own(values: Mapping[str, float]) -> HysteresisLaw:
@@ -101,7 +97,6 @@ def fit(
     starts = {LOSS: LOSSES, STIFFNESS: tuple(rest * np.array(STIFFNESSES))}
     solution, scale = memory.search(data, unknowns(file, names, drive.bounds(file)), model, starts)
     result = fitted(file, solution.values, "calibration", data.path.name, data.span)
-    picture, beside = memory.pictures(data, model, solution.values, scale)
     found = law(result.values)
     limit = float(found.friction(np.array([np.inf]))[0])
     described = {"friction_torque": (limit, "N.m", "bound of the friction torque")}
@@ -109,9 +104,8 @@ def fit(
         result,
         solution,
         described | memory.facts(data, solution, found, scale),
-        picture,
+        memory.pictures(data, model, solution.values, scale),
         notes=memory.notes(data, solution),
-        second_picture=beside,
     )
 
 

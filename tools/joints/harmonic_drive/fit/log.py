@@ -6,7 +6,6 @@ The last 30 % of each log, or every third row of a table, are predicted by a fit
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from scipy import stats
@@ -17,9 +16,9 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ....fitting.least_squares import Solution
-from ....fitting.outcome import FitResult, Picture, fitted, undetermined
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, undetermined
 from . import hysteresis
-from .log_friction import FittedLog, Linear, fitted_to, wanted_of, with_rotor
+from .log_friction import FittedLog, LinearTerms, fitted_to, wanted_of, with_rotor
 from .log_reading import ONE_SPEED, Samples, joined, named, read
 
 LEVEL = 0.95
@@ -85,9 +84,8 @@ def fit(
         result,
         found,
         facts(file, samples, whole, wanted),
-        drawn[0],
+        drawn,
         notes=left,
-        more_pictures=drawn[1:],
         intervals=intervals,
     )
 
@@ -176,15 +174,10 @@ def _span(samples: Samples) -> str:
     return text + (f", {known.min():.5g} to {known.max():.5g} K" if known.size else "")
 
 
-Facts = dict[str, tuple[float, str, str]]
-
-
-def facts(
-    file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]
-) -> dict[str, tuple[float, str, str]]:
+def facts(file: ParameterFile, samples: Samples, whole: FittedLog, wanted: Sequence[str]) -> Facts:
     """Residual, what was found beside, and the held-out part beside a constant."""
     ratio = abs(whole.drive.ratio)
-    beside = Linear.of(samples, ratio)
+    beside = LinearTerms.of(samples, ratio)
     units = {"inertia": "kg.m2", "offset": "N.m", "gravity_cos": "N.m", "gravity_sin": "N.m"}
     texts = {"inertia": "of arm and rotor at the joint", "offset": "of the motor's torque"}
     facts = {
@@ -217,7 +210,7 @@ def _constant(early: Samples, late: Samples, ratio: float) -> Array:
     """Torque (n) [N.m] at later samples by what is linear and a constant, fitted to earlier ones."""
     matrices = []
     for samples in (early, late):
-        beside = Linear.of(samples, ratio)
+        beside = LinearTerms.of(samples, ratio)
         matrices.append(
             (np.concatenate([np.ones((samples.dq.size, 1)), beside.matrix], axis=1), beside.known)
         )
@@ -234,15 +227,7 @@ _FRICTION, _MISFIT = "friction at the motor [mN m]", "log - law [mN m]"
 _UNLOADED, _WARMTH = "friction without load [mN m]", "temperature [degrees C]"
 
 
-class FrictionLaw(Protocol):
-    """A fit: friction and torque at samples, friction without load at speeds and a temperature."""
-
-    def torque(self, samples: Samples) -> tuple[Array, Array]: ...
-
-    def unloaded(self, dq: Array, temperature: float) -> Array: ...
-
-
-def pictures(samples: Samples, law: FrictionLaw) -> Iterator[Picture]:
+def pictures(samples: Samples, law: FittedLog) -> Iterator[Picture]:
     """Over the speed of the joint, the time, the temperature, as far as the log has them."""
     braked, torque = law.torque(samples)
     misfit = samples.torque - torque
@@ -259,7 +244,7 @@ def pictures(samples: Samples, law: FrictionLaw) -> Iterator[Picture]:
         yield Picture(warmth, over, rest, (ends, np.ones(2)), (_WARMTH, "friction, log over law", _MISFIT))
 
 
-def _over_speed(samples: Samples, law: FrictionLaw, misfit: Array) -> Picture:
+def _over_speed(samples: Samples, law: FittedLog, misfit: Array) -> Picture:
     """Without load, at the median of the temperatures; held-out rows of a table are marked."""
     fastest = float(np.max(np.abs(samples.dq)))
     speed = np.linspace(-fastest, fastest, 400)

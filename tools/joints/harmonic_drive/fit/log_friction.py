@@ -24,7 +24,7 @@ from .log_reading import Samples
 
 
 @dataclass(frozen=True, slots=True)
-class Linear:
+class LinearTerms:
     """What is linear in unknowns beside the friction.
 
     matrix : (n, k) torque of the motor [N.m] for each unknown
@@ -37,7 +37,7 @@ class Linear:
     names: tuple[str, ...]
 
     @classmethod
-    def of(cls, samples: Samples, ratio: float) -> "Linear":
+    def of(cls, samples: Samples, ratio: float) -> "LinearTerms":
         """Of samples; ratio > 0."""
         columns: dict[str, Array] = {}
         dynamic = samples.dynamic.astype(float)
@@ -128,7 +128,7 @@ class FittedLog:
     def torque(self, samples: Samples) -> tuple[Array, Array]:
         """Friction (n) and all of the motor's torque (n) [N.m] at samples."""
         ratio = abs(self.drive.ratio)
-        beside = Linear.of(samples, ratio)
+        beside = LinearTerms.of(samples, ratio)
         load = beside.load(samples, self.linear, ratio, self.rotor)
         braked = filtered(self.drive, samples, load)
         return braked, braked + beside.matrix @ self.linear + beside.known
@@ -136,7 +136,7 @@ class FittedLog:
     def load(self, samples: Samples) -> tuple[Array, Array]:
         """Load (n) [N.m] of the teeth, and (k, n) its changes by k independent standard deviations."""
         ratio = abs(self.drive.ratio)
-        beside = Linear.of(samples, ratio)
+        beside = LinearTerms.of(samples, ratio)
         found = beside.load(samples, self.linear, ratio, self.rotor)
         variances, ways = np.linalg.eigh(self.covariance)
         ends = self.linear + np.sqrt(np.maximum(variances, 0.0))[:, None] * ways.T
@@ -156,7 +156,8 @@ def wanted_of(
     if free:
         return list(free), []
     left: dict[str, str] = {}
-    load = _first_load(samples, drive, rotor)
+    beside, linear = _straight(samples, drive)
+    load = beside.load(samples, linear[2:], abs(drive.ratio), rotor)  # with constant dry and viscous friction
     if np.max(np.abs(load)) < LOADED * drive.rated_torque:
         text = f"the load stays below {LOADED:g} times the rated torque"
         left |= {LOSS: text, BACK: text}
@@ -177,16 +178,10 @@ def wanted_of(
     return [name for name in FREE if name not in left], notes
 
 
-def _first_load(samples: Samples, drive: Drive, rotor: float) -> Array:
-    """The load (n) [N.m] as friction of constant dry and viscous parts leaves it."""
-    beside, linear = _straight(samples, drive)
-    return beside.load(samples, linear[2:], abs(drive.ratio), rotor)
-
-
-def _straight(samples: Samples, drive: Drive) -> tuple[Linear, Array]:
+def _straight(samples: Samples, drive: Drive) -> tuple[LinearTerms, Array]:
     """Dry and viscous friction and what is linear, by one linear least squares."""
     ratio = abs(drive.ratio)
-    beside = Linear.of(samples, ratio)
+    beside = LinearTerms.of(samples, ratio)
     steady = np.stack([np.sign(samples.dq), ratio * samples.dq], axis=1)
     whole = np.concatenate([steady, beside.matrix], axis=1)
     return beside, np.linalg.lstsq(whole, samples.torque - beside.known)[0]

@@ -63,7 +63,6 @@ class Samples:
     built: NDArray[np.bool_]
 
     def part(self, rows: NDArray[np.bool_] | Places) -> "Samples":
-        """The samples of some rows."""
         return Samples(*(getattr(self, field.name)[rows] for field in fields(self)))
 
 

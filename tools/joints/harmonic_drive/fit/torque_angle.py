@@ -1,33 +1,29 @@
 """A measured torque-angle curve to a law of the drive, or to the table of its mid-line."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.given import TableDrive
 from jointfmu.joints.harmonic_drive.law import PairDrive
 from jointfmu.parameters import ParameterFile, default
-from jointfmu.quantity import Array, build, flat_fields
+from jointfmu.quantity import Array
 from jointfmu.quantity.refusal import Refusal
-from jointfmu.quantity.units import Sizes, sizes
 
 from .... import columns
+from ....catalogue import Printed
 from ....fitting import loop
 from ....fitting.least_squares import NOTHING, Solution, solve
-from ....fitting.outcome import FitResult, Picture, fitted, model, systematic, unknowns
+from ....fitting.outcome import Facts, FitResult, Picture, fitted, model, systematic, unknowns
 from . import drive
+from .drive import ARCMIN, COLUMNS
 
 FREE = ("K_FTS0", "drive_scale", "zero_torque_pressure")
-COLUMNS: Mapping[str, Sizes] = {
-    "torque": sizes("N.m", "mN.m", "kN.m"),
-    "angle": sizes("rad", "mrad", "deg", "arcmin", "arcsec"),
-}
 LEAST = 10
 """Fewest points of a curve."""
-ARCMIN = COLUMNS["angle"]["arcmin"]
 CREATED = 0.01
 """Energy that a loop may create, as noise and drift do, over that of its box [1]."""
 
@@ -46,16 +42,21 @@ def fit(
     start: ParameterFile | None = None,
     free: Sequence[str] | None = None,
     rated_torque: float | None = None,
+    law: str | None = None,
 ) -> FitResult:
     """Fit a file with the columns torque and angle (COLUMNS), in the order of measurement.
 
     The angle may have an offset: it is a further unknown, found and taken off. `rated_torque` [N.m]
     scales the start's torques (max_torque, smoothing) to another size of drive. `free` None: FREE, of lines
-    of a catalogue their stiffnesses.
+    of a catalogue their stiffnesses. The law `table` takes the mid-line as it is, see `fit_table`.
 
     Raises ValueError, one line: the file, its units, its shape; a torque beyond max_torque; a name
     that cannot be fitted. RuntimeError if the fit finds no end.
     """
+    if law == "table":
+        if free:
+            raise ValueError("the law table has nothing to fit; --free is allowed without --law table")
+        return fit_table(path, start, rated_torque)
     record = read(path, start, rated_torque)
     line, file = record.line, record.start
     if file.law == "table":
@@ -93,7 +94,7 @@ def read(path: str | Path, start: ParameterFile | None, rated_torque: float | No
     _check_size(line, file, table)
     size = begun.values.rated_torque / file.values.rated_torque
     usual = float(np.ptp(drive.windup(begun.values, size * line.torque)))
-    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, COLUMNS, begun)
+    drive.check_level(table.path, usual / float(np.ptp(line.angle)), table.units, begun)
     return Record(table.path, line, file)
 
 
@@ -116,7 +117,7 @@ def outcome(
         line=(grid, drive.windup(result.values, grid) / ARCMIN),
         labels=("torque [N.m]", "wind-up [arcmin]", "data - law [arcmin]"),
     )
-    return FitResult(result, solution, _facts(line, shift, rest, noise), picture, notes=_notes(line, rest))
+    return FitResult(result, solution, _facts(line, shift, rest, noise), [picture], notes=_notes(line, rest))
 
 
 def _sized(start: ParameterFile, torque: Array, rated: float | None, path: Path) -> ParameterFile:
@@ -145,7 +146,7 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
         raise Refusal(
             f"{path}: the angle turns {turned:.3g} rad over {span:.3g} N.m, that is "
             f"{at_rated:.3g} rad at the rated torque {rated:g} N.m, allowed are {low:g} to {high:g}: "
-            f"{drive.likely_unit(usual / at_rated, table.units, COLUMNS)}, or state the drive's rated torque",
+            f"{drive.likely_unit(usual / at_rated, table.units)}, or state the drive's rated torque",
             "rated_torque",
         )
     if line.loop_area is not None:
@@ -157,7 +158,7 @@ def _check_size(line: loop.Backbone, start: ParameterFile, table: columns.Column
             )
 
 
-def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> dict[str, tuple[float, str, str]]:
+def _facts(line: loop.Backbone, shift: float, rest: Array, noise: float) -> Facts:
     """What was read off the record beside the parameters."""
     facts = {
         "points": (float(np.sum(line.count)), "1", "samples used"),
@@ -209,15 +210,12 @@ def fit_table(
         torque, angle, shift = points(line)
     except ValueError as error:
         raise ValueError(f"{record.path}: {error}") from None
-    shared = [name for name, _ in flat_fields(Drive) if name in begun.flat]
-    values = {name: begun.flat[name] for name in shared}
-    values |= {"table.torque": tuple(torque.tolist()), "table.angle": tuple(angle.tolist())}
-    origins = {name: text for name, text in begun.origins.items() if name in shared}
-    sources = {name: text for name, text in begun.sources.items() if name in shared}
-    file = ParameterFile(begun.joint, record.path.name, build(TableDrive, values), origins, sources)
-    columns = {name: values[name] for name in ("table.torque", "table.angle")}
-    file = fitted(file, columns, "calibration", record.path.name, span(line))
-    file = replace(file, name=record.path.name)
+    name, values = record.path.name, dict[str, Any]()
+    values["table.torque"] = tuple(torque.tolist())
+    values["table.angle"] = tuple(angle.tolist())
+    table = {label: Printed(column, "calibration", name) for label, column in values.items()}
+    file = drive.with_law(begun, TableDrive, name, table)
+    file = replace(fitted(file, values, "calibration", name, span(line)), name=name)
     rest = line.angle - shift - drive.windup(file.values, line.torque)
     noise = float(np.sqrt(np.average(line.count * rest**2)))
     return outcome(record, file, NOTHING, shift, noise)

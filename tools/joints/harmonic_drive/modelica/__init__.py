@@ -54,16 +54,13 @@ def _hysteresis(spring: HarmonicDriveSpring) -> dict[str, float]:
     }
 
 
-def _of_system(file: ParameterFile) -> dict[str, str]:
-    own = computed(_hysteresis(HarmonicDriveSpring.of(file.values)))
-    return own | {"stateSelect": "StateSelect.default"}
-
-
 COMPONENT = ModelicaComponent(
     name="HarmonicDriveSpring",
     base="HarmonicDrive",
     records=_records,
-    of_system=_of_system,
+    of_system=lambda file: (
+        computed(_hysteresis(HarmonicDriveSpring.of(file.values))) | {"stateSelect": "StateSelect.default"}
+    ),
     special=("hysteresis_loss", "hysteresis_stiffness"),
     texts=lambda drive: {
         "end": f"{drive.end:g} N m",

@@ -1,22 +1,32 @@
-"""The bolted joint at a working point as springs and dashpots between node pairs (Zhao 2018, section 2),
-and its normal force over its separation as a table.
+"""What other solvers are given of a bolted joint: at a working point as springs and dashpots between node
+pairs (Zhao 2018, section 2), its contact, and its normal force over its separation as a table.
 
 The springs are the interface: the bolts are a part of the structure around it.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import KDTree
 
-from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint import KIND
+from jointfmu.joints.bolted_joint.law import Bolted, pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.model import Variable
 from jointfmu.mechanics.footprint.shape import PressureShape
-from jointfmu.quantity import Array
+from jointfmu.quantity import Array, quantity
 
-from ....export.mesh import Mesh
-from ....export.placing import Springs
-from ....export.tables import LoadTable, thinned
+from ...export.exports import Exports, LoadCurve
+from ...export.placing import Springs
+
+if TYPE_CHECKING:
+    from jointfmu.mechanics.curve import Curve
+
+    from ...export.mesh import Mesh
+    from ...export.placing import Placing
+    from ...export.tables import LoadTable
 
 SUMS = ("K_xx", "K_yy", "K_zz", "C_xx", "C_yy", "C_zz")
 FORCE_TOLERANCE = 0.3
@@ -37,7 +47,7 @@ def of_joint(spring: BoltedJointSpring, preload: float, moment: float, first: in
     return _split(spring, labels, preload, moment, None)
 
 
-def on_mesh(spring: BoltedJointSpring, mesh: Mesh, preload: float, moment: float) -> Springs:
+def on_mesh(spring: BoltedJointSpring, mesh: "Mesh", preload: float, moment: float) -> Springs:
     """The joint's pressure on the pairs of a mesh, preload [N] per bolt and moment [N.m].
 
     The pressure shape is interpolated linearly between its nodes (outside of them: the nearest one)
@@ -47,6 +57,9 @@ def on_mesh(spring: BoltedJointSpring, mesh: Mesh, preload: float, moment: float
     Raises ValueError if a pair lies off the joint, if the areas do not add up to A_0 within
     AREA_TOLERANCE, or the interpolated pressures to the joint's force within FORCE_TOLERANCE.
     """
+    from scipy.interpolate import LinearNDInterpolator
+    from scipy.spatial import KDTree
+
     _check_area(spring, mesh)
     shape, place = spring.shape, mesh.position
     share = mesh.area / mesh.area.sum()
@@ -73,7 +86,7 @@ def on_mesh(spring: BoltedJointSpring, mesh: Mesh, preload: float, moment: float
     return _split(there, mesh.nodes, preload, moment, _sums(spring, preload, moment))
 
 
-def under_pressure(spring: BoltedJointSpring, mesh: Mesh) -> Springs:
+def under_pressure(spring: BoltedJointSpring, mesh: "Mesh") -> Springs:
     """The pairs of a mesh under the pressures that its file states.
 
     Raises ValueError as `on_mesh` does for the area.
@@ -88,7 +101,7 @@ def under_pressure(spring: BoltedJointSpring, mesh: Mesh) -> Springs:
     return _split(there, mesh.nodes, mean * spring.joint.A_0 / spring.joint.n_bolts, 0.0, None)
 
 
-def _check_area(spring: BoltedJointSpring, mesh: Mesh) -> None:
+def _check_area(spring: BoltedJointSpring, mesh: "Mesh") -> None:
     area, expected = float(mesh.area.sum()), float(spring.joint.A_0)
     if abs(area / expected - 1.0) > AREA_TOLERANCE:
         raise ValueError(
@@ -147,7 +160,7 @@ _FINE = 4000
 _BLOCK = 100_000
 
 
-def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> LoadTable:
+def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: float) -> "LoadTable":
     """Force [N] that holds the bolted joint together over its separation s_rel_z [m], stiffness [N/m].
 
     The bolts' own stiffness acts beside the interface. From STRONGEST times the force at tightening, pressed
@@ -155,6 +168,8 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     force at tightening where the load is smaller, and to the stiffness there. Raises ValueError if nothing is
     in contact or the hardness is reached.
     """
+    from ...export.tables import LoadTable, thinned
+
     start = spring.within_law(preload, moment)
     low, high = spring.curve.displacement[[0, -1]]
     shape = spring.shape.merged(moment=moment != 0.0)
@@ -177,3 +192,59 @@ def pull_table(spring: BoltedJointSpring, preload: float, moment: float, error: 
     table = thinned(s, pull, stiffness + bolts, error, (held, stiff), keep=(_FINE - 1,))
     last = [2.0 * opening, held + 2.0 * bolts * opening, bolts]
     return LoadTable(np.vstack([table.rows, last]), table.straight, table.monotone)
+
+
+@dataclass(frozen=True, slots=True)
+class Tightening:
+    """Working point."""
+
+    preload: float = quantity("N", "the force of each bolt")
+    moment: float = quantity("N.m", "the bending moment")
+
+    def __str__(self) -> str:
+        return f"preload {self.preload:g} N per bolt, moment {self.moment:g} N.m"
+
+
+def _springs(
+    joint: Bolted, state: Tightening | None, mesh: "Mesh | None", placing: "Placing"
+) -> "tuple[Springs, str]":
+    spring = BoltedJointSpring.of_nodes(joint)
+    if state is None:
+        if mesh is None:
+            raise ValueError("springs need a preload, or node pairs with their pressure")
+        return under_pressure(spring, mesh), f"pressures of {mesh.path.name}"
+    if mesh is None:
+        return of_joint(spring, state.preload, state.moment, placing.first), str(state)
+    there = on_mesh(spring, mesh, state.preload, state.moment)
+    return there, f"{state}, on the nodes of {mesh.path.name}"
+
+
+def _contact(joint: Bolted) -> "tuple[Curve, Sequence[str]]":
+    ratio = float(shear_ratio(joint))
+    more = f"tangential stiffness of the law: {ratio:.9g} times the slope of the table"
+    return BoltedJointSpring.of_nodes(joint).curve, [more]
+
+
+def _pull(joint: Bolted, state: Tightening | None, error: float) -> "LoadTable":
+    if state is None:
+        raise ValueError("the curve of a bolted_joint needs a preload")
+    return pull_table(BoltedJointSpring.of_nodes(joint), state.preload, state.moment, error)
+
+
+_VARIABLES = KIND.variables
+EXPORTS = Exports(
+    state=Tightening,
+    springs=_springs,
+    contact=_contact,
+    curve=LoadCurve(
+        meaning="force that holds the interface together over its separation from the tightened state, "
+        "with the tension of the bolts; without members and damping",
+        columns=(
+            _VARIABLES["s_rel_z"],
+            Variable("pull", "N", "force that holds it together"),
+            _VARIABLES["K_zz"],
+        ),
+        name="force",
+        table=_pull,
+    ),
+)

@@ -1,0 +1,88 @@
+"""The ramp of the gear contact: what must hold of it in the main job, the figure of the report; for many
+samples at once.
+"""
+
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.integrate import quad
+
+from jointfmu.contact.interface import stiffness_curve
+from jointfmu.joints.gear_contact import KIND
+from jointfmu.joints.gear_contact.spring import Contact, GearContact, GearContactSpring
+from jointfmu.parameters import default
+from jointfmu.quantity import Array
+
+from ...batch.approach import columns, held, tabulate
+from ...job.checks import deviation
+from ...ramps.ramp import RampResult
+from ...report.figure import Figure, Panel, Series
+from ...uncertainty.problem import Reduced
+
+
+def _approach(folder: Path, result: RampResult) -> tuple[str, float]:
+    law = default("gear_contact").values
+    assert isinstance(law, GearContact)
+
+    def compliance(f: float) -> float:
+        return float(1.0 / (law.A_0 * stiffness_curve(law, f / law.A_0)[0]))
+
+    c, at = result.columns, [1, 10, 100, 300]
+    approach = [
+        quad(compliance, c["f"][i], c["f"][j], epsabs=0.0, epsrel=1e-9, limit=400)[0] for i, j in pairwise(at)
+    ]
+    return "s_rel against the integral of df/K of the law (scipy, quad)", deviation(
+        np.diff(c["s_rel"][at]), approach
+    )
+
+
+RAMPS = {"GearContact": _approach}
+"""{FMU: (folder, its ramp) -> (what is compared, largest relative deviation)}."""
+
+
+def figures(outcome: Any) -> list[Figure]:
+    """The figure of an outcome of the main job."""
+    c = outcome.ramps["GearContact"].columns
+    load = c["f"] / 1e3
+    panels = [
+        Panel("Stiffness over load", "load [kN]", "K_N [N/um]", [Series("K_N", load, c["K_N"] / 1e6)]),
+        Panel("Approach over load", "load [kN]", "s_rel [um]", [Series("s_rel", load, c["s_rel"] * 1e6)]),
+    ]
+    text = "Up to about a tenth of the nominal area in real contact."
+    return [Figure("Stiffness and approach over load", text, panels, data="GearContact.csv")]
+
+
+def evaluate(
+    parameters: type[Contact], values: Mapping[str, object], loads: Array, factor: Array
+) -> dict[str, Array]:
+    """K_N [N/m] and s_rel [m] (n, m) at the forces factor (n, 1) times loads (m) [N], ascending.
+
+    values : by structured name, numbers or samples (n)
+    """
+    contact = columns(parameters, values, 1)
+    scale = factor / contact.A_0
+    touching = loads > 0.0
+    rows, _ = tabulate(contact, scale * np.min(loads[touching]), scale * loads[-1])
+    logs = held(rows, np.log(loads[touching]), np.log(scale), np.log(contact.hardness))
+    K, s = np.zeros((2, factor.size, loads.size))
+    K[:, touching], s[:, touching] = contact.A_0 * np.exp(logs["k"]), np.exp(logs["s"])
+    return {"K_N": K, "s_rel": s}
+
+
+def exact(joint: Contact, loads: Array) -> dict[str, Array]:
+    """K_N and s_rel (m) of the exported spring at forces (m) [N]; no stiffness without force."""
+    state = GearContactSpring.of(joint).approach(loads)
+    return {name: np.where(loads > 0.0, state[name], 0.0) for name in REDUCED.units}
+
+
+REDUCED = Reduced(
+    load=KIND.variables["f"],
+    outputs=tuple(KIND.variables[name] for name in ("K_N", "s_rel")),
+    to=lambda contact: 3e3,
+    most=lambda contact: contact.hardness * contact.A_0,
+    evaluate=evaluate,
+    exact=exact,
+)
