@@ -139,7 +139,7 @@ def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) ->
     K, per_K, before, after, *force = kept
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 2)()
     out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 2)(*shift)
-    first = library.sliders_stick(SLIDERS, byref(s), way, out, sticks)
+    first = library.sliders_stick(AVX, SLIDERS, byref(s), way, out, sticks)
     limits = np.append(reaches(list(tried), after) > 0.0, True)
     assert first == np.argmax(limits) // 2 * 2
     close(list(sticks), np.sum(tried[:, :first], axis=1), SLIDERS * (1.0 + np.max(np.abs(tried))))

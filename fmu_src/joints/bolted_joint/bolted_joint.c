@@ -868,29 +868,36 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     return shear;
 }
 
-void patch_tangents(Joint *joint, const double *inputs, const double *memory, double step, double (*tangent)[3])
+void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2])
 {
     Kind *kind = &joint->kind;
     double *const moved[2] = {kind->tried[0], kind->tried[1]};
     Shear shears[MOST_PATCHES];
-    if (kind->moved == RESTING) {
-        memcpy(tangent, kind->tangent, (size_t)n_patches() * sizeof *tangent);
+    if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
+        for (int j = 0; j < n_patches(); j++) {
+            const double *t = kind->tangent[j], rows[3][2] = {{t[0], t[1]}, {t[1], t[2]}};
+            memcpy(slope[j], rows, sizeof rows);
+        }
         return;
     }
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 3; d++) {
         kind->work.forces = true;
         for (int j = 0; j < n_patches(); j++) {
+            const Foundation *f = &kind->foundation[j];
             PatchPath path = path_of(joint, j, inputs, memory);
-            path.shift[d] += step;
-            foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
+            Point apart;
+            if (d < 2) {
+                path.shift[d] += step;
+            } else {
+                apart = foundation_point(f, path.to->approach - step, path.to->full);
+                path.to = &apart;
+            }
+            foundation_move(f, &path, moved, &kind->work, &shears[j]);
         }
         foundations_end(&kind->work);
-        for (int j = 0; j < n_patches(); j++) {
-            const double *now = shears[j].traction, *before = kind->traction[j];
-            tangent[j][2 * d] = (now[d] - before[d]) / step;
-            const double other = 0.5 * (now[1 - d] - before[1 - d]) / step;
-            tangent[j][1] = d == 0 ? other : tangent[j][1] + other;
-        }
+        for (int j = 0; j < n_patches(); j++)
+            for (int t = 0; t < 2; t++)
+                slope[j][d][t] = (shears[j].traction[t] - kind->traction[j][t]) / step;
     }
 }
 

@@ -14,10 +14,10 @@ enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX =
 /* Preload, moment, shift along the surface, and the end of the memory. */
 enum { FOLLOW_KEY = 5 + 3 + MODES + 3 * MOST_PATCHES };
 
-/* Amplitudes per motion, and what decides them; the stiffness by normal motions. */
+/* Amplitudes per motion, and what decides them. */
 typedef struct {
     bool known;
-    double key[FOLLOW_KEY], follow[6][MODES], by_normal[WIDE][WIDE];
+    double key[FOLLOW_KEY], follow[6][MODES];
 } Followed;
 
 typedef struct {

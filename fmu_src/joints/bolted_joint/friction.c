@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "vectors.h"
+
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
 typedef struct {
     double K, slope, limit[2];
@@ -309,18 +311,26 @@ static inline void add_pair(Abreast *abreast, const double *x, const double *y, 
     abreast->n += 2;
 }
 
-/* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void move_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
-                        double *const moved[2], Work *work, Shear *shear)
+/* Sliders whose stiffness stays, up to the first at its limit, which is returned: `stick` is the sum of the stiffness
+ * of those before each second one. */
+static int stick_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
+                        double *const moved[2], const Work *work, Shear *shear)
 {
     SliderSum sum = {.loss = 0.0};
     const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
-                            : sliders_stick(n, s, path->shift, moved, sum.force);
+                            : sliders_stick(work->abreast.fours, n, s, path->shift, moved, sum.force);
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
     add(&sum, shear);
-    if (along || first == n)
+    return along ? n : first;
+}
+
+/* Those from there on. */
+static void slip_steady(int first, int n, const Sliders *s, const PatchPath *path, double *const moved[2], Work *work,
+                        Shear *shear)
+{
+    if (first == n)
         return;
     double way[3];
     direction(path->shift, NULL, way);
@@ -330,17 +340,25 @@ static void move_steady(int n, const Sliders *s, const double *stick, const Patc
                  s->before + k, s->after + k, s->K[k], s->per_K[k]);
 }
 
+WITHIN void grow_limits(int first, int n, const double *restrict limit, const double *restrict K, double to,
+                   double *restrict found)
+{
+    for (int k = first; k < n; k++)
+        found[k] = limit_at(limit[k], K[k], to);
+}
+COMPILED_TWICE(grow_limits, (int first, int n, const double *limit, const double *K, double to, double *found),
+               (first, n, limit, K, to, found))
+
 /* The first `n` sliders, of ranges all in contact. */
 static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
                       Work *work, Shear *shear)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    for (int k = 0; k < n; k++) {
-        work->before[k] = limit_at(f->limit[k], f->K[k], from);
-        work->after[k] = limit_at(f->limit[k], f->K[k], to);
-    }
     const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
-    move_steady(n, &s, f->stick, path, along, moved, work, shear);
+    (work->abreast.fours ? grow_limits_fours : grow_limits_any)(0, n, f->limit, f->K, to, work->after);
+    const int first = stick_steady(n, &s, f->stick, path, along, moved, work, shear);
+    grow_limits_any(first, n, f->limit, f->K, from, work->before);
+    slip_steady(first, n, &s, path, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
@@ -351,7 +369,7 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
     const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i}};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    move_steady(2, &s, &stick, path, along, to, work, shear);
+    slip_steady(stick_steady(2, &s, &stick, path, along, to, work, shear), 2, &s, path, to, work, shear);
 }
 
 /* Arguments of `carrying`. */

@@ -69,18 +69,18 @@ static inline void scale(double by, const double *restrict row, double *restrict
 }
 
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
-static void press_all(Kind *kind, int size, double (*by_normal)[WIDE])
+static void press_all(Kind *kind, int size)
 {
     const bool fours = kind->work.abreast.fours;
-    memset(by_normal, 0, WIDE * sizeof *by_normal);
+    memset(kind->by_normal, 0, sizeof kind->by_normal);
     for (int i = 0; i < (int)data.n_nodes; i++)
         scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
     dense_products(fours, (int)data.n_nodes, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->opening, size, by_normal);
+                   (const double(*)[WIDE])kind->opening, size, false, kind->by_normal);
     for (int b = 0; b < (int)data.n_bolts; b++)
         scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
     dense_products(fours, (int)data.n_bolts, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->stretch, size, by_normal);
+                   (const double(*)[WIDE])kind->stretch, size, false, kind->by_normal);
 }
 
 /* The same by shear in `by_shear`, of patches with their tangents. */
@@ -95,17 +95,17 @@ static void shear_all(Kind *kind, int size, const double (*tangent)[3])
                 kind->weighted[j][k] = weight * (t[0] * kind->patch[0][j][k] + t[1] * kind->patch[1][j][k]);
         }
         dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
-                       (const double(*)[WIDE])kind->patch[d], size, kind->by_shear);
+                       (const double(*)[WIDE])kind->patch[d], size, false, kind->by_shear);
     }
 }
 
 /* The derivative by the amplitudes from that by normal motions and, where it is given, by shear. */
-static void by_amplitudes(Kind *kind, const double (*normal)[WIDE], const double (*shear)[WIDE])
+static void by_amplitudes(Kind *kind, const double (*shear)[WIDE])
 {
     double(*a)[MODES] = kind->factors;
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++)
-            a[k][r] = a[r][k] = normal[r][k] + (shear ? shear[r][k] : 0.0);
+            a[k][r] = a[r][k] = kind->by_normal[r][k] + (shear ? shear[r][k] : 0.0);
         a[r][r] += kind->bodies[r];
     }
 }
@@ -158,61 +158,71 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
-/* The derivative of the residual by what the memory says, factored; in a further motion where that after it is given. */
+/* The derivative of the residual by the amplitudes, factored; from that of the tractions by the shifts of the patches
+ * along x and y and how far they come apart. */
+static void by_residual(Kind *kind, const double (*slope)[3][2])
+{
+    const int n = (int)data.n_patches;
+    press_all(kind, MODES);
+    memset(kind->by_shear, 0, sizeof kind->by_shear);
+    for (int d = 0; d < 2; d++) {
+        for (int j = 0; j < n; j++) {
+            const double weight = kind->area * data.patches[j][SHARE];
+            const double by[3] = {weight * slope[j][0][d], weight * slope[j][1][d], weight * slope[j][2][d]};
+            for (int k = 0; k < MODES; k++)
+                kind->weighted[j][k] =
+                    by[0] * kind->patch[0][j][k] + by[1] * kind->patch[1][j][k] + by[2] * kind->patch[2][j][k];
+        }
+        dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
+                       (const double(*)[WIDE])kind->patch[d], MODES, true, kind->by_shear);
+    }
+    by_amplitudes(kind, NULL);
+    for (int k = 0; k < MODES; k++)
+        for (int r = 0; r < MODES; r++)
+            kind->factors[k][r] += kind->by_shear[k][r];
+    dense_factor(kind->work.abreast.fours, kind->factors, kind->pivots);
+}
+
+/* The same by what the memory says; in a further motion where that after it is given. */
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
-    double(*a)[MODES] = kind->factors;
     static const double units[3][3] = {{0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}};
-    press_all(kind, MODES, kind->by_normal);
-    by_amplitudes(kind, (const double(*)[WIDE])kind->by_normal, NULL);
-    for (int j = 0; j < (int)data.n_patches; j++) {
-        const double weight = kind->area * data.patches[j][SHARE];
-        double rows[2][MODES] = {{0.0}};
+    double slope[MOST_PATCHES][3][2];
+    for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 3; c++) {
-            const Shear slope = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
-            for (int d = 0; d < 2; d++)
-                add_scaled(weight * slope.traction[d], kind->patch[c][j], rows[d]);
+            const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
+            memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
         }
-        for (int d = 0; d < 2; d++)
-            for (int k = 0; k < MODES; k++)
-                add_scaled(rows[d][k], kind->patch[d][j], a[k]);
-    }
-    dense_factor(kind->factors, kind->pivots);
+    by_residual(kind, (const double(*)[3][2])slope);
 }
 
-/* The same at the last trial less how the normal force acts on friction, by differences; the points are taken as
- * they were before the way, where a way begins. */
-static void jacobian(Joint *joint, const double *inputs, const double *memory, bool begins)
+/* The same at the last trial, by differences. */
+static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    double tangent[MOST_PATCHES][3], deepest = 0.0;
+    double slope[MOST_PATCHES][3][2], deepest = 0.0;
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_tangents(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, tangent);
-    if (!begins)
-        press_all(kind, MODES, kind->by_normal);
-    shear_all(kind, MODES, (const double(*)[3])tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])(begins ? kind->begin.by_normal : kind->by_normal),
-                  (const double(*)[WIDE])kind->by_shear);
-    dense_factor(kind->factors, kind->pivots);
+    patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
+    by_residual(kind, (const double(*)[3][2])slope);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
 static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
 {
-    press_all(kind, WIDE, followed->by_normal);
+    press_all(kind, WIDE);
     shear_all(kind, WIDE, tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])followed->by_normal, (const double(*)[WIDE])kind->by_shear);
-    dense_factor(kind->factors, kind->pivots);
+    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
+    dense_factor(kind->work.abreast.fours, kind->factors, kind->pivots);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
-        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : followed->by_normal[at];
+        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, z);
+        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, z);
         kind->whole[d] = h[at] + dense_dot(h, z);
     }
     followed->known = true;
@@ -328,12 +338,8 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        const bool far = n >= NEWTON_STEPS / 2; /* tangents do not get there */
-        if (far || !(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
-            if (far)
-                exact(joint, at, way->memory, NULL);
-            else
-                jacobian(joint, at, way->memory, n == 0 && part == 1.0);
+        if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+            jacobian(joint, at, way->memory);
             kept = 0;
         }
         const bool last = part == 1.0 && left < WHOLE_CHORD * before && left * left < before * least;
@@ -341,7 +347,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
             step[k] = -r[k];
-        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, step);
+        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, step);
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
@@ -498,7 +504,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int b = 0; b < (int)data.n_bolts; b++)
         add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
     exact(joint, inputs, memory, after);
-    dense_solve((const double(*)[MODES])kind->factors, kind->pivots, r);
+    dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
     whole_deform(r, kind, kind->opened_rate, kind->patch_opened_rate, kind->bent_rate);
 }

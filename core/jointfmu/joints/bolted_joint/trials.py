@@ -81,11 +81,6 @@ class Trials:
     before: Memory
     told: str
 
-    @property
-    def difference(self) -> float:
-        """Step [m] of differences that stand for derivatives."""
-        return DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
-
     def place(self, part: float) -> Place:
         """Where it is after a part [1] of the way."""
         if part == 1.0:
@@ -115,18 +110,19 @@ class Trials:
         shift = along(spring.patches, rigid - before["rigid"]) + bent + further
         return spring.way(before, approach, shift, rigid)
 
-    def tangents(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction by shifts along x and y and by coming apart.
+
+        By differences, at the end of the way.
+        """
         approach = self.approaches(place, amplitude)[1]
-        step = self.difference
+        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
         def traction(further: Array) -> Array:
-            return self._way(place, amplitude, approach, further).moved.traction
+            return self._way(place, amplitude, approach - further[2], further[:2]).moved.traction
 
-        here = traction(np.zeros(2))
-        along_x, along_y = ((traction(d) - here) / step for d in step * np.eye(2))
-        xy = 0.5 * (along_x[:, 1] + along_y[:, 0])
-        return np.stack([along_x[:, 0], xy, along_y[:, 1]], axis=1)
+        here = traction(np.zeros(3))
+        return np.stack([(traction(motion) - here) / step for motion in step * np.eye(3)], axis=-1)
 
 
 def told(preload: float, moment: float, place: Place) -> str:

@@ -171,10 +171,11 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 /* In a plane */
 
-static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
-                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
-                                   double *restrict x, double *restrict y, double *restrict reaches)
+WITHIN void stick_each(int n, const double *restrict K, const double *restrict limit, const double *restrict q_x,
+                       const double *restrict q_y, const double *restrict shift, double *restrict x,
+                       double *restrict y, double *restrict reaches)
 {
+    const double u = shift[0], v = shift[1];
     for (int k = 0; k < n; k++) {
         const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, limit[k]};
         double b[3];
@@ -184,11 +185,16 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
         reaches[k] = b[2];
     }
 }
+COMPILED_TWICE(stick_each,
+               (int n, const double *K, const double *limit, const double *q_x, const double *q_y,
+                const double *shift, double *x, double *y, double *reaches),
+               (n, K, limit, q_x, q_y, shift, x, y, reaches))
 
-int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2])
+int sliders_stick(bool fours, int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2])
 {
     double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0};
-    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
+    (fours ? stick_each_fours : stick_each_any)(n, s->K, s->after, s->force[0], s->force[1], shift, moved[0], moved[1],
+                                                reaches);
     const int first = first_at_limit(reaches, n);
     for (int k = 0; k < first; k += 2)
         for (int l = 0; l < 2; l++) {

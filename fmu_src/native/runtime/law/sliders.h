@@ -34,8 +34,9 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
                        SliderSum *rate);
 
 /* In a plane the forces of those that stick, up to the first at its limit, which is returned, and their sum; beyond
- * it those that they would have. */
-int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2]);
+ * it those that they would have; on a processor with vectors_of_four or any other. */
+int sliders_stick(bool fours, int n, const Sliders *s, const double shift[2], double *const moved[2],
+                  double force[2]);
 
 /* Sliders that may slip, side by side whosever they are: arguments and results of `slide_plane`. */
 enum { ABREAST = 64, N_SLIDER = 11, SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };
