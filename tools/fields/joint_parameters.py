@@ -8,7 +8,6 @@ import numpy as np
 from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.shape import (
     BOLT_MEANS,
-    PATCH,
     PATCHES,
     PressureShape,
     as_lists,
@@ -69,7 +68,7 @@ def with_field(
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     begin = reduction.shape if shape.share.size > MOST else None
     patches = friction_patches(shape, PATCHES, begin)
-    lists = as_lists(reduction.shape) | as_lists(patches, PATCH)
+    lists = as_lists(reduction.shape) | as_lists(patches)
     given: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     given["A_0"] = float(np.sum(field.area))
     if bolts is not None:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...mechanics.jenkins import Moved
+from ...mechanics.sliders import together
 from ...quantity import Array
-from .contact import Place, along
-from .memory import Memory
+from .contact import Place, shifts
+from .memory import RESTING, Memory, resting
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
@@ -30,6 +31,11 @@ class Way:
     approach: Array
     moved: Moved
     stick: Array
+
+    @property
+    def traction(self) -> Array:
+        """(m, 3) [Pa] against the shift, see `together`."""
+        return resting(self.moved.force) if self.state == RESTING else together(self.moved.force)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +65,11 @@ class Trial:
     def traction(self) -> Array:
         """(m, 2) [Pa] against the shift."""
         assert self.way
-        return self.way.moved.traction
+        return self.way.traction[:, :2]
 
     @property
     def tangent(self) -> Array:
-        """(m, 3) [Pa/m] xx, xy, yy."""
+        """(m, 6) [Pa/m], see `Moved`."""
         assert self.way
         return self.way.moved.tangent
 
@@ -106,8 +112,8 @@ class Trials:
     def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
         spring, before = self.spring, self.before
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        bent = spring.shift(amplitude - before["amplitude"][: amplitude.size])
-        shift = along(spring.patches, rigid - before["rigid"]) + bent + further
+        shift = shifts(spring.patches, rigid - before["rigid"])
+        shift[:, :2] += spring.shift(amplitude - before["amplitude"][: amplitude.size]) + further
         return spring.way(before, approach, shift, rigid)
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
@@ -119,7 +125,7 @@ class Trials:
         step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
         def traction(further: Array) -> Array:
-            return self._way(place, amplitude, approach - further[2], further[:2]).moved.traction
+            return self._way(place, amplitude, approach - further[2], further[:2]).traction[:, :2]
 
         here = traction(np.zeros(3))
         return np.stack([(traction(motion) - here) / step for motion in step * np.eye(3)], axis=-1)

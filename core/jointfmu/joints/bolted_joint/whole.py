@@ -18,10 +18,10 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.footprint.shape import FrictionPatches, PressureShape
 from ...quantity import Array
 from .bodies import Modes
-from .contact import Place, along
+from .contact import Place, shifts
 
 CLOSE = 1e-13
 """Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""
@@ -54,7 +54,7 @@ class Forces(Protocol):
 
     @property
     def tangent(self) -> Array:
-        """(m, 3) [Pa/m] xx, xy, yy."""
+        """(m, 6) [Pa/m], see `Moved`."""
 
 
 T = TypeVar("T", bound=Forces, covariant=True)
@@ -81,7 +81,7 @@ class Trials(Protocol[T]):
 class Whole:
     """A contact between bodies that give way, and its bolts.
 
-    points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (2, m, 3) shift by s_x, s_y, theta_z
+    points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (3, m, 3) `shifts` by s_x, s_y, theta_z
     seats   : (b, 3) stretch by s_z, theta_x, theta_y
     weight  : (n) [m2] area of the points, `patch` (m) of the patches
     bolt    : [N/m] stiffness of each bolt
@@ -97,14 +97,14 @@ class Whole:
 
     @classmethod
     def of(
-        cls, modes: Modes, shape: PressureShape, patches: PressureShape, area: float, bolt: float
+        cls, modes: Modes, shape: PressureShape, patches: FrictionPatches, area: float, bolt: float
     ) -> "Whole":
         """Of points and patches of a nominal area [m2]."""
         turns = np.eye(3)
         return cls(
             modes,
             _apart(shape.position),
-            np.stack([along(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
+            np.stack([shifts(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
             _apart(modes.bolts),
             area * shape.share,
             area * patches.share,
@@ -132,7 +132,7 @@ class Whole:
     def slope(self, stiffness: Array, tangent: Array) -> Array:
         """H (6 + k, 6 + k) [N/m] over s_x, s_y, s_z, theta_x, theta_y, theta_z and the amplitudes.
 
-        stiffness (n) [Pa/m] of the points, tangent (m, 3) [Pa/m] of the patches.
+        stiffness (n) [Pa/m] of the points, tangent (m, 6) [Pa/m] of the patches.
         """
         modes, normal, shear = self.modes, slice(2, 5), (0, 1, 5)
         size = 6 + len(modes.stiffness)
@@ -146,9 +146,11 @@ class Whole:
         points = motions(self.points, normal, modes.opening)
         seats = motions(self.seats, normal, modes.stretch)
         u, v = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(2))
-        xx, xy, yy = (self.patch * tangent.T)[:, :, None]
+        w = motions(self.patches[2], shear, 0.0 * modes.patch[0])
+        xx, xy, yy, xt, yt, tt = (self.patch * tangent.T)[:, :, None]
         H += points.T @ ((self.weight * stiffness)[:, None] * points) + self.bolt * seats.T @ seats
-        H += u.T @ (xx * u + xy * v) + v.T @ (xy * u + yy * v)
+        H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
+        H += w.T @ (xt * u + yt * v + tt * w)
         H[6:, 6:] += np.diag(modes.stiffness)
         return H
 
