@@ -10,7 +10,7 @@ from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
-from jointfmu.mechanics.sliders import offsets
+from jointfmu.mechanics.sliders import SLIDERS, offsets, turning
 from jointfmu.quantity import flatten
 
 from ...joint_parts.data import DataPart, DataTable
@@ -40,7 +40,8 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
     patches = spring.patches(joint.pattern)
     return {
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": DataTable(_rows(patches), PATCHES),
+        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
+        "turning": DataTable(turning(SLIDERS), 2),
         "offsets": DataTable(offsets(patches.equal)[:, None], PATCHES),
         **_bodies(joint),
     }

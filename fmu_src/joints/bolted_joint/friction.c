@@ -207,11 +207,32 @@ static const Point *middle_of(const Foundation *f, const PatchPath *path, Middle
 
 static void add(const SliderSum *sum, Shear *shear)
 {
-    for (int d = 0; d < 2; d++)
-        shear->traction[d] += sum->force[d];
     for (int d = 0; d < 3; d++)
+        shear->traction[d] += sum->force[d];
+    for (int d = 0; d < 6; d++)
         shear->tangent[d] += sum->tangent[d];
     shear->loss += sum->loss;
+}
+
+enum { ONE_FORCE, ONE_TANGENT = 3, ONE_LOSS = 9, N_ONE };
+
+/* What one slider gives by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
+static inline void of_one(const double *slid, double e_x, double e_y, double *one)
+{
+    const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
+    const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
+    const double all[N_ONE] = {x, y, x * e_x + y * e_y, xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y, slid[5]};
+    memcpy(one, all, sizeof all);
+}
+
+static inline void add_one(const double *slid, double e_x, double e_y, Shear *shear)
+{
+    double one[N_ONE];
+    of_one(slid, e_x, e_y, one);
+    SliderSum sum = {.loss = one[ONE_LOSS]};
+    memcpy(sum.force, one + ONE_FORCE, sizeof sum.force);
+    memcpy(sum.tangent, one + ONE_TANGENT, sizeof sum.tangent);
+    add(&sum, shear);
 }
 
 /* Sliders of all patches that may slip */
@@ -227,7 +248,7 @@ static inline double changing(const Run *run, int k, const double (*found)[ABREA
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = run->force[d][k];
         x[C_MOVED + d] = found[SLID_FORCE + d][at];
-        x[C_SHIFT + d] = run->shift[d];
+        x[C_SHIFT + d] = run->shift[d] + run->shift[2] * run->turning[d][k];
         x[C_MIDDLE + d] = run->across ? found[SLID_FORCE + d][at + 2] : 0.0;
     }
     x[C_FIRST] = run->K[0];
@@ -237,7 +258,7 @@ static inline double changing(const Run *run, int k, const double (*found)[ABREA
     return loss;
 }
 
-/* Of forces alone. */
+/* Of forces alone, without that around the centre. */
 static inline void end_forces(const Run *run, const double (*found)[ABREAST])
 {
     double x[2] = {0.0}, y[2] = {0.0};
@@ -252,22 +273,27 @@ static inline void end_forces(const Run *run, const double (*found)[ABREAST])
 
 static inline void end_run(const Run *run, double (*found)[ABREAST])
 {
-    double sum[N_SLID - 1][2] = {{0.0}};
+    double sum[N_ONE][2] = {{0.0}};
     if (run->changes)
         for (int k = 0; k < 2; k++)
             found[SLID_LOSS][run->at + k] = changing(run, k, (const double(*)[ABREAST])found);
     for (int k = 0; k < run->n; k += 2)
         for (int l = 0; l < 2; l++) {
+            double slid[N_SLID - 1], one[N_ONE];
             for (int r = 0; r < N_SLID - 1; r++)
-                sum[r][l] += found[r][run->at + k + l];
-            run->moved[0][k + l] = found[SLID_FORCE][run->at + k + l];
-            run->moved[1][k + l] = found[SLID_FORCE + 1][run->at + k + l];
+                slid[r] = found[r][run->at + k + l];
+            of_one(slid, run->turning[0][k + l], run->turning[1][k + l], one);
+            for (int r = 0; r < N_ONE; r++)
+                sum[r][l] += one[r];
+            run->moved[0][k + l] = slid[0];
+            run->moved[1][k + l] = slid[1];
         }
-    const double *t = sum[SLID_TANGENT];
-    add(&(SliderSum){{sum[0][0] + sum[0][1], sum[1][0] + sum[1][1]},
-                     {t[0] + t[1], t[2] + t[3], t[4] + t[5]},
-                     sum[SLID_LOSS][0] + sum[SLID_LOSS][1]},
-        run->shear);
+    Shear *shear = run->shear;
+    for (int d = 0; d < 3; d++)
+        shear->traction[d] += sum[ONE_FORCE + d][0] + sum[ONE_FORCE + d][1];
+    for (int d = 0; d < 6; d++)
+        shear->tangent[d] += sum[ONE_TANGENT + d][0] + sum[ONE_TANGENT + d][1];
+    shear->loss += sum[ONE_LOSS][0] + sum[ONE_LOSS][1];
 }
 
 /* All runs so far. */
@@ -288,23 +314,35 @@ void foundations_end(Work *work)
 }
 
 /* A run of up to so many sliders. */
-static Run *begin_run(Work *work, int most, int k, double *const moved[2], Shear *shear)
+static Run *begin_run(Work *work, int most, int k, double *const moved[2], const double *const turning[2], Shear *shear)
 {
     if (work->abreast.n + most > ABREAST || work->n == ABREAST / 2)
         end_runs(work);
     Run *run = &work->runs[work->n++];
-    *run = (Run){.at = work->abreast.n, .n = most, .moved = {moved[0] + k, moved[1] + k}, .shear = shear};
+    *run = (Run){.at = work->abreast.n,
+                 .n = most,
+                 .moved = {moved[0] + k, moved[1] + k},
+                 .turning = {turning[0] + k, turning[1] + k},
+                 .shear = shear};
     return run;
 }
 
-/* The next pair of sliders of a run. */
+/* Shift of a slider on a path. */
+static inline double shift_of(const double *const turning[2], int k, const double shift[3], int d)
+{
+    return shift[d] + shift[2] * turning[d][k];
+}
+
+/* The next pair of sliders of a run, the part `part` of its path. */
 static inline void add_pair(Abreast *abreast, const double *x, const double *y, const double *tried_x,
-                            const double *tried_y, const double unit[2], double carried, const double *before,
-                            const double *after, double K, double per_K)
+                            const double *tried_y, const double *const turning[2], int k, const double shift[3],
+                            double part, double carries, const double *before, const double *after, double K,
+                            double per_K)
 {
     for (int l = 0; l < 2; l++) {
-        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], unit[0], unit[1],
-                                       carried, before[l], after[l],   K,          per_K};
+        const double u = part * shift_of(turning, k + l, shift, 0), v = part * shift_of(turning, k + l, shift, 1);
+        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], u,    v,
+                                       carries, before[l], after[l],   K,          per_K};
         for (int r = 0; r < N_SLIDER; r++)
             abreast->given[r][abreast->n + l] = given[r];
     }
@@ -322,6 +360,7 @@ static int stick_steady(int n, const Sliders *s, const double *stick, const Patc
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
+    sum.tangent[5] += K;
     add(&sum, shear);
     return along ? n : first;
 }
@@ -332,12 +371,10 @@ static void slip_steady(int first, int n, const Sliders *s, const PatchPath *pat
 {
     if (first == n)
         return;
-    double way[3];
-    direction(path->shift, NULL, way);
-    begin_run(work, n - first, first, moved, shear);
+    begin_run(work, n - first, first, moved, s->turning, shear);
     for (int k = first; k < n; k += 2)
-        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, way, s->K[k] * way[2],
-                 s->before + k, s->after + k, s->K[k], s->per_K[k]);
+        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, s->turning, k,
+                 path->shift, 1.0, s->K[k], s->before + k, s->after + k, s->K[k], s->per_K[k]);
 }
 
 WITHIN void grow_limits(int first, int n, const double *restrict limit, const double *restrict K, double to,
@@ -354,7 +391,8 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, bool al
                       Work *work, Shear *shear)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
+    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]},
+                       {f->turning[0], f->turning[1]}};
     (work->abreast.fours ? grow_limits_fours : grow_limits_any)(0, n, f->limit, f->K, to, work->after);
     const int first = stick_steady(n, &s, f->stick, path, along, moved, work, shear);
     grow_limits_any(first, n, f->limit, f->K, from, work->before);
@@ -367,7 +405,8 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i}};
+    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i},
+                       {f->turning[0] + 2 * i, f->turning[1] + 2 * i}};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
     slip_steady(stick_steady(2, &s, &stick, path, along, to, work, shear), 2, &s, path, to, work, shear);
 }
@@ -408,14 +447,12 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
     const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
     const int n = across ? 2 : 1;
-    double x[N_CARRYING], gained[2], way[3];
-    direction(path->shift, NULL, way);
-    Run *run = begin_run(work, 2 * n, 2 * i, moved, shear);
+    double x[N_CARRYING], gained[2];
+    Run *run = begin_run(work, 2 * n, 2 * i, moved, f->turning, shear);
     run->n = 2;
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 2; d++)
         run->force[d] = path->force[d] + 2 * i;
-        run->shift[d] = path->shift[d];
-    }
+    memcpy(run->shift, path->shift, sizeof run->shift);
     run->across = across;
     run->K[0] = start.K;
     run->K[1] = ends[0].K;
@@ -427,9 +464,10 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
         double tried[2][2];
         for (int d = 0; d < 2; d++)
             for (int l = 0; l < 2; l++)
-                tried[d][l] = gained[0] * run->force[d][l] + gained[1] * (part * path->shift[d]);
-        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], way, gained[1] * (part * way[2]),
-                 start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
+                tried[d][l] = gained[0] * run->force[d][l] +
+                              gained[1] * (part * shift_of(run->turning, l, path->shift, d));
+        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], run->turning, 0, path->shift, part,
+                 gained[1], start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
     }
 }
 
@@ -461,21 +499,21 @@ double foundation_stick(const Foundation *f, const Point *at)
 enum { R_FALLS, R_BEFORE, R_AFTER, N_REST }; /* arguments of `rest_rule` */
 
 /* As `Foundation.rested` of the package. */
-bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[2], Shear *shear)
+bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[3], Shear *shear)
 {
     const Point *from = path->from, *to = path->to;
     const double x[N_REST] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to)};
     const double most = SLIDER_HARDLY * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
     double rule[2], *t = shear->traction;
     rest_rule(x, NULL, rule);
-    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER]}};
-    for (int d = 0; d < 2; d++)
+    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER], 0.0, 0.0, x[R_AFTER]}};
+    for (int d = 0; d < 3; d++)
         t[d] = rule[0] * before[d] + rule[1] * path->shift[d];
-    return sqrt(t[0] * t[0] + t[1] * t[1]) <= most;
+    return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
 }
 
-void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[2], const double rates[2],
-                           const double shift[2], Shear *rate)
+void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[3], const double rates[2],
+                           const double shift[3], Shear *rate)
 {
     const Point *from = path->from, *to = path->to;
     const double first = f->ratio * from->y[2] * rates[0], last = f->ratio * to->y[2] * rates[1];
@@ -484,18 +522,19 @@ void foundation_rest_rates(const Foundation *f, const PatchPath *path, const dou
     double rule[2], slopes[2];
     rest_rule(x, NULL, rule);
     rest_rule_seed(x, NULL, slopes);
-    *rate = (Shear){.tangent = {last, 0.0, last}};
-    for (int d = 0; d < 2; d++)
+    *rate = (Shear){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
+    for (int d = 0; d < 3; d++)
         rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * shift[d];
 }
 
-void foundation_spread(const Foundation *f, const Point *at, const double traction[2], double *const force[2])
+void foundation_spread(const Foundation *f, const Point *at, const double traction[3], double *const force[2])
 {
     const double stick = foundation_stick(f, at);
     for (int i = 0; i < at->touched; i++) {
         const double part = stick > 0.0 ? pair_at(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
-            force[d][2 * i] = force[d][2 * i + 1] = part * traction[d];
+            for (int k = 2 * i; k < 2 * i + 2; k++)
+                force[d][k] = part * shift_of(f->turning, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
         memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
@@ -505,10 +544,10 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
 
 /* Rates of a path: of the approaches at its ends, of the shift. */
 typedef struct {
-    double ends[2], shift[2];
+    double ends[2], shift[3];
 } PathRate;
 
-/* Arguments of `both_on_way`, and a seed of those that change. */
+/* Arguments of `range_on_way`, and a seed of those that change. */
 typedef struct {
     double approach, load, stiffness, slope;
 } OnCurve;
@@ -517,10 +556,10 @@ typedef struct {
     double shift[2];
 } RangePath;
 typedef struct {
-    double small[2], across, flags[3][2], ratio, mu, low[3], high[3], force[2][2];
+    double small[2], across, late, flags[3][2], ratio, mu, low[3], high[3], force[2];
     RangePath path, rate;
 } RangeOn;
-_Static_assert(sizeof(RangeOn) == (21 + 2 * 14) * sizeof(double), "arguments of both_on_way_seed");
+_Static_assert(sizeof(RangeOn) == (20 + 2 * 14) * sizeof(double), "arguments of range_on_way_seed");
 
 /* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
 static inline double least_limit(const PatchPath *path)
@@ -547,24 +586,32 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
         if (k > 0)
             x.small[k - 1] = small_on(f, i, from, p);
     }
-    for (int d = 0; d < 2; d++) {
-        x.force[0][d] = path->force[d][2 * i];
-        x.force[1][d] = path->force[d][2 * i + 1];
-        x.path.shift[d] = path->shift[d];
-        x.rate.shift[d] = rates->shift[d];
-    }
     memcpy(x.low, (double[]){f->height[i], f->load[i], f->stiffness[i]}, sizeof x.low);
     memcpy(x.high, (double[]){f->height[i + 1], f->load[i + 1], f->stiffness[i + 1]}, sizeof x.high);
-    both_on_way_seed((const double *)&x, NULL, y);
-    add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, y[5]}, rate);
+    for (int late = 0; late < 2; late++) {
+        const int k = 2 * i + late;
+        x.late = late;
+        for (int d = 0; d < 2; d++) {
+            x.force[d] = path->force[d][k];
+            x.path.shift[d] = shift_of(f->turning, k, path->shift, d);
+            x.rate.shift[d] = shift_of(f->turning, k, rates->shift, d);
+        }
+        range_on_way_seed((const double *)&x, NULL, y);
+        add_one(y, f->turning[0][k], f->turning[1][k], rate);
+    }
 }
 
 /* Rates of the first `n` sliders, of ranges all in contact. */
 static void full_rates(const Foundation *f, int n, const PatchPath *path, const PathRate *rates, Shear *rate)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const double *u = path->shift, *du = rates->shift, least = least_limit(path);
+    const double least = least_limit(path);
     for (int k = 0; k < n; k++) {
+        double u[2], du[2];
+        for (int d = 0; d < 2; d++) {
+            u[d] = shift_of(f->turning, k, path->shift, d);
+            du[d] = shift_of(f->turning, k, rates->shift, d);
+        }
         const double K = f->K[k], before = least * limit_at(f->limit[k], K, from), after = least * limit_at(f->limit[k], K, to);
         const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
                             0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
@@ -573,19 +620,19 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
         stick_plane(trial, NULL, y);
         if (y[2] > 0.0)
             slide_plane_seed(x, NULL, dy);
-        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[SLID_LOSS]}, rate);
+        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
-                      const double shift[2], Shear *rate)
+                      const double shift[3], Shear *rate)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
     const double approach = fmax(path->from->approach, path->to->approach);
-    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1]}};
+    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1], shift[2]}};
     int touched = touched_on(path);
     Middle middle = {.known = false};
-    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0;
+    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
     if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
         touched++;
     *rate = (Shear){.loss = 0.0};

@@ -6,6 +6,7 @@ from jointfmu.joints.bolted_joint import bodies, contact, law, memory, outputs, 
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
+from jointfmu.quantity import where
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import APPROACH, Definitions, NativePart
@@ -88,43 +89,49 @@ def _loops(g: Graph) -> None:
 
 
 def _range(g: Graph) -> None:
-    """Both sliders of a range that is not all in contact along a path, for their derivative."""
-    small, flags, forces = symbols("small", 2), symbols("flag", 6), symbols("q", 4)
-    (across, ratio, friction), low, high = symbols("x", 3), symbols("l", 3), symbols("h", 3)
+    """A slider of a range that is not all in contact along a path, for its derivative."""
+    small, flags, force = symbols("small", 2), symbols("flag", 6), symbols("q", 2)
+    (across, late, ratio, friction), low, high = symbols("x", 4), symbols("l", 3), symbols("h", 3)
     points, shift = [symbols(name, 4) for name in "abc"], symbols("u", 2)
     pairs = [
         sliders.of_range(point, low, high, flags[2 * k], flags[2 * k + 1], ratio, friction)
         for k, point in enumerate(points)
     ]
     limits = [sum(one.limit for one in pair) for pair in pairs]
-    ways = [
-        sliders.Way(
-            [part * u for u in shift],
-            points[k][0] - points[0][0],
-            0.5 * ratio / friction * (limits[k] - limits[0]),
-            small[k - 1],
+    start, *ends = (
+        sliders.Carried(early.stiffness, where(late, after.limit, early.limit), early.slope)
+        for early, after in pairs
+    )
+    slid, half = (
+        sliders.on_way(
+            force,
+            start,
+            end,
+            sliders.Way(
+                [part * u for u in shift],
+                points[k][0] - points[0][0],
+                0.5 * ratio / friction * (limits[k] - limits[0]),
+                small[k - 1],
+            ),
         )
-        for k, part in enumerate((1.0, 0.5), start=1)
-    ]
-    total = [ca.SX(0.0)] * 6
-    for late, force in enumerate((forces[:2], forces[2:])):
-        start, *ends = (pair[late] for pair in pairs)
-        slid, half = (sliders.on_way(force, start, end, way) for end, way in zip(ends, ways, strict=True))
-        loss = sliders.heat(force, shift, start, ends[0], slid, across, half.force)
-        total = [a + b for a, b in zip(total, [*slid.force, *slid.tangent, loss], strict=True)]
-    fixed = [*small, across, *flags, ratio, friction, *low, *high, *forces]
+        for k, (part, end) in enumerate(zip((1.0, 0.5), ends, strict=True), start=1)
+    )
+    loss = sliders.heat(force, shift, start, ends[0], slid, across, half.force)
+    fixed = [*small, across, late, *flags, ratio, friction, *low, *high, *force]
     doc = (
-        "whether small to the end and to the middle, whether across; whether touching, full at each point; "
-        "K_T/K_N, mu; height, load, stiffness at both ends of the range; forces of the early and the late "
-        "slider; approach, load, stiffness, its slope at start, end and middle; shift -> force, tangent, loss"
+        "whether small to the end and to the middle, whether across, whether the late slider; whether "
+        "touching, full at each point; K_T/K_N, mu; height, load, stiffness at both ends of the range; force "
+        "of the slider; approach, load, stiffness, its slope at start, end and middle; shift -> force, "
+        "tangent, loss"
     )
     moving = [number for point in points for number in point]
-    g.add_with_seed("both_on_way", doc, [*fixed, *moving, *shift], total, fixed=len(fixed))
+    y = [*slid.force, *slid.tangent, loss]
+    g.add_with_seed("range_on_way", doc, [*fixed, *moving, *shift], y, fixed=len(fixed))
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
+    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
     names = ("SMALL", "SHORT", "HARDLY", "SPREAD", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT

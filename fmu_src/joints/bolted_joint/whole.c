@@ -84,7 +84,7 @@ static void press_all(Kind *kind, int size)
 }
 
 /* The same by shear in `by_shear`, of patches with their tangents. */
-static void shear_all(Kind *kind, int size, const double (*tangent)[3])
+static void shear_all(Kind *kind, int size, const double (*tangent)[6])
 {
     const int n = (int)data.n_patches;
     memset(kind->by_shear, 0, sizeof kind->by_shear);
@@ -96,6 +96,19 @@ static void shear_all(Kind *kind, int size, const double (*tangent)[3])
         }
         dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
                        (const double(*)[WIDE])kind->patch[d], size, false, kind->by_shear);
+    }
+}
+
+/* Add to the turn's row of it what the sliders have around the centres of their patches. */
+static void turn_all(Kind *kind, const double (*tangent)[6])
+{
+    double *row = kind->by_shear[MODES + 2];
+    for (int j = 0; j < (int)data.n_patches; j++) {
+        const double *t = tangent[j], radius = data.patches[j][RADIUS];
+        const double weight = kind->area * data.patches[j][SHARE] * radius, *x = kind->patch[0][j], *y = kind->patch[1][j];
+        for (int k = 0; k < WIDE; k++)
+            row[k] += weight * (t[3] * x[k] + t[4] * y[k]);
+        row[MODES + 2] += weight * (t[3] * x[MODES + 2] + t[4] * y[MODES + 2] + radius * t[5]);
     }
 }
 
@@ -187,7 +200,7 @@ static void by_residual(Kind *kind, const double (*slope)[3][2])
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
-    static const double units[3][3] = {{0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}};
+    static const double units[3][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {-1.0}};
     double slope[MOST_PATCHES][3][2];
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 3; c++) {
@@ -209,10 +222,11 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory)
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
-static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
+static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
     press_all(kind, WIDE);
     shear_all(kind, WIDE, tangent);
+    turn_all(kind, tangent);
     by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
     dense_factor(kind->work.abreast.fours, kind->factors, kind->pivots);
     for (int d = 0; d < MOTIONS; d++) {
@@ -257,7 +271,7 @@ static void deform(Kind *kind, const double *amplitude)
 static bool predict(Joint *joint, const double *inputs, const double *memory, double *rate, Text *why)
 {
     Kind *kind = &joint->kind;
-    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][3];
+    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][6];
     key_of(inputs, memory, key);
     place(inputs, memory, 0.0, first);
     if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
@@ -270,10 +284,10 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
         for (int j = 0; j < (int)data.n_patches && (int)memory[AT_STATE] == UNKNOWN; j++) {
             const Point at = foundation_point(&kind->foundation[j], kind->patch_start[j], 0);
             const double stick = foundation_stick(&kind->foundation[j], &at);
-            tangent[j][0] = tangent[j][2] = stick;
-            tangent[j][1] = 0.0;
+            const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
+            memcpy(tangent[j], sticks, sizeof sticks);
         }
-        follow(kind, (const double(*)[3])tangent, &kind->begin);
+        follow(kind, (const double(*)[6])tangent, &kind->begin);
         memcpy(kind->begin.key, key, sizeof key);
     }
     memset(rate, 0, MODES * sizeof *rate);
@@ -427,9 +441,9 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
     for (int d = 0; d < 3; d++)
         after[AT_APART + d] = inputs[motion_of(2 + d)];
     memcpy(after + AT_AMPLITUDE, trial, sizeof trial);
-    memset(after + AT_TANGENT, 0, 3 * MOST_PATCHES * sizeof *after);
-    memcpy(after + AT_TANGENT, kind->tangent, 3 * (size_t)data.n_patches * sizeof *after);
-    follow(kind, (const double(*)[3])kind->tangent, &kind->end);
+    memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
+    memcpy(after + AT_TANGENT, kind->tangent, 6 * (size_t)data.n_patches * sizeof *after);
+    follow(kind, (const double(*)[6])kind->tangent, &kind->end);
     key_of(inputs, after, kind->end.key);
     return true;
 }
@@ -528,7 +542,9 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
             const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
             const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
             const double *t = kind->shears[j].tangent;
-            sum += data.patches[j][SHARE] * (t[0] * u * u + 2.0 * t[1] * u * v + t[2] * v * v);
+            const double w = d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0;
+            sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
+                                             2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
         }
         rates[d] = kind->area * sum;
     }

@@ -26,7 +26,7 @@ bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
-                 double rate, const double shift[2]);
+                 double rate, const double shift[3]);
 /* By differences: tractions of the last trial over the shifts along x and y at its end and how far patches come apart. */
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2]);
 

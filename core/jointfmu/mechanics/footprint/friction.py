@@ -52,10 +52,10 @@ DIFFERENCE = 1e-6
 """Change of a place or pressure over its size [1] by which derivatives are found."""
 AT_ONCE = 2000
 """Nodes whose friction is summed up at once [1]."""
-POLES, POLE_WEIGHT, BESIDE = 120, 5.0, 0.06
+POLES, POLE_WEIGHT, BESIDE = 200, 8.0, 0.06
 """Poles of gross slip, the weight of their forces beside those of a case [1], and how far they are beside a
 pressed node at most, over the radius of gyration [1]."""
-ON_CIRCLE = 6
+ON_CIRCLE = 4
 """Places on the circle of a patch that stand for its sliders."""
 LESS_SPREAD = 0.9
 """Radius of this circle over that of gyration of the friction that a patch stands for [1]: a disc pulls about
