@@ -80,6 +80,27 @@ void dense_solve(bool fours, const double (*a)[MODES], const int *pivots, double
     (fours ? solve_fours : solve_any)(a, pivots, x);
 }
 
+WITHIN void combine(int n, int sets, const double (*by)[3], const double *const *rows, double (*restrict result)[WIDE])
+{
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < WIDE; k += L) {
+            double sum[L] = {0.0};
+            for (int s = 0; s < sets; s++)
+                for (int l = 0; l < L; l++)
+                    sum[l] += by[i][s] * rows[s][WIDE * i + k + l];
+            for (int l = 0; l < L; l++)
+                result[i][k + l] = sum[l];
+        }
+}
+COMPILED_TWICE(combine,
+               (int n, int sets, const double (*by)[3], const double *const *rows, double (*restrict result)[WIDE]),
+               (n, sets, by, rows, result))
+
+void dense_combine(bool fours, int n, int sets, const double (*by)[3], const double *const *rows, double (*result)[WIDE])
+{
+    (fours ? combine_fours : combine_any)(n, sets, by, rows, result);
+}
+
 /* Sums go in lanes, which a processor adds side by side. */
 
 WITHIN void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "vectors.h"
 
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
@@ -501,6 +502,8 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
         memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
+COLD
+
 /* Rates */
 
 /* Rates of a path: of the approaches at its ends, of the shift. */
@@ -635,3 +638,5 @@ void foundation_rates(const Foundation *f, const PatchPath *path, const double r
     for (int i = full; i < touched; i++)
         range_rate(f, i, path, &moves, &middle.at, rate);
 }
+
+END_OF_COLD
