@@ -19,7 +19,7 @@ static inline int motion_of(int d)
 /* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
 
 /* A row of what modes move, as numbers, and three motions beside them. */
-static void lay_row(const double *digits, double first, double second, double third, double *row)
+static void lay_row(const int16_t *digits, double first, double second, double third, double *row)
 {
     const double motions[LANES_OF_MODES] = {first, second, third};
     for (int k = 0; k < (int)data.n_modes; k++)
@@ -65,44 +65,37 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
     }
 }
 
-/* Add to a matrix, up to a size, the products of rows with themselves, weighted. */
-static void add_squares(Kind *kind, int n, const double (*by)[3], const double (*rows)[WIDE], int size,
-                        double (*h)[WIDE])
-{
-    const bool fours = kind->work.abreast.fours;
-    dense_combine(fours, n, 1, by, (const double *const[]){rows[0]}, kind->weighted);
-    dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows, size, false, h);
-}
-
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
 static void press_all(Kind *kind, int size)
 {
+    const bool fours = kind->work.abreast.fours;
+    const int sizes[2] = {(int)data.n_nodes, (int)data.n_bolts};
+    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
     memset(kind->by_normal, 0, sizeof kind->by_normal);
-    for (int i = 0; i < (int)data.n_nodes; i++)
-        kind->by[i][0] = kind->area * data.nodes[i][SHARE] * kind->k[i];
-    add_squares(kind, (int)data.n_nodes, (const double(*)[3])kind->by, (const double(*)[WIDE])kind->opening, size,
-                kind->by_normal);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        kind->by[b][0] = kind->bolt;
-    add_squares(kind, (int)data.n_bolts, (const double(*)[3])kind->by, (const double(*)[WIDE])kind->stretch, size,
-                kind->by_normal);
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < sizes[s]; i++)
+            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt;
+        dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
+        dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
+    }
 }
 
-/* The same by shear in `by_shear`, of patches with their slopes by shifts along x and y and, in all of the matrix, by
- * coming apart. */
+/* The same by shear in `by_shear`, of patches with their slopes by shifts along x and y and by coming apart; all of
+ * the matrix or its lower half. */
 static void shear_all(Kind *kind, int size, bool all, const double (*slope)[3][2])
 {
     const bool fours = kind->work.abreast.fours;
     const int n = (int)data.n_patches;
-    const double *const rows[3] = {kind->patch[0][0], kind->patch[1][0], kind->patch[2][0]};
+    const double(*const rows[3])[WIDE] = {(const double(*)[WIDE])kind->patch[0], (const double(*)[WIDE])kind->patch[1],
+                                          (const double(*)[WIDE])kind->patch[2]};
+    double by[MOST_PATCHES][3];
     memset(kind->by_shear, 0, sizeof kind->by_shear);
     for (int d = 0; d < 2; d++) {
         for (int j = 0; j < n; j++)
             for (int s = 0; s < 3; s++)
-                kind->by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
-        dense_combine(fours, n, all ? 3 : 2, (const double(*)[3])kind->by, rows, kind->weighted);
-        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, (const double(*)[WIDE])kind->patch[d], size, all,
-                       kind->by_shear);
+                by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
+        dense_combine(fours, n, (const double(*)[3])by, rows[0], rows[1], rows[2], kind->weighted);
+        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
     }
 }
 
