@@ -109,7 +109,8 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
 
     common = ("-target", TARGETS[platform], *_OPTIONS)
     # The system's libraries alone: zig would compile its own runtime at first, of which nothing is linked.
-    own = ("-nostdlib", "-lc")
+    # No tables for exceptions, which pass through no C; Windows' ABI asks for them.
+    own = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")
     if platform.endswith("-linux"):
         return (*common, *own, "-Wl,--gc-sections", "-lm")
     if platform.endswith("-darwin"):

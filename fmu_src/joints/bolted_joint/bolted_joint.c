@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "tabulated.h"
 #include "vectors.h"
 
@@ -806,6 +807,8 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
+COLD
+
 /* Derivatives */
 
 /* Rates of the sums over the nodes; of the patches' come from the sliders with memory. */
@@ -898,10 +901,8 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
     double *const moved[2] = {kind->tried[0], kind->tried[1]};
     Shear shears[MOST_PATCHES];
     if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
-        for (int j = 0; j < n_patches(); j++) {
-            const double *t = kind->tangent[j], rows[3][2] = {{t[0], t[1]}, {t[1], t[2]}};
-            memcpy(slope[j], rows, sizeof rows);
-        }
+        for (int j = 0; j < n_patches(); j++)
+            slopes_of(kind->tangent[j], slope[j]);
         return;
     }
     for (int d = 0; d < 3; d++) {
@@ -990,3 +991,5 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     if (ELASTIC)
         whole_bolt_rates(joint, inputs, seed, result + N_INTERFACE_OUTPUTS);
 }
+
+END_OF_COLD

@@ -48,7 +48,7 @@ def _tables(joint: Bolted) -> Mapping[str, DataTable]:
 
 
 def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
-    """Modes in rows of all of them, as whole numbers: their bytes are mostly zero, and packed small.
+    """Modes in rows of all of them, as whole numbers of two bytes.
 
     A joint with rigid sides has room for one row.
     """
@@ -64,7 +64,7 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
-        **{name: DataTable(_padded(rows), room[name]) for name, rows in moved.items()},
+        **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
     }
 
 

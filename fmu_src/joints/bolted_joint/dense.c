@@ -80,6 +80,38 @@ void dense_solve(bool fours, const double (*a)[MODES], const int *pivots, double
     (fours ? solve_fours : solve_any)(a, pivots, x);
 }
 
+WITHIN void weigh(int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE])
+{
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < WIDE; k++)
+            result[i][k] = by[i] * row[i][k];
+}
+COMPILED_TWICE(weigh, (int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE]),
+               (n, by, row, result))
+
+void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE])
+{
+    (fours ? weigh_fours : weigh_any)(n, by, row, result);
+}
+
+WITHIN void combine(int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                    const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
+{
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < WIDE; k++)
+            result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * z[i][k];
+}
+COMPILED_TWICE(combine,
+               (int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
+               (n, by, x, y, z, result))
+
+void dense_combine(bool fours, int n, const double (*by)[3], const double (*x)[WIDE], const double (*y)[WIDE],
+                   const double (*z)[WIDE], double (*result)[WIDE])
+{
+    (fours ? combine_fours : combine_any)(n, by, x, y, z, result);
+}
+
 /* Sums go in lanes, which a processor adds side by side. */
 
 WITHIN void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,

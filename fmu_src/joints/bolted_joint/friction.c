@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "vectors.h"
 
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
@@ -540,6 +541,8 @@ void foundation_spread(const Foundation *f, const Point *at, const double tracti
         memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
+COLD
+
 /* Rates */
 
 /* Rates of a path: of the approaches at its ends, of the shift. */
@@ -547,57 +550,100 @@ typedef struct {
     double ends[2], shift[3];
 } PathRate;
 
-/* Arguments of `range_on_way`, and a seed of those that change. */
-typedef struct {
-    double approach, load, stiffness, slope;
-} OnCurve;
-typedef struct {
-    OnCurve at[3]; /* start, end and middle */
-    double shift[2];
-} RangePath;
-typedef struct {
-    double small[2], across, late, flags[3][2], ratio, mu, low[3], high[3], force[2];
-    RangePath path, rate;
-} RangeOn;
-_Static_assert(sizeof(RangeOn) == (20 + 2 * 14) * sizeof(double), "arguments of range_on_way_seed");
-
 /* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
 static inline double least_limit(const PatchPath *path)
 {
     return path->onward ? 1.0 - 2.0 * SLIDER_AT_LIMIT : 1.0;
 }
 
+/* What sliders have, with its rates: a range at a point, or one of its sliders after a way. */
+typedef struct {
+    Pair at, rate;
+} Pairs;
+typedef struct {
+    double at[N_SLID], rate[N_SLID];
+} Slid;
+
+/* The approach of the point and the stiffness' slope change with rates. */
+static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, double bend)
+{
+    Pairs pairs = {.at = pair_at(f, i, p)};
+    double x[2 * N_TOUCHING - X_LOAD];
+    if (p->approach < f->height[i])
+        return pairs;
+    if (i < p->full) {
+        for (int late = 0; late < 2; late++)
+            pairs.rate.limit[late] = f->mu / f->ratio * pairs.at.K * rate;
+        return pairs;
+    }
+    entered(f, i, p, x);
+    const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
+    memcpy(x + N_TOUCHING, rates, sizeof rates);
+    touching_seed(x, NULL, &pairs.rate.K);
+    return pairs;
+}
+
+/* One slider of a range on a part of a path; `gained` and its rate are of `carrying`. */
+static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate *rates, double part, int k, const Pairs *start, const Pairs *end,
+                     const double gained[2], const double gains[2])
+{
+    const int late = k % 2;
+    const double least = least_limit(path), K = end->at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
+    const double u = part * shift_of(f->turning, k, path->shift, 0), v = part * shift_of(f->turning, k, path->shift, 1);
+    const double du = part * shift_of(f->turning, k, rates->shift, 0), dv = part * shift_of(f->turning, k, rates->shift, 1);
+    const double before = least * start->at.limit[late], after = least * end->at.limit[late];
+    const double x[] = {path->force[0][k], path->force[1][k], gained[0], gained[1], u, v, before, after, K, per_K,
+                        gains[0], gains[1], du, dv,
+                        least * start->rate.limit[late], least * end->rate.limit[late], end->rate.K, -end->rate.K * per_K * per_K};
+    const double trial[] = {x[0], x[1], x[2], x[3], u, v, after};
+    double tried[3];
+    Slid slid;
+    stick_plane(trial, NULL, tried);
+    const double given[N_SLIDER] = {x[0], x[1], tried[0], tried[1], u, v, x[3], before, after, K, per_K};
+    slide_plane(given, NULL, slid.at);
+    slide_plane_seed(x, NULL, slid.rate);
+    return slid;
+}
+
 /* Rates of the sliders of a range that is not all in contact. */
 static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *middle,
                        Shear *rate)
 {
-    const Point *from = path->from, *to = path->to, *points[] = {from, to, middle};
-    const double parts[] = {0.0, 1.0, 0.5}, change = to->approach - from->approach;
+    const Point *from = path->from, *to = path->to, *points[2] = {to, middle};
+    const double change = to->approach - from->approach, turned = rates->ends[1] - rates->ends[0];
     const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
-    RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu * least_limit(path)};
-    double y[6];
-    for (int k = 0; k < 3; k++) {
-        const Point *p = points[k];
-        const double r = rates->ends[0] + parts[k] * (rates->ends[1] - rates->ends[0]);
-        x.flags[k][0] = p->approach >= f->height[i];
-        x.flags[k][1] = i < p->full;
-        x.path.at[k] = (OnCurve){p->approach, p->y[0], p->y[1], p->y[2]};
-        x.rate.at[k] = (OnCurve){r, p->y[1] * r, p->y[2] * r, bend * r};
-        if (k > 0)
-            x.small[k - 1] = small_on(f, i, from, p);
+    const bool across = !stays(i, from, to);
+    const Pairs start = pairs_at(f, i, from, rates->ends[0], bend);
+    Pairs ends[2];
+    Slid slid[2][2] = {{{{0.0}, {0.0}}}};
+    for (int at = 0; at < (across ? 2 : 1); at++) {
+        const double part = at > 0 ? 0.5 : 1.0;
+        double x[2 * N_CARRYING - 1], gained[2], gains[2];
+        ends[at] = pairs_at(f, i, points[at], rates->ends[0] + part * turned, bend);
+        gain(f, i, path, &start.at, &ends[at].at, points[at], x);
+        ends_of(f, &start.rate, &ends[at].rate, part * turned, x + N_CARRYING - 1);
+        carrying(x, NULL, gained);
+        carrying_seed(x, NULL, gains);
+        for (int late = 0; late < 2; late++)
+            slid[at][late] = slide_on(f, path, rates, part, 2 * i + late, &start, &ends[at], gained, gains);
     }
-    memcpy(x.low, (double[]){f->height[i], f->load[i], f->stiffness[i]}, sizeof x.low);
-    memcpy(x.high, (double[]){f->height[i + 1], f->load[i + 1], f->stiffness[i + 1]}, sizeof x.high);
     for (int late = 0; late < 2; late++) {
+        const Slid *end = &slid[0][late], *half = &slid[1][late];
+        const double *moved = end->at;
         const int k = 2 * i + late;
-        x.late = late;
+        double shift[2], rated[2], dy[N_SLID];
+        memcpy(dy, end->rate, sizeof dy);
         for (int d = 0; d < 2; d++) {
-            x.force[d] = path->force[d][k];
-            x.path.shift[d] = shift_of(f->turning, k, path->shift, d);
-            x.rate.shift[d] = shift_of(f->turning, k, rates->shift, d);
+            shift[d] = shift_of(f->turning, k, path->shift, d);
+            rated[d] = shift_of(f->turning, k, rates->shift, d);
         }
-        range_on_way_seed((const double *)&x, NULL, y);
-        add_one(y, f->turning[0][k], f->turning[1][k], rate);
+        const double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
+                            shift[0], shift[1], start.at.K, ends[0].at.K, moved[SLID_SLIP], half->at[0], half->at[1],
+                            dy[0], dy[1], rated[0], rated[1], start.rate.K, ends[0].rate.K, dy[SLID_SLIP],
+                            half->rate[0], half->rate[1]};
+        if (start.at.K != ends[0].at.K)
+            changing_loss_seed(x, NULL, &dy[SLID_LOSS]);
+        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
@@ -642,3 +688,5 @@ void foundation_rates(const Foundation *f, const PatchPath *path, const double r
     for (int i = full; i < touched; i++)
         range_rate(f, i, path, &moves, &middle.at, rate);
 }
+
+END_OF_COLD

@@ -6,7 +6,6 @@ from jointfmu.joints.bolted_joint import bodies, contact, law, memory, outputs, 
 from jointfmu.joints.model import Model
 from jointfmu.mechanics import jenkins, sliders
 from jointfmu.mechanics.footprint.shape import PATCHES
-from jointfmu.quantity import where
 
 from ...joint_parts.graph import Graph, add_closing, law_functions, symbols
 from ...joint_parts.native import APPROACH, Definitions, NativePart
@@ -56,18 +55,17 @@ def _shear(g: Graph) -> None:
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.touching(load, stiffness, bend, width, ratio, friction)
-    g.add("touching", f"K_T/K_N, mu, {doc}", x, y)
+    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, fixed=2)
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.carrying((first, slope), (last, then), change, rise, small)
-    g.add("carrying", doc, [small, first, slope, last, then, change, rise], kept)
+    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, fixed=1)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
     loss = sliders.changing_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add("changing_loss", doc, x, [loss])
-    _range(g)
+    g.add_with_seed("changing_loss", doc, x, [loss], fixed=3)
 
 
 def _rest(g: Graph) -> None:
@@ -86,47 +84,6 @@ def _loops(g: Graph) -> None:
     doc = "mu, K_T/K_N, amplitude, three derivatives of the load now and there -> loss, energy"
     y = sliders.short_loop(mu, ratio, size, now, then)
     g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, fixed=2)
-
-
-def _range(g: Graph) -> None:
-    """A slider of a range that is not all in contact along a path, for its derivative."""
-    small, flags, force = symbols("small", 2), symbols("flag", 6), symbols("q", 2)
-    (across, late, ratio, friction), low, high = symbols("x", 4), symbols("l", 3), symbols("h", 3)
-    points, shift = [symbols(name, 4) for name in "abc"], symbols("u", 2)
-    pairs = [
-        sliders.of_range(point, low, high, flags[2 * k], flags[2 * k + 1], ratio, friction)
-        for k, point in enumerate(points)
-    ]
-    limits = [sum(one.limit for one in pair) for pair in pairs]
-    start, *ends = (
-        sliders.Carried(early.stiffness, where(late, after.limit, early.limit), early.slope)
-        for early, after in pairs
-    )
-    slid, half = (
-        sliders.on_way(
-            force,
-            start,
-            end,
-            sliders.Way(
-                [part * u for u in shift],
-                points[k][0] - points[0][0],
-                0.5 * ratio / friction * (limits[k] - limits[0]),
-                small[k - 1],
-            ),
-        )
-        for k, (part, end) in enumerate(zip((1.0, 0.5), ends, strict=True), start=1)
-    )
-    loss = sliders.heat(force, shift, start, ends[0], slid, across, half.force)
-    fixed = [*small, across, late, *flags, ratio, friction, *low, *high, *force]
-    doc = (
-        "whether small to the end and to the middle, whether across, whether the late slider; whether "
-        "touching, full at each point; K_T/K_N, mu; height, load, stiffness at both ends of the range; force "
-        "of the slider; approach, load, stiffness, its slope at start, end and middle; shift -> force, "
-        "tangent, loss"
-    )
-    moving = [number for point in points for number in point]
-    y = [*slid.force, *slid.tangent, loss]
-    g.add_with_seed("range_on_way", doc, [*fixed, *moving, *shift], y, fixed=len(fixed))
 
 
 def _definitions(g: Graph, model: Model) -> Definitions:

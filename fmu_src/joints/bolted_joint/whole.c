@@ -3,7 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "tabulated.h"
+
+COLD
 
 enum { MOTIONS = 6 };
 
@@ -16,7 +19,7 @@ static inline int motion_of(int d)
 /* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
 
 /* A row of what modes move, as numbers, and three motions beside them. */
-static void lay_row(const double *digits, double first, double second, double third, double *row)
+static void lay_row(const int16_t *digits, double first, double second, double third, double *row)
 {
     const double motions[LANES_OF_MODES] = {first, second, third};
     for (int k = 0; k < (int)data.n_modes; k++)
@@ -62,40 +65,37 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
     }
 }
 
-static inline void scale(double by, const double *restrict row, double *restrict scaled)
-{
-    for (int k = 0; k < WIDE; k++)
-        scaled[k] = by * row[k];
-}
-
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
 static void press_all(Kind *kind, int size)
 {
     const bool fours = kind->work.abreast.fours;
+    const int sizes[2] = {(int)data.n_nodes, (int)data.n_bolts};
+    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
     memset(kind->by_normal, 0, sizeof kind->by_normal);
-    for (int i = 0; i < (int)data.n_nodes; i++)
-        scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
-    dense_products(fours, (int)data.n_nodes, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->opening, size, false, kind->by_normal);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
-    dense_products(fours, (int)data.n_bolts, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->stretch, size, false, kind->by_normal);
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < sizes[s]; i++)
+            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt;
+        dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
+        dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
+    }
 }
 
-/* The same by shear in `by_shear`, of patches with their tangents. */
-static void shear_all(Kind *kind, int size, const double (*tangent)[6])
+/* The same by shear in `by_shear`, of patches with their slopes by shifts along x and y and by coming apart; all of
+ * the matrix or its lower half. */
+static void shear_all(Kind *kind, int size, bool all, const double (*slope)[3][2])
 {
+    const bool fours = kind->work.abreast.fours;
     const int n = (int)data.n_patches;
+    const double(*const rows[3])[WIDE] = {(const double(*)[WIDE])kind->patch[0], (const double(*)[WIDE])kind->patch[1],
+                                          (const double(*)[WIDE])kind->patch[2]};
+    double by[MOST_PATCHES][3];
     memset(kind->by_shear, 0, sizeof kind->by_shear);
     for (int d = 0; d < 2; d++) {
-        for (int j = 0; j < n; j++) {
-            const double weight = kind->area * data.patches[j][SHARE], *t = tangent[j] + d;
-            for (int k = 0; k < WIDE; k++)
-                kind->weighted[j][k] = weight * (t[0] * kind->patch[0][j][k] + t[1] * kind->patch[1][j][k]);
-        }
-        dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
-                       (const double(*)[WIDE])kind->patch[d], size, false, kind->by_shear);
+        for (int j = 0; j < n; j++)
+            for (int s = 0; s < 3; s++)
+                by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
+        dense_combine(fours, n, (const double(*)[3])by, rows[0], rows[1], rows[2], kind->weighted);
+        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
     }
 }
 
@@ -112,15 +112,22 @@ static void turn_all(Kind *kind, const double (*tangent)[6])
     }
 }
 
-/* The derivative by the amplitudes from that by normal motions and, where it is given, by shear. */
-static void by_amplitudes(Kind *kind, const double (*shear)[WIDE])
+/* The derivative of the residual by the amplitudes, factored, and what acts beside it up to a size: from the slopes of
+ * patches; all of it or as if it were symmetric. */
+static void differentiate(Kind *kind, int size, bool all, const double (*slope)[3][2])
 {
     double(*a)[MODES] = kind->factors;
+    press_all(kind, size);
+    shear_all(kind, size, all, slope);
     for (int r = 0; r < MODES; r++) {
-        for (int k = 0; k <= r; k++)
-            a[k][r] = a[r][k] = kind->by_normal[r][k] + (shear ? shear[r][k] : 0.0);
+        for (int k = 0; k <= r; k++) {
+            const double normal = kind->by_normal[r][k], shear = kind->by_shear[r][k];
+            a[r][k] = normal + shear;
+            a[k][r] = normal + (all ? kind->by_shear[k][r] : shear);
+        }
         a[r][r] += kind->bodies[r];
     }
+    dense_factor(kind->work.abreast.fours, a, kind->pivots);
 }
 
 /* Equilibrium */
@@ -171,32 +178,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
-/* The derivative of the residual by the amplitudes, factored; from that of the tractions by the shifts of the patches
- * along x and y and how far they come apart. */
-static void by_residual(Kind *kind, const double (*slope)[3][2])
-{
-    const int n = (int)data.n_patches;
-    press_all(kind, MODES);
-    memset(kind->by_shear, 0, sizeof kind->by_shear);
-    for (int d = 0; d < 2; d++) {
-        for (int j = 0; j < n; j++) {
-            const double weight = kind->area * data.patches[j][SHARE];
-            const double by[3] = {weight * slope[j][0][d], weight * slope[j][1][d], weight * slope[j][2][d]};
-            for (int k = 0; k < MODES; k++)
-                kind->weighted[j][k] =
-                    by[0] * kind->patch[0][j][k] + by[1] * kind->patch[1][j][k] + by[2] * kind->patch[2][j][k];
-        }
-        dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
-                       (const double(*)[WIDE])kind->patch[d], MODES, true, kind->by_shear);
-    }
-    by_amplitudes(kind, NULL);
-    for (int k = 0; k < MODES; k++)
-        for (int r = 0; r < MODES; r++)
-            kind->factors[k][r] += kind->by_shear[k][r];
-    dense_factor(kind->work.abreast.fours, kind->factors, kind->pivots);
-}
-
-/* The same by what the memory says; in a further motion where that after it is given. */
+/* The derivative by what the memory says; in a further motion where that after it is given. */
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
@@ -207,7 +189,7 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
             memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
         }
-    by_residual(kind, (const double(*)[3][2])slope);
+    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
 }
 
 /* The same at the last trial, by differences. */
@@ -218,17 +200,17 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory)
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
     patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
-    by_residual(kind, (const double(*)[3][2])slope);
+    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
 static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
-    press_all(kind, WIDE);
-    shear_all(kind, WIDE, tangent);
+    double slope[MOST_PATCHES][3][2];
+    for (int j = 0; j < (int)data.n_patches; j++)
+        slopes_of(tangent[j], slope[j]);
+    differentiate(kind, WIDE, false, (const double(*)[3][2])slope);
     turn_all(kind, tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])kind->by_shear);
-    dense_factor(kind->work.abreast.fours, kind->factors, kind->pivots);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
@@ -569,3 +551,5 @@ void whole_bolt_rates(const Joint *joint, const double *inputs, const double *se
         result[b] = left + seed[INPUT_MOMENT] * data.bolts[b][2] +
                     kind->bolt * stretched(kind, b, seed, kind->amplitude_rate);
 }
+
+END_OF_COLD

@@ -2,6 +2,8 @@
 #ifndef JOINTFMU_WHOLE_H
 #define JOINTFMU_WHOLE_H
 
+#include <string.h>
+
 #include "bolted_joint.h"
 #include "joint.h"
 
@@ -27,6 +29,12 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
                  double rate, const double shift[3]);
+/* Slopes of a traction from its tangents xx, xy, yy. */
+static inline void slopes_of(const double tangent[3], double slope[3][2])
+{
+    const double rows[3][2] = {{tangent[0], tangent[1]}, {tangent[1], tangent[2]}};
+    memcpy(slope, rows, sizeof rows);
+}
 /* By differences: tractions of the last trial over the shifts along x and y at its end and how far patches come apart. */
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2]);
 
