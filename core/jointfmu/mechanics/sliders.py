@@ -97,11 +97,12 @@ def turning(sliders: int) -> Array:
     """
     angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
     unit = to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
+    unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
     return np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
 
 
 def together(each: Array) -> Array:
-    """Sums (..., 3) of forces (..., 2, n) of sliders along x, along y and around the centre of their patch."""
+    """Forces (..., 2, n) of sliders together (..., 3): along x, y and around the centre of their patch."""
     around_it = np.sum(turning(each.shape[-1]) * each, axis=(-2, -1))
     return np.concatenate([np.sum(each, axis=-1), around_it[..., None]], axis=-1)
 

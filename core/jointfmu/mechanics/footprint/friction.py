@@ -24,10 +24,10 @@ from .shape import FrictionPatches, PressureShape
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
 """Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""
-CASES = 240
-"""States of the joint and motions from rest whose friction is fitted."""
-UNTILTED = 0.4
-"""Part of them without displacement and tilt [1]."""
+CASES, POLES = 240, 200
+"""States of the joint and motions from rest whose friction is fitted, and more in gross slip about a pole."""
+UNTILTED = 2
+"""Of five of them without displacement and tilt."""
 APART, TILTED = 0.1, 0.2
 """Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
 MOST_MOMENT = 2.5
@@ -52,9 +52,12 @@ DIFFERENCE = 1e-6
 """Change of a place or pressure over its size [1] by which derivatives are found."""
 AT_ONCE = 2000
 """Nodes whose friction is summed up at once [1]."""
-POLES, POLE_WEIGHT, BESIDE = 200, 8.0, 0.06
-"""Poles of gross slip, the weight of their forces beside those of a case [1], and how far they are beside a
-pressed node at most, over the radius of gyration [1]."""
+BESIDE, FAR = 0.06, 1e3
+"""How far these poles are beside a pressed node, over the radius of gyration [1]; length of their motion."""
+TILTED_POLES = 8
+"""One of so many is that of a tilted contact, the others are of one without moment."""
+POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
+"""Weights of the forces about them, of the torques, and of shifts alone, beside those of other cases [1]."""
 ON_CIRCLE = 4
 """Places on the circle of a patch that stand for its sliders."""
 LESS_SPREAD = 0.9
@@ -68,8 +71,6 @@ _RATIOS = powers(1.0 / 1.0969815577985598, 7)
 """An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
 _CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
 """These places on a circle of radius 1."""
-_POLE_RATIOS = powers(1.0 / 1.2207440846057596, 3)
-"""The same in three dimensions, x^4 = x + 1."""
 
 
 def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
@@ -103,8 +104,10 @@ def friction_patches(shape: PressureShape, count: int, begin: PressureShape | No
 
 
 def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
-    """Nodes divided among patches that begin at places (m, 2), each to the nearest one, whose friction's centre
-    the patch then takes (Lloyd's method)."""
+    """Nodes divided among patches that begin at places (m, 2), each to the nearest one.
+
+    A patch then takes the centre of their friction, again and again (Lloyd's method).
+    """
     share, (x, y) = shape.share, shape.position.T
     weight, count = share * (shape.equal + AT_REST), len(places)
 
@@ -148,14 +151,18 @@ class _Motions:
     def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
         """Even over what a contact with nodes (6, n) up to |x|, |y| (2) can do: shifts, turns about its
         centre, and twice as many about places where it is pressed."""
-        number = np.arange(1, CASES + 1)
+        number = np.arange(1, CASES + POLES + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
-        moves, kind = number > UNTILTED * CASES, np.minimum(number % 4, 2)
+        gross = number > CASES
+        moves = np.where(gross, number % TILTED_POLES == 0, number % 5 >= UNTILTED)
+        moment = np.where(gross & ~moves, 0.0, moment)
+        kind = np.where(gross, 2, np.minimum(number % 4, 2))
         along = 2.0 * np.abs(angle) - 1.0  # on a square that stands on its corner
         across = np.sign(angle) * (1.0 - np.abs(along))
-        force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones(CASES)
+        force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones_like(along)
         _, x, y, *_ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
+        x, y = x + gross * BESIDE * angle, y + gross * BESIDE * (2.0 * unit[:, 6] - 1.0)
         shift_or_turn = ((along, nothing, y), (across, nothing, -x), (nothing, one, one))
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
@@ -168,7 +175,7 @@ class _Motions:
             TILTED / reach[1] * about_x * moves,
             TILTED / reach[0] * about_y * moves,
             motion,
-            way * (1.0 - root(np.full((CASES, 1), STUCK), power[:, None])[:, 0]),
+            np.where(gross, FAR, way * (1.0 - root(np.full((number.size, 1), STUCK), power[:, None])[:, 0])),
         )
         return cls(*(each[..., None] for each in columns))
 
@@ -195,32 +202,6 @@ class _Motions:
 
 
 @dataclass(frozen=True, slots=True)
-class _Poles:
-    """Turns in gross slip about places (p, 1), of a contact as in `_Motions`."""
-
-    x: Array
-    y: Array
-
-    @classmethod
-    def of(cls, nodes: Array) -> "_Poles":
-        """At nodes (6, n) by their friction, and beside them."""
-        unit = (0.5 + np.arange(1, POLES + 1)[:, None] * _POLE_RATIOS) % 1.0
-        force, beside = np.add.accumulate(nodes[0] * nodes[3]), BESIDE * (2.0 * unit[:, 1:].T - 1.0)
-        x, y = nodes[1:3, np.searchsorted(force, unit[:, 0] * force[-1])] + beside
-        return cls(x[:, None], y[:, None])
-
-    def friction(self, points: Array) -> Array:
-        """Of points (6, n), per share: force along x and y (2 p, n)."""
-        _, x, y, equal, _, radius = points
-        whole = np.zeros((2, len(self.x), x.size))
-        for along, across in _CIRCLE:
-            u, v = self.y - (y + across * radius), (x + along * radius) - self.x
-            part = equal / np.maximum(np.sqrt(u * u + v * v), TINY)
-            whole += np.stack([part * u, part * v]) / ON_CIRCLE
-        return whole.reshape(-1, x.size)
-
-
-@dataclass(frozen=True, slots=True)
 class _Aim:
     """What the sums over points (6, n) of share, x, y, equal, tilt and radius should be.
 
@@ -232,7 +213,6 @@ class _Aim:
     """
 
     motions: _Motions
-    poles: _Poles
     reach: Array
     scale: Array
     hold: Array
@@ -243,28 +223,30 @@ class _Aim:
     def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
         """Those over nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
-        motions, poles, share = _Motions.of(nodes, largest_moment, reach), _Poles.of(nodes), nodes[0]
-        friction, gross, turned = np.zeros(4 * CASES), np.zeros(CASES), np.zeros(2 * POLES)
+        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
+        friction, gross = np.zeros(4 * (CASES + POLES)), np.zeros(CASES + POLES)
         for first in range(0, share.size, AT_ONCE):
             some = nodes[:, first : first + AT_ONCE]
             each, most = motions.friction(some)
             friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
-            turned = turned + over(poles.friction(some), some[0])
-        whole = np.full(2 * POLES, np.add.reduce(share * nodes[3]) / POLE_WEIGHT)
-        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * CASES :], whole]), TINY)
-        friction = np.concatenate([friction, turned])
+        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
+        weight = np.where(motions.along[2, :, 0] == 0.0, SHIFT_WEIGHT, 1.0)
+        weight[CASES:] = POLE_WEIGHT
+        torque, loss = (
+            np.where(weight == POLE_WEIGHT, TORQUE_WEIGHT, weight),
+            np.minimum(weight, SHIFT_WEIGHT),
+        )
+        scale *= np.concatenate([weight, weight, torque, loss])
         exact = _exact(nodes, reach)
         held, size = over(exact, share), over(np.abs(exact), share)
         hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0
         sums = np.concatenate([scale * friction, hold * held])
-        return cls(motions, poles, reach, scale, hold, held, sums)
+        return cls(motions, reach, scale, hold, held, sums)
 
     def values(self, points: Array) -> Array:
         """(m + 12, n) whose sums with the shares should be `sums`."""
-        friction = np.concatenate([self.motions.friction(points)[0], self.poles.friction(points)])
-        return np.concatenate(
-            [friction * self.scale[:, None], _exact(points, self.reach) * self.hold[:, None]]
-        )
+        friction = self.motions.friction(points)[0] * self.scale[:, None]
+        return np.concatenate([friction, _exact(points, self.reach) * self.hold[:, None]])
 
 
 def _balanced(points: Array, reach: Array, sums: Array) -> Array:
