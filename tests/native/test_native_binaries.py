@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
-import lief
 import pytest
 from conftest import run_host
 from jointfmu_fmu_src.building import build
@@ -22,7 +21,6 @@ from jointfmu.joints import MODELS
 
 pytestmark = pytest.mark.slow
 
-lief.logging.disable()
 VERSIONS = ("fmi2", "fmi3")
 BINARIES = {
     "fmi2": {
@@ -41,7 +39,6 @@ BINARIES = {
 }
 LARGEST_FMU = 600_000
 """Bytes [1]. The proof inside is less than a tenth of them, the own elementary functions are another."""
-MACHO = lief.MachO.Header.CPU_TYPE
 SYSTEM_DLL = re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|kernel32\.dll", re.IGNORECASE)
 LINKER_MADE = {"__mh_dylib_header", "___dso_handle"}
 """What zig's linker adds to every macOS library."""
