@@ -58,7 +58,11 @@ def binaries(native: Path, version: str) -> Iterator[tuple[str, bytes]]:
 
 
 def images(content: bytes) -> Iterator[Any]:
-    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator."""
+    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator. It takes
+    half a second to load: what does not use it does not wait for it."""
+    import lief
+
+    lief.logging.disable()
     if lief.is_macho(list(content)):
         file = lief.MachO.parse(list(content))
         yield from file
@@ -67,6 +71,8 @@ def images(content: bytes) -> Iterator[Any]:
 
 
 def exported(image: Any) -> set[str]:
+    import lief
+
     if isinstance(image, lief.PE.Binary):
         return {entry.name for entry in image.get_export().entries}
     if isinstance(image, lief.MachO.Binary):
@@ -89,6 +95,8 @@ def test_every_platform_is_there(native: Path, version: str) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Path, version: str) -> None:
+    import lief
+
     functions = declared(version)
     assert len(functions) == {"fmi2": 44, "fmi3": 75}[version]
     for path, content in binaries(native, version):
@@ -99,6 +107,8 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_linux_needs_the_c_runtime_of_glibc_2_17_alone(native: Path, version: str) -> None:
+    import lief
+
     seen = set()
     for path, content in binaries(native, version):
         if not path.endswith(".so"):
@@ -116,6 +126,8 @@ def test_linux_needs_the_c_runtime_of_glibc_2_17_alone(native: Path, version: st
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_windows_needs_the_c_runtime_of_the_system_alone(native: Path, version: str) -> None:
+    import lief
+
     for path, content in binaries(native, version):
         if not path.endswith(".dll"):
             continue
@@ -130,7 +142,9 @@ def test_windows_needs_the_c_runtime_of_the_system_alone(native: Path, version: 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
-    seen = []
+    import lief
+
+    cpu, seen = lief.MachO.Header.CPU_TYPE, []
     for path, content in binaries(native, version):
         if not path.endswith(".dylib"):
             continue
@@ -144,10 +158,10 @@ def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
                 (kinds.ID_DYLIB, f"@rpath/{Path(path).name}"),
                 (kinds.LOAD_DYLIB, "/usr/lib/libSystem.B.dylib"),
             }, path
-            if image.header.cpu_type == MACHO.ARM64:
+            if image.header.cpu_type == cpu.ARM64:
                 signed = bytes(content[image.fat_offset :])
                 check_signature(signed, image.code_signature.data_offset)
-    assert sorted(map(str, seen)) == sorted(map(str, [MACHO.X86_64, MACHO.ARM64] * len(MODELS)))
+    assert sorted(map(str, seen)) == sorted(map(str, [cpu.X86_64, cpu.ARM64] * len(MODELS)))
 
 
 def check_signature(library: bytes, at: int) -> None:

@@ -1,8 +1,8 @@
 """Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
 
-The hosts in tests/native are built for each platform by the same compiler as the FMUs. macOS is not run.
-Where there is no C library of aarch64 to load a binary with, programs that need none are run all the same:
-the FMU's own sources and a host, linked into one.
+The hosts in tests/native/hosts are built for each platform by the same compiler as the FMUs. macOS is not
+run. Where there is no C library of aarch64 to load a binary with, programs that need none are run all the
+same: the FMU's own sources and a host, linked into one.
 """
 
 import os
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.slow
 
 POINTS = 200
 SYSROOT = Path("/usr/aarch64-linux-gnu")
-HOSTS = Path(__file__).parent
+HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 

@@ -60,6 +60,7 @@ def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
     assert said["area"] is None
 
 
+@pytest.mark.slow
 def test_the_area_of_the_loop_is_the_fmus(folder, capsys):
     """The promise is 5 %; the work of link's and drive's damping is known and left out."""
     drive = jointfmu.drive("CSG-25-100", hysteresis=1.0)

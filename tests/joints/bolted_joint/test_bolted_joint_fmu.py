@@ -317,6 +317,7 @@ YELLOW = "#fde725"
 """The end of the colours."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.15, 0.0015])
 def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     """The smallest keeps part of its stiffness, the largest stays below the friction and loses."""
