@@ -13,7 +13,6 @@ from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu.contact import roughness
 from jointfmu.joints import KINDS
 from jointfmu.joints.bolted_joint.law import pressures
-from jointfmu.mechanics.footprint import bolts
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.parameters import default, dump, load
 
@@ -141,8 +140,8 @@ def test_a_roughness_acts_or_is_refused(tmp_path):
         load(path)
 
 
-def test_a_field_keeps_it(monkeypatch):
-    monkeypatch.setattr(bolts, "CELLS_ACROSS", 3)  # few nodes keep it as many do
+@pytest.mark.slow
+def test_a_field_keeps_it():
     file = default("bolted_joint")
     shape = pressure_shape(file.values.pattern)
     pressure = pressures(file.values, shape, 9e3, 0.0)

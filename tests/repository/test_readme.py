@@ -16,6 +16,8 @@ from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField
+from jointfmu_tools.ramps.loops import Swing
+from jointfmu_tools.report import course
 
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
@@ -88,7 +90,10 @@ def folder(tmp_path_factory, native):
 
 
 def test_python_blocks_run(folder, monkeypatch):
+    """The page of the README's plate, which the block writes again, has few points here."""
     monkeypatch.chdir(folder)
+    monkeypatch.setattr(course, "_POINTS", 21)
+    monkeypatch.setattr(course, "_SWING", Swing(points=20))
     names = {}
     for page in (FMUS, PYTHON):
         (block,) = blocks("python", page)
