@@ -217,6 +217,7 @@ def test_bristles_bear_steps_that_the_drives_bear(six):
     assert np.abs(fallen(model, 5e-4, "constraint") - fine).max() > 0.05
 
 
+@pytest.mark.slow
 def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_path, capsys, few_poses):
     """With a short step they are the drive's; with MuJoCo's own softer for a light rotor, which is said."""
     text = ROBOT.read_text()

@@ -112,7 +112,7 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     assert "the temperature of the lubricant" in lacks
 
 
-@pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
+@pytest.mark.parametrize("name", ["CSG-14-100", pytest.param("CSG-25-100", marks=pytest.mark.slow)])
 def test_loops_inside_have_the_area_of_the_fmus(name):
     """Fitted at rated torque alone."""
     own = transmission(jointfmu.drive(name, hysteresis=1.0).file)

@@ -355,6 +355,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]
 
 
+@pytest.mark.slow
 def test_the_picture_of_points_without_an_outline() -> None:
     """One disc a point, of its area; no bolts, and the page says so."""
     file = default("bolted_joint")
