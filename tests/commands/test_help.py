@@ -5,6 +5,7 @@ import json
 import shlex
 import shutil
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,15 @@ from jointfmu_fmu_src.native.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES
+from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.joints.bolted_joint.new import computed as new_computed
 from jointfmu_tools.parser import parser
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import ParameterFile, default
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -131,6 +134,11 @@ def built(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
     return place
 
 
+def coarse(file: ParameterFile, plates: new_computed.Plates, attached: str) -> new_computed.ComputedJoint:
+    """The whole joint of a drawing, solved here."""
+    return new_computed.whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
@@ -150,6 +158,9 @@ def test_an_example_with_fmus_runs(
         computed = shlex.split(EXAMPLES["footprint compute"])
         monkeypatch.chdir(built)
         assert cli.main([*computed, "--field", "my_field.csv"]) == 0
+    if line.startswith("new bolted-joint"):  # coarse elements, which no other test is to find
+        monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+        monkeypatch.setattr(new_computed, "whole_joint", coarse)
     monkeypatch.chdir(built)
     with here_alone():
         assert cli.main(shlex.split(line)) == 0
