@@ -41,7 +41,7 @@ SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "
 PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
 LINUX, HERE = (("-target", TARGETS[place]) for place in ("x86_64-linux", fmpy.platform_tuple))
 VERSIONS = ("2", "3")
-FUZZ_CALLS = 500_000 // (len(MODELS) * len(VERSIONS))
+FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
 """One with states and one that follows time: the others have the same C but for their equations."""

@@ -39,13 +39,16 @@ def shorter(monkeypatch):
     monkeypatch.setattr(log_round_trips, "TIME", 30.0)
 
 
-def check_friction(found):
+def check_friction(found, undetermined=frozenset()):
     """The fit began 40 % off. Four standard deviations: one in 16 000 by chance."""
     assert found.doubt() is None
     assert not any("--motor-inertia" in note for note in found.notes)
     assert found.facts["held_out"][0] < 0.1 * found.facts["held_out_constant"][0]
     for label, deviation in found.solution.deviations.items():
         assert abs(math.log(found.parameters.flat[label] / TRUE[label])) < 4.0 * deviation
+        if label in undetermined:
+            assert label not in found.intervals
+            continue
         low, high = found.intervals[label]
         assert low < found.parameters.flat[label] < high
         assert f"95 % interval {low:.4g} to {high:.4g}" in found.parameters.sources[label]
@@ -59,9 +62,10 @@ def test_steady_speeds_give_their_friction_back(seed):
 
 @pytest.mark.slow
 def test_an_arm_that_swings_gives_its_friction_back():
-    """Inertias and gravity come beside: the rotor's, which nobody states, from the wind-up."""
+    """Inertias and gravity come beside: the rotor's, which nobody states, from the wind-up. In half a minute
+    the arm is slow too seldom for Stribeck's part, which steady speeds determine."""
     found = trip(log_round_trips.moving, {"torque_constant": log_round_trips.CONSTANT}, 1)
-    check_friction(found)
+    check_friction(found, {"friction_stribeck"})
     assert found.facts["motor_inertia"][0] == pytest.approx(log_round_trips.ROTOR, rel=0.05)
     whole = log_round_trips.ARM + log_round_trips.ROTOR * 100.0**2
     assert found.facts["inertia"][0] == pytest.approx(whole, rel=0.02)
