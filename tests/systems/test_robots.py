@@ -46,7 +46,14 @@ def pulled(model, torques):
     return np.array(found)
 
 
-@pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100", "CSG-40-160", "HarmonicDriveSpring"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("CSG-14-100", "CSG-40-160")),
+        "CSG-25-100",
+        "HarmonicDriveSpring",
+    ],
+)
 def test_wind_up_at_rated_torque_is_the_fmus(name, capsys):
     """A ramp of 2 s; the promise is 3 %."""
     said, model = exported(capsys, name)
@@ -112,7 +119,8 @@ def test_what_it_cannot_carry_is_said(folder, capsys):
     assert "the temperature of the lubricant" in lacks
 
 
-@pytest.mark.parametrize("name", ["CSG-14-100", pytest.param("CSG-25-100", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["CSG-14-100", "CSG-25-100"])
 def test_loops_inside_have_the_area_of_the_fmus(name):
     """Fitted at rated torque alone."""
     own = transmission(jointfmu.drive(name, hysteresis=1.0).file)
