@@ -22,7 +22,7 @@ from jointfmu_fmu_src.native.compiler import TARGETS, libraries
 
 from jointfmu.fmi.host import Instance
 
-settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
+settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
 settings.load_profile("jointfmu")
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

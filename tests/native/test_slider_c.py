@@ -17,7 +17,7 @@ from jointfmu.mechanics.jenkins import Sliders, beyond, direction, reaches, slid
 
 pytestmark = pytest.mark.slow
 
-MOVES, SLIDERS = 100_000, 8
+MOVES, SLIDERS = 32_000, 8
 ROUND_OFF = 1e-13
 """Of a sum of some products, over the largest of what is compared: C adds in another order."""
 POINTER_TO = POINTER(c_double)
