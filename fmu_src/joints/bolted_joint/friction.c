@@ -442,7 +442,7 @@ static int touched_on(const PatchPath *path)
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
-    const bool rests = path->from->approach == path->to->approach, along = rests && path->straight;
+    const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
     Middle middle = {.known = false};
     *shear = (Shear){.loss = 0.0};
     move_full(f, 2 * full, path, along, moved, work, shear);
