@@ -19,6 +19,8 @@ static double inverse(const Foundation *f, double load)
     return curve_inverse(f->curve, load, &segment, &carried);
 }
 
+COLD
+
 /* As `around` of the package. */
 static void lay_heights(Foundation *f, double reference)
 {
@@ -39,6 +41,8 @@ static void lay_heights(Foundation *f, double reference)
     }
     *h = f->curve->end.x;
 }
+
+END_OF_COLD
 
 /* The sums over the springs of a range, and its sliders. */
 static void lay_range(Foundation *f, int i)
