@@ -36,6 +36,12 @@ static inline int n_patches(void)
     return (int)data.n_patches;
 }
 
+/* Whether friction remembers, as elastic sides ask for. */
+static inline bool remembers(const Joint *joint)
+{
+    return ELASTIC || joint->kind.memory;
+}
+
 static bool tabulate(Joint *joint, int steps, Text *why)
 {
     Kind *kind = &joint->kind;
@@ -668,13 +674,13 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     double heat = 0.0;
     Further sum = {.stick = {0.0}};
     Shear shears[MOST_PATCHES];
-    if (kind->memory) {
+    if (remembers(joint)) {
         move_all(joint, inputs, memory, shears);
     } else {
         kind->moved = RESTING;
         find_points(joint, inputs, memory);
     }
-    for (int j = 0; j < n_patches() && kind->memory; j++) {
+    for (int j = 0; j < n_patches() && remembers(joint); j++) {
         double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
         if (kind->moved == RESTING)
             keep_at_rest(&shears[j], moved);
@@ -682,7 +688,7 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
             slide(joint, j, inputs, memory, moved, &shears[j]);
     }
     foundations_end(&kind->work);
-    for (int j = 0; j < n_patches() && kind->memory; j++) {
+    for (int j = 0; j < n_patches() && remembers(joint); j++) {
         const Shear shear = shears[j];
         add_patch(x, data.patches[j], shear.traction);
         add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
@@ -693,17 +699,17 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         after[AT_LOWEST + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].lowest;
         after[AT_APPROACH + j] = kind->to[j].approach;
     }
-    if (kind->memory) {
+    if (remembers(joint)) {
         memcpy(kind->along, sum.along, sizeof sum.along);
         tell_further(&sum, kind->along, x);
     }
     const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
-    after[AT_STATE] = kind->memory ? kind->moved : UNKNOWN;
+    after[AT_STATE] = remembers(joint) ? kind->moved : UNKNOWN;
     after[AT_LOSS] = loss;
-    after[AT_RIGID] = kind->memory ? inputs[S_REL] : 0.0;
-    after[AT_RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
-    after[AT_RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
+    after[AT_RIGID] = remembers(joint) ? inputs[S_REL] : 0.0;
+    after[AT_RIGID + 1] = remembers(joint) ? inputs[S_REL + 1] : 0.0;
+    after[AT_RIGID + 2] = remembers(joint) ? inputs[THETA + 2] : 0.0;
 }
 
 /* Outputs */
@@ -727,7 +733,7 @@ static bool as_tightened(const Kind *kind, const double *inputs)
     for (int k = 0; k < MODES && ELASTIC; k++)
         if (kind->amplitude[k] != 0.0)
             return false;
-    return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
+    return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (ELASTIC || kind->memory || !sheared);
 }
 
 bool joint_press(Joint *joint, const double *inputs, Text *why)
@@ -761,7 +767,7 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 {
     Kind *kind = &joint->kind;
     tighten(joint, inputs);
-    if (kind->memory) {
+    if (remembers(joint)) {
         if (!press(joint, inputs, why))
             return false;
         memcpy(x, kind->normal, sizeof kind->normal);
@@ -827,7 +833,7 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
             curve_at(&joint->curve, kind->start[i], 1, carried);
         if (!node_at(joint, approach, 4, y, works, slopes, why))
             return false;
-        if (!kind->memory) {
+        if (!remembers(joint)) {
             elastic_arguments(joint, i, y, inputs, at);
             at[N_E + E_LIMIT] = kind->mu * carried[1] * tightening;
             for (int d = 0; d < 4; d++)
@@ -939,14 +945,14 @@ static void patch_rates(Joint *joint, const double *inputs, const double *memory
                                  along_y(patch, seed) + kind->bent_rate[j][1], patch[RADIUS] * seed[THETA + 2]};
         const double loop[4] = {rate, shift[0], shift[1], shift[2]};
         add_loop_rate(joint, j, inputs, loop, dx);
-        if (!kind->memory)
+        if (!remembers(joint))
             continue;
         const Shear shear = kind->shears[j] = patch_rate(joint, j, inputs, memory, after, rate, shift);
         add_patch(dx, patch, shear.traction);
         add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }
-    if (kind->memory)
+    if (remembers(joint))
         tell_further(&sum, kind->along, dx);
 }
 

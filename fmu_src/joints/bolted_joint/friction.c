@@ -19,6 +19,8 @@ static double inverse(const Foundation *f, double load)
     return curve_inverse(f->curve, load, &segment, &carried);
 }
 
+COLD
+
 /* As `around` of the package. */
 static void lay_heights(Foundation *f, double reference)
 {
@@ -39,6 +41,8 @@ static void lay_heights(Foundation *f, double reference)
     }
     *h = f->curve->end.x;
 }
+
+END_OF_COLD
 
 /* The sums over the springs of a range, and its sliders. */
 static void lay_range(Foundation *f, int i)
@@ -480,7 +484,7 @@ static int touched_on(const PatchPath *path)
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
-    const bool rests = path->from->approach == path->to->approach, along = rests && path->straight;
+    const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
     Middle middle = {.known = false};
     *shear = (Shear){.loss = 0.0};
     move_full(f, 2 * full, path, along, moved, work, shear);

@@ -1,7 +1,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cold.h"
 #include "instance.h"
+
+COLD
 
 /* A state in the hands of the host, and its bytes: little endian, the same on every platform.
  *
@@ -279,3 +282,5 @@ Status state_read(const Instance *m, const char *function, const void *bytes, si
     }
     return hand_over(m, function, made, saved);
 }
+
+END_OF_COLD

@@ -13,7 +13,7 @@
 
 /* `loop`, which is WITHIN, as `loop_any` and `loop_fours`. */
 #define COMPILED_TWICE(loop, parameters, arguments) \
-    OF_ANY static void loop##_any parameters        \
+    static void loop##_any parameters               \
     {                                               \
         loop arguments;                             \
     }                                               \
@@ -26,7 +26,6 @@
 #include <cpuid.h>
 
 #define OF_FOUR __attribute__((target("avx")))
-#define OF_ANY __attribute__((cold)) /* of 2010 and before: small rather than fast */
 
 /* Whether processor and operating system have them (Intel, Software Developer's Manual, 1-14.3). */
 static inline bool vectors_of_four(void)
@@ -40,7 +39,6 @@ static inline bool vectors_of_four(void)
 }
 #else
 #define OF_FOUR
-#define OF_ANY
 
 static inline bool vectors_of_four(void)
 {
