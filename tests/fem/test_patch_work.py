@@ -7,7 +7,7 @@ from jointfmu_tools.fem.patch_work import PatchWork, Shears, Surface, into_slip,
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 
-RADIUS, COUNT, PATCHES = 0.02, 24, 6
+RADIUS, COUNT, PATCHES = 0.02, 24, 10
 LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
 
 
@@ -65,7 +65,7 @@ def test_patches_lose_and_resist_as_all_points(disc):
     fitted = PatchWork(law, shears, few, aim).fitted(means)
     before, after = (of(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
-    assert np.min(before.loss[partial] / aim.loss[partial]) < 0.93
+    assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
     np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
     size = np.linalg.norm(aim.forces[:7, :2], axis=1)
     missed = [np.max(np.linalg.norm((w.forces - aim.forces)[:7, :2], axis=1) / size) for w in (before, after)]
@@ -79,9 +79,11 @@ def test_what_is_held_is_exact(disc):
     aim = of(law, linear, points, rows).stuck
     working = PatchWork(law, linear, few, of(law, linear, points, rows))
     held = working.held(means, linear, aim)
-    found = of(law, linear, few, held).stuck
-    np.testing.assert_allclose(found[:2, 2 + 1 :], aim[:2, 2 + 1 :], rtol=1e-6, atol=1e-6 * np.abs(aim).max())
-    assert np.max(np.abs(held - means)) < 0.3
+    before, found = (of(law, linear, few, rows).stuck for rows in (means, held))
+    missed = [np.max(np.abs(each - aim)[:2]) / np.max(np.abs(aim)) for each in (before, found)]
+    assert missed[0] > 0.01
+    assert missed[1] < 1e-6
+    assert np.max(np.abs(held - means)) < 0.5
 
 
 def test_slopes_are_those_of_differences(disc):

@@ -7,7 +7,8 @@ axes, gives states of the whole joint. The modes are the deformations that these
 
 What a mode does at a point of the joint is its mean over the point's cell, by the stiffness there. Few points
 miss what it does inside the cells; their means are changed in common, so that the tightened interface is as
-stiff against all modes as that of the finite elements.
+stiff against all modes as that of the finite elements. At the patches they are then fitted to the work of
+friction (`patch_work`).
 """
 
 from collections.abc import Iterator

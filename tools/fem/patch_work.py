@@ -89,6 +89,7 @@ def _size(forces: Array) -> Array:
     along, turn, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
     arm = np.max(turn) / np.max(along)
     along = np.hypot(along, turn / arm)
+    modes = np.maximum(modes, LEAST * np.max(modes / along) * along)
     return np.stack([along, along, arm * along, *[modes] * (forces.shape[1] - 3)], axis=1)
 
 
