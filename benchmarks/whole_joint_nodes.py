@@ -1,8 +1,8 @@
 """The whole bolted joint with elastic sides beside finite elements with friction at every element.
 
-Joints of two plates: a flange (outer faces rigid, sheared along x), another with six bolts for which nothing was
-chosen (sheared askew), a lap (ends rigid, sheared along x) and a bracket (ends rigid, a force along y off the
-bolts' line; far: to four times its slip). The finite
+Joints of two plates: a flange (outer faces rigid, sheared along x), another with six bolts for which nothing
+was chosen (sheared askew), a lap (ends rigid, sheared along x) and a bracket (ends rigid, a force along y off
+the bolts' line; far: to four times its slip). The finite
 elements are linear but for the contact, and reduce to the compliance of their elements' patches without loss:
 about 300 to 500, each with the law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code
 of the package's sliders, beside the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
