@@ -12,7 +12,7 @@ friction (`patch_work`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from scipy.spatial import cKDTree
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import patches as patches_of
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
@@ -197,7 +198,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
 
     Raises RuntimeError if a body can move freely.
     """
-    joint = linear.joint
+    joint, spring = linear.joint, replace(spring, patches=patches_of(spring.joint.pattern, elastic=True))
     cells = Cells.of(joint, spring, normal)
     at = joint.interface
     bolts = joint.bolts - at.centroid

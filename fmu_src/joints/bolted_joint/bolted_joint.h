@@ -56,8 +56,9 @@ typedef struct {
     double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][2];
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
-    /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside the
-     * modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last derivative. */
+    /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
+     * the modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last
+     * derivative. */
     double by[MOST_OPENING + MOST_STRETCH];
     double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
     double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], factors[MODES][MODES], tried[2][SLIDERS];

@@ -37,7 +37,7 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.patches(joint.pattern)
+    patches = spring.patches(joint.pattern, joint.elastic)
     return {
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
         "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
@@ -54,7 +54,7 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     """
     modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
     if joint.elastic:
-        places = spring.patches(joint.pattern).position
+        places = spring.patches(joint.pattern, joint.elastic).position
         modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
         lever = modes.lever
         most = MODES, spring.POINTS, PATCHES, len(modes.bolts)

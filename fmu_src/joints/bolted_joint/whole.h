@@ -35,7 +35,7 @@ static inline void slopes_of(const double tangent[3], double slope[3][2])
     const double rows[3][2] = {{tangent[0], tangent[1]}, {tangent[1], tangent[2]}};
     memcpy(slope, rows, sizeof rows);
 }
-/* By differences: tractions of the last trial over the shifts along x and y at its end and how far patches come apart. */
+/* By differences: those of the last trial by shifts along x and y at its end and by coming apart. */
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2]);
 
 #endif

@@ -47,10 +47,12 @@ def points(pattern: PressureSource) -> PressureShape:
 
 
 @lru_cache(maxsize=8)
-def patches(pattern: PressureSource) -> FrictionPatches:
-    """The points that carry its friction."""
+def patches(pattern: PressureSource, elastic: bool) -> FrictionPatches:
+    """The patches that carry its friction; those of elastic sides are points, whose own turn no mode tells."""
     stated = pattern.patches() if isinstance(pattern, NodalField) else None
-    return stated or friction_patches(pressure_shape(pattern), PATCHES)
+    if stated:
+        return stated.as_patches() if elastic else stated
+    return friction_patches(pressure_shape(pattern), PATCHES, circles=not elastic)
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class BoltedJointSpring:
 
         Raises ValueError for bodies that were computed for another contact.
         """
-        shape, few = points(joint.pattern), patches(joint.pattern)
+        shape, few = points(joint.pattern), patches(joint.pattern, joint.elastic)
         bodies = joint.bodies if joint.elastic else RigidBodies()
         modes = Modes.of(bodies, shape.share.size, few.position)
         return cls(joint, approach_curve(joint), shape, few, modes)

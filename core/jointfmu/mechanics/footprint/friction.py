@@ -26,8 +26,8 @@ POWERS = (4.0, 8.0, 8.0, 16.0)
 """Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""
 CASES, POLES = 240, 200
 """States of the joint and motions from rest whose friction is fitted, and more in gross slip about a pole."""
-UNTILTED = 2
-"""Of five of them without displacement and tilt."""
+UNTILTED = 0.4
+"""Part of the former without displacement and tilt [1]."""
 APART, TILTED = 0.1, 0.2
 """Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
 MOST_MOMENT = 2.5
@@ -73,10 +73,13 @@ _CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCL
 """These places on a circle of radius 1."""
 
 
-def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
+def friction_patches(
+    shape: PressureShape, count: int, begin: PressureShape | None = None, circles: bool = True
+) -> FrictionPatches:
     """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
 
-    begin : some points that stand for many nodes, of which the first patches are taken
+    begin   : some points that stand for many nodes, of which the first patches are taken
+    circles : whether sliders stand on circles; else patches are points, which no pole of gross slip is fitted to
 
     Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
 
@@ -88,15 +91,13 @@ def friction_patches(shape: PressureShape, count: int, begin: PressureShape | No
     gyration = float(np.sqrt(np.add.reduce(rough.share * np.add.reduce(rough.position**2, axis=1))))
     highest, steep = float(np.max(rough.equal)), max(float(np.max(np.abs(rough.tilt))), TINY)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
+    few = few_points(rough if begin is None else rounded(begin), count)
+    first = _divided(rough, few.position) if circles else few.as_patches()
     nodes, there, points = (
         np.stack([each.share, *each.position.T, each.equal, each.tilt, each.radius]) / unit
-        for each in (
-            rough.as_patches(),
-            shape.as_patches(),
-            _divided(rough, few_points(rough if begin is None else rounded(begin), count).position),
-        )
+        for each in (rough.as_patches(), shape.as_patches(), first)
     )
-    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
+    aim = _Aim.of(nodes, POLES if circles else 0, MOST_MOMENT * largest_moment(rough) * steep / highest)
     moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
     share, x, y, equal, tilt, radius = unit * moved
     few = cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
@@ -148,14 +149,14 @@ class _Motions:
     way: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
+    def of(cls, nodes: Array, poles: int, largest_moment: float, reach: Array) -> "_Motions":
         """Even over what a contact with nodes (6, n) up to |x|, |y| (2) can do: shifts, turns about its
-        centre, and twice as many about places where it is pressed."""
-        number = np.arange(1, CASES + POLES + 1)
+        centre, and twice as many about places where it is pressed; and gross slip about so many poles."""
+        number = np.arange(1, CASES + poles + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
         gross = number > CASES
-        moves = np.where(gross, number % TILTED_POLES == 0, number % 5 >= UNTILTED)
+        moves = np.where(gross, number % TILTED_POLES == 0, number > UNTILTED * CASES)
         moment = np.where(gross & ~moves, 0.0, moment)
         kind = np.where(gross, 2, np.minimum(number % 4, 2))
         along = 2.0 * np.abs(angle) - 1.0  # on a square that stands on its corner
@@ -186,7 +187,8 @@ class _Motions:
         start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
         now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
         most, whole, turned = to_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
-        for along, across in _CIRCLE:
+        places = _CIRCLE if np.any(radius) else _CIRCLE[:1]
+        for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
             u, v = self.along[0] - self.along[2] * there_y, self.along[1] + self.along[2] * there_x
             size = np.sqrt(u * u + v * v)
@@ -196,8 +198,8 @@ class _Motions:
             force, work = most - rest, most * way - (now * most - then * rest) / (self.power + 1.0)
             part = force / np.maximum(size, TINY)
             each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)
-            whole += np.stack(each) / ON_CIRCLE
-            turned += most * size / ON_CIRCLE
+            whole += np.stack(each) / len(places)
+            turned += most * size / len(places)
         return whole.reshape(-1, now.shape[1]), turned
 
 
@@ -220,17 +222,17 @@ class _Aim:
     sums: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
+    def of(cls, nodes: Array, poles: int, largest_moment: float) -> "_Aim":
         """Those over nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
-        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
-        friction, gross = np.zeros(4 * (CASES + POLES)), np.zeros(CASES + POLES)
+        motions, share = _Motions.of(nodes, poles, largest_moment, reach), nodes[0]
+        friction, gross = np.zeros(4 * (CASES + poles)), np.zeros(CASES + poles)
         for first in range(0, share.size, AT_ONCE):
             some = nodes[:, first : first + AT_ONCE]
             each, most = motions.friction(some)
             friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
-        weight = np.where(motions.along[2, :, 0] == 0.0, SHIFT_WEIGHT, 1.0)
+        weight = np.where((motions.along[2, :, 0] == 0.0) & (poles > 0), SHIFT_WEIGHT, 1.0)
         weight[CASES:] = POLE_WEIGHT
         torque, loss = (
             np.where(weight == POLE_WEIGHT, TORQUE_WEIGHT, weight),
