@@ -588,13 +588,8 @@ static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, d
 }
 
 /* One slider of a range on a part of a path; `gained` and its rate are of `carrying`. */
-<<<<<<< HEAD
-static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate *rates, double part, int k, const Pairs *start, const Pairs *end,
-                     const double gained[2], const double gains[2])
-=======
-static Slid slide_on(const PatchPath *path, const PathRate *rates, double part, int k, const Pairs *start,
-                     const Pairs *end, const double gained[2], const double gains[2])
->>>>>>> w-siz
+static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate *rates, double part, int k,
+                     const Pairs *start, const Pairs *end, const double gained[2], const double gains[2])
 {
     const int late = k % 2;
     const double least = least_limit(path), K = end->at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
@@ -602,25 +597,13 @@ static Slid slide_on(const PatchPath *path, const PathRate *rates, double part, 
     const double du = part * shift_of(f->turning, k, rates->shift, 0), dv = part * shift_of(f->turning, k, rates->shift, 1);
     const double before = least * start->at.limit[late], after = least * end->at.limit[late];
     const double x[] = {path->force[0][k], path->force[1][k], gained[0], gained[1], u, v, before, after, K, per_K,
-<<<<<<< HEAD
                         gains[0], gains[1], du, dv,
                         least * start->rate.limit[late], least * end->rate.limit[late], end->rate.K, -end->rate.K * per_K * per_K};
-=======
-                        gains[0], gains[1], part * rates->shift[0], part * rates->shift[1],
-                        least * start->rate.limit[late], least * end->rate.limit[late],
-                        end->rate.K, -end->rate.K * per_K * per_K};
->>>>>>> w-siz
     const double trial[] = {x[0], x[1], x[2], x[3], u, v, after};
     double tried[3];
     Slid slid;
     stick_plane(trial, NULL, tried);
-<<<<<<< HEAD
     const double given[N_SLIDER] = {x[0], x[1], tried[0], tried[1], u, v, x[3], before, after, K, per_K};
-=======
-    direction((const double[]){u, v}, NULL, way);
-    const double given[N_SLIDER] = {x[0],   x[1],          tried[0], tried[1], way[0], way[1],
-                                    x[3] * way[2], before, after,    K,        per_K};
->>>>>>> w-siz
     slide_plane(given, NULL, slid.at);
     slide_plane_seed(x, NULL, slid.rate);
     return slid;
@@ -650,7 +633,6 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
     }
     for (int late = 0; late < 2; late++) {
         const Slid *end = &slid[0][late], *half = &slid[1][late];
-<<<<<<< HEAD
         const double *moved = end->at;
         const int k = 2 * i + late;
         double shift[2], rated[2], dy[N_SLID];
@@ -662,13 +644,6 @@ static void range_rate(const Foundation *f, int i, const PatchPath *path, const 
         const double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
                             shift[0], shift[1], start.at.K, ends[0].at.K, moved[SLID_SLIP], half->at[0], half->at[1],
                             dy[0], dy[1], rated[0], rated[1], start.rate.K, ends[0].rate.K, dy[SLID_SLIP],
-=======
-        const double *moved = end->at, *dy = end->rate;
-        const double x[] = {across, path->force[0][2 * i + late], path->force[1][2 * i + late], moved[0], moved[1],
-                            path->shift[0], path->shift[1], start.at.K, ends[0].at.K, moved[SLID_SLIP],
-                            half->at[0], half->at[1],
-                            dy[0], dy[1], rates->shift[0], rates->shift[1], start.rate.K, ends[0].rate.K, dy[SLID_SLIP],
->>>>>>> w-siz
                             half->rate[0], half->rate[1]};
         if (start.at.K != ends[0].at.K)
             changing_loss_seed(x, NULL, &dy[SLID_LOSS]);

@@ -48,7 +48,7 @@ def points(pattern: PressureSource) -> PressureShape:
 
 @lru_cache(maxsize=8)
 def patches(pattern: PressureSource, elastic: bool) -> FrictionPatches:
-    """The patches that carry its friction; those of elastic sides are points, whose own turn no mode tells."""
+    """The patches of its friction; of elastic sides they are points, as no mode tells how they turn."""
     stated = pattern.patches() if isinstance(pattern, NodalField) else None
     if stated:
         return stated.as_patches() if elastic else stated

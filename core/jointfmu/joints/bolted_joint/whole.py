@@ -5,17 +5,10 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
 
     r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
 
-<<<<<<< HEAD
 at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the derivative
 of r, which Broyden's update carries on; it is not symmetric, as the normal force acts on friction. What is
 left of H = G^T W G + S to the attachments where a follows is the stiffness of the whole, W the tangents of
 points, patches and bolts in a further motion.
-=======
-at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the
-derivative of r, which Broyden's update carries on; it is not symmetric, as the normal force acts on friction.
-The part of H = G^T W G + S that is left to the attachments where a follows is the stiffness of the whole, W
-the tangents of points, patches and bolts in a further motion.
->>>>>>> w-siz
 """
 
 from collections.abc import Sequence

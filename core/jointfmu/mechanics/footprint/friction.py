@@ -79,7 +79,7 @@ def friction_patches(
     """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
 
     begin   : some points that stand for many nodes, of which the first patches are taken
-    circles : whether sliders stand on circles; else patches are points, which no pole of gross slip is fitted to
+    circles : whether sliders stand on circles; else patches are points, fitted without poles of gross slip
 
     Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
 
