@@ -34,7 +34,7 @@ from jointfmu.parameters import default
 
 HERE = Path(__file__).resolve().parent
 TESTS = HERE.parent / "tests"
-HOSTS = TESTS / "native"
+HOSTS = TESTS / "native" / "hosts"
 sys.path.append(str(TESTS / "support"))
 from joint_cases import CASES  # noqa: E402
 

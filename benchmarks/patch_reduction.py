@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from friction_sliders import at_levels, levels
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
+from jointfmu.joints.bolted_joint.contact import shifts
 from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import Curve
@@ -20,8 +20,9 @@ from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.patches import few_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import NodalField, PressureShape
+from jointfmu.mechanics.footprint.shape import FrictionPatches, NodalField, PressureShape
 from jointfmu.mechanics.jenkins import Moved
+from jointfmu.mechanics.sliders import SLIDERS, together, turning
 from jointfmu.parameters import default
 
 Array = NDArray[np.float64]
@@ -81,9 +82,6 @@ POLES = 400
 MANY = {"22 nodes": (22, few_points), "22": (22, friction_patches), "40": (40, friction_patches)}
 MANY |= {"60": (60, friction_patches), "120 nodes": (120, few_points)}
 """Patches of the last table, fitted or some of the nodes."""
-OWN = 0.8
-"""Radius of the torque of a patch over the radius of gyration of its friction [1]: a round patch pulls as it
-should about distant poles with 0.71, about near ones with 1.4; with 0.8 the contacts do best."""
 
 
 def ranges(moment: float) -> dict[str, Range]:
@@ -223,10 +221,11 @@ def friction(
     approach, over which the ways and the tilt are.
     """
     ratio = float(shear_ratio(spring.joint))
-    (x, y), gyration = shape.position.T, np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
+    patches = shape if isinstance(shape, FrictionPatches) else shape.as_patches()
+    gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1) + shape.share @ patches.radius**2)
     start = tightened(spring.curve, shape, (mean_pressure(spring), motion.moment))
-    approach = start - motion.tilt * largest * x / gyration
-    along = np.column_stack([-y, x]) * motion.turn / gyration + [0.0, np.sqrt(1.0 - motion.turn**2)]
+    approach = start - motion.tilt * largest * shape.position[:, 0] / gyration
+    along = shifts(patches, np.array([0.0, np.sqrt(1.0 - motion.turn**2), motion.turn / gyration]))
     sliders = spring.on(shape).foundation(start)
     if fine:
         sliders = at_levels(spring.curve, ratio, spring.joint.mu, FINE)
@@ -236,49 +235,43 @@ def friction(
         return sliders.moved(force, approach, approach, way * gross)
 
     rest, losses = sliders.at_rest(approach.size), []
-    forces = [shape.share @ np.sum(moved(rest, way).traction * along, axis=1) for way in WAYS]
+    forces = [shape.share @ np.sum(together(moved(rest, way).force) * along, axis=1) for way in WAYS]
     for size in AMPLITUDES:
         back = moved(moved(rest, size).force, -2.0 * size)
         losses.append(shape.share @ (back.loss + moved(back.force, 2.0 * size).loss))
     return np.array(forces), np.array(losses)
 
 
-def pole_deviations(shape: PressureShape, patches: PressureShape, torque: bool = False) -> Array:
+def pole_deviations(shape: PressureShape, patches: FrictionPatches) -> Array:
     """(2) deviation of the force over the friction [1] in gross slip about POLES poles inside the contact: of
-    95 %, largest; also of patches that had a torque of their own, with an ellipsoid for their limit."""
+    95 %, largest."""
     rng = np.random.default_rng(1)
     poles = shape.position[rng.choice(shape.share.size, POLES, p=shape.share)]
     poles = poles + 0.5 * np.sqrt(np.prod(np.ptp(shape.position, axis=0)) / shape.share.size) * rng.uniform(
         -1.0, 1.0, poles.shape
     )
 
-    def force(points: PressureShape, radius: Array) -> Array:
-        arm = points.position - poles[:, None]
-        size = np.sqrt(np.sum(arm**2, axis=-1) + radius**2)
-        way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / size[..., None]
-        return np.asarray(np.einsum("n,pni->pi", points.share * points.equal, way))
+    def force(points: FrictionPatches) -> Array:
+        x, y = turning(SLIDERS)
+        places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
+        arm = places - poles[:, None, None]
+        way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
+        return np.asarray(np.einsum("n,pkni->pi", points.share * points.equal, way)) / SLIDERS
 
-    radius = OWN * gyrations(shape, patches) if torque else np.zeros(patches.share.size)
-    off = np.linalg.norm(force(shape, np.zeros(shape.share.size)) - force(patches, radius), axis=1)
+    off = np.linalg.norm(force(shape.as_patches()) - force(patches), axis=1)
     return np.quantile(off, [0.95, 1.0])
 
 
-def gyrations(shape: PressureShape, patches: PressureShape) -> Array:
-    """Radii of gyration (m) [m] of the friction of the nodes that are nearest to each patch, about it."""
-    away, cell = cKDTree(patches.position).query(shape.position)
-    friction, count = shape.share * shape.equal, patches.share.size
-    square = np.bincount(cell, friction * away**2, count) / np.bincount(cell, friction, count).clip(1e-300)
-    return np.asarray(np.sqrt(square))
-
-
 def print_poles() -> None:
-    """Deviation of the force in gross slip about any pole over the number of patches, and with torques of
-    their own: of 95 %, largest."""
-    print("| contact | patches | | with torques of their own |\n|---|---|---|---|")
+    """Deviation of the force in gross slip about any pole over the number of patches, also of patches that
+    were points: of 95 %, largest."""
+    print("| contact | patches | | points |\n|---|---|---|---|")
     for name, shape in contacts():
         for label, (count, reduced) in MANY.items():
             patches = reduced(shape, count)
-            cells = ["{:.1%}, {:.1%}".format(*pole_deviations(shape, patches, own)) for own in (False, True)]
+            points = patches.as_patches()
+            both = (patches if isinstance(patches, FrictionPatches) else points), points
+            cells = ["{:.1%}, {:.1%}".format(*pole_deviations(shape, each)) for each in both]
             print(f"| {name} | {label} | " + " | ".join(cells) + " |", flush=True)
 
 

@@ -2,7 +2,8 @@
 
     python benchmarks/plate_pressure.py
 
-For every plate the share of the force inside circles around the bolts, and the stiffness of the joint.
+For every plate the share of the force inside circles around the bolts, its radius of gyration, and the
+stiffness of the joint.
 """
 
 import tempfile
@@ -15,7 +16,7 @@ import numpy as np
 from jointfmu_tools import cli
 from jointfmu_tools.drawing.tables import threads
 from jointfmu_tools.fem.bolted_contact import BoltedContact
-from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from jointfmu_tools.fields.joint_parameters import pressure_shape
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
@@ -23,11 +24,18 @@ from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint import plate
 from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile, load
+from jointfmu.quantity import flatten
 
 PLATES = {
     "four M12, 2 x 20 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 40 --preload 30e3",
     "four M12, 2 x 10 mm": "--plate 200x100 --bolts 4xM12 --at 160x60 --grip 20 --preload 30e3",
     "one M16, 2 x 20 mm": "--plate 100x100 --bolts M16 --grip 40 --preload 60e3",
+    "one M16 tapped, 20 and 60 mm": "--plate 100x100 --bolts M16 --grip 20 --preload 60e3 --tapped "
+    "--thickness 20 60",
+    "one M16 tapped, 30 and 60 mm": "--plate 80x80 --bolts M16 --grip 30 --preload 60e3 --tapped "
+    "--thickness 30 60",
+    "one M12 tapped, 15 and 40 mm": "--plate 100x100 --bolts M12 --grip 15 --preload 30e3 --tapped "
+    "--thickness 15 40",
 }
 """{name: drawing} of steel plates, Ra 0.8 um."""
 RADII = (0.010, 0.0125, 0.015, 0.02, 0.025)
@@ -50,13 +58,22 @@ def made(options: str, folder: Path) -> ParameterFile:
 def computed(file: ParameterFile, options: str) -> PressureShape:
     """The pressure of two elastic plates."""
     pattern, words = file.values.pattern, options.split()
-    head = threads()[words[words.index("--bolts") + 1].rpartition("x")[2]].hexagon
+    thread = threads()[words[words.index("--bolts") + 1].rpartition("x")[2]]
     thickness = 0.5e-3 * float(words[words.index("--grip") + 1])
     side = Plate(
         length=pattern.length, width=pattern.width, thickness=thickness, E=210e9, nu=0.3, density=7850.0
     )
-    bolts = BoltList(x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=head)
-    contact, preload = BoltedContact.of(Assembly(file.name, side, side, bolts)), file.start("preload")
+    sides = [side, side]
+    if "--tapped" in words:
+        first, second = (1e-3 * float(word) for word in words[words.index("--thickness") + 1 :][:2])
+        sides = [
+            replace(side, thickness=first),
+            TappedPlate(**flatten(side) | {"thickness": second, "depth": thread.d}),
+        ]
+    bolts = BoltList(
+        x=pattern.x, y=pattern.y, hole_diameter=pattern.hole_diameter, head_diameter=thread.hexagon
+    )
+    contact, preload = BoltedContact.of(Assembly(file.name, *sides, bolts)), file.start("preload")
     field = contact.solve(approach_curve(file.values), preload).field
     return pressure_shape(replace(file.values, A_0=float(field.area.sum())), field, preload)
 
@@ -67,6 +84,7 @@ def shown(file: ParameterFile, shape: PressureShape, fine: PressureShape) -> str
     apart = np.hypot(*np.moveaxis(fine.position[:, None, :] - bolts, -1, 0)).min(axis=1)
     force, rest = fine.share * fine.equal, (0.0, 0.0, 0.0)
     shares = "  ".join(f"{force[apart < r].sum():.3f} in {r * 1e3:g} mm" for r in RADII)
+    shares += f"  radius of gyration {1e3 * np.sqrt(force @ apart**2):.4g} mm"
     spring = BoltedJointSpring.of_nodes(file.values, shape)
     state = spring.motion(file.start("preload"), 0.0, rest, rest)
     return f"{shares}\n  {'':9} " + "  ".join(f"{name} {float(state[name]):.4g}" for name in OUTPUTS)

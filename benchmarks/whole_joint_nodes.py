@@ -1,13 +1,14 @@
 """The whole bolted joint with elastic sides beside finite elements with friction at every element.
 
-Three joints of two plates: a flange (outer faces rigid, sheared along x), a lap (ends rigid, sheared along x)
-and a bracket (ends rigid, a force along y off the bolts' line; far: to four times its slip). The finite
+Joints of two plates: a flange (outer faces rigid, sheared along x), another with six bolts for which nothing
+was chosen (sheared askew), a lap (ends rigid, sheared along x) and a bracket (ends rigid, a force along y off
+the bolts' line; far: to four times its slip). The finite
 elements are linear but for the contact, and reduce to the compliance of their elements' patches without loss:
 about 300 to 500, each with the law's own p(delta) and 348 springs of Coulomb (`coulomb_springs.py`), no code
 of the package's sliders, beside the joint's 120 points and 22 patches of 38 sliders. Quasi-static: up to
 LEVELS of the motion at which a linear joint would carry all friction, then a whole cycle at CYCLES of it.
 
-Run: python benchmarks/whole_joint_nodes.py [flange lap bracket bracket-far] [--why] [--refinement 1.4]
+Run: python benchmarks/whole_joint_nodes.py [flange six lap bracket bracket-far] [--why] [--refinement 1.4]
 """
 
 import argparse
@@ -51,6 +52,19 @@ JOINTS: dict[str, tuple[str, dict[str, object], Array]] = {
         "edge",
         PLATES | {"plate": "90x40", "bolts": "2xM8", "at": ["40x0"]},
         np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+    ),
+    "six": (
+        "faces",
+        PLATES
+        | {
+            "grip": ["24"],
+            "plate": "100x80",
+            "bolts": "6xM8",
+            "at": ["70x50"],
+            "grid": "3x2",
+            "preload": "12e3",
+        },
+        np.array([0.3, 1.0, 0.0, 0.0, 0.0, 0.0]) / 1.05,
     ),
     "bracket": ("edge", BRACKET, LEVER),
     "bracket-far": ("edge", BRACKET, 3.0 * LEVER),

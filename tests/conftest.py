@@ -21,7 +21,7 @@ from jointfmu_fmu_src.native.compiled.cache import CACHE, COMPILER, compiler_cac
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
 from jointfmu_tools.host import Instance
 
-settings.register_profile("jointfmu", deadline=None, max_examples=100, derandomize=True)
+settings.register_profile("jointfmu", deadline=None, max_examples=60, derandomize=True)
 settings.load_profile("jointfmu")
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -8,10 +8,14 @@ from jointfmu.quantity import Array, flatten
 
 
 class DataTable(NamedTuple):
-    """Rows (n, k) of numbers that parameters decide, of which there is room for `most`."""
+    """Rows (n, k) of numbers that parameters decide, of which there is room for `most`.
+
+    digits : whether they are whole and have two bytes; a row of them is a multiple of 8 bytes
+    """
 
     rows: Array
     most: int
+    digits: bool = False
 
 
 Tables = Mapping[str, DataTable]

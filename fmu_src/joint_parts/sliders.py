@@ -39,12 +39,12 @@ def _plane(g: Graph) -> None:
     g.add(
         "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
     )
-    g.add("direction", "shift -> its direction and size", shift, direction(shift))
-    tried, unit, (carried,) = symbols("t", 2), symbols("e", 2), symbols("w", 1)
-    given = [*force, *tried, *unit, carried, *ends]
+    tried = symbols("t", 2)
+    e_x, e_y, size = direction(shift)
+    given = [*force, *tried, *shift, carries, *ends]
     way = "limits before and after, stiffness, compliance"
-    known = f"force, trial force, direction and size of the shift times gain, {way}"
-    slid = slide_in_plane(force, tried, unit, carried, *ends)
+    known = f"force, trial force, shift, gain, {way}"
+    slid = slide_in_plane(force, tried, [e_x, e_y], carries * size, *ends)
     results = "force, tangent xx, xy, yy, loss, slip"
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
     g.add("slide_plane", f"{known} -> {results}", given, y)

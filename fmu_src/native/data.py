@@ -19,7 +19,7 @@ from jointfmu.quantity import Array, flat_fields
 
 from ..folders import parts_of
 from ..joint_parts.c_text import number, string
-from ..joint_parts.data import NO_TABLES, DataTable, Split, Tables
+from ..joint_parts.data import NO_TABLES, Split, Tables
 from ..naming import LONGEST
 
 MAGIC = "jointfmu data 1"
@@ -102,11 +102,11 @@ def block(
         _letters("magic", MAGIC, len(MAGIC) + 1),
         _letters("name", name, LONGEST + 1),
         _letters("token", token, TOKEN_ROOM),
-        _numbers("start", np.array(start)),
-        _numbers("fixed", np.array([*fixed, 0.0])),  # one more, for C
+        _numbers("start", np.array(start, "<f8")),
+        _numbers("fixed", np.array([*fixed, 0.0], "<f8")),  # one more, for C
     ]
-    for table, (rows, most) in tables.items():
-        room = np.zeros((most, rows.shape[1]))
+    for table, (rows, most, digits) in tables.items():
+        room = np.zeros((most, rows.shape[1]), "<i2" if digits else "<f8")
         room[: len(rows)] = rows
         count = Member("int64_t", f"n_{table}", (), str(len(rows)), len(rows).to_bytes(8, "little"))
         shown = _numbers(table, room[: max(len(rows), 1)]).text  # C fills up with zeros
@@ -134,7 +134,7 @@ def data_of(
 def placeholder(model: Model, given: Split) -> Data:
     """The block that parts are compiled with."""
     count = 1 + len(model.inputs) + len(model.outputs) + len(given.exposed)
-    tables = {name: DataTable(table.rows[:0], table.most) for name, table in given.tables.items()}
+    tables = {name: table._replace(rows=table.rows[:0]) for name, table in given.tables.items()}
     return block(PLACEHOLDER, "", [0.0] * count, [0.0] * len(given.fixed), tables)
 
 
@@ -150,7 +150,9 @@ def _letters(name: str, text: str, room: int) -> Member:
 
 def _numbers(name: str, values: Array) -> Member:
     def text(part: Array) -> str:
-        inner = [number(v) for v in part] if part.ndim == 1 else [text(row) for row in part]
+        one = str if values.dtype.kind == "i" else number
+        inner = [one(v) for v in part] if part.ndim == 1 else [text(row) for row in part]
         return "{" + (", " if part.ndim == 1 else ",\n        ").join(inner) + "}"
 
-    return Member("double", name, values.shape, text(values), values.astype("<f8").tobytes())
+    kind = "int16_t" if values.dtype.kind == "i" else "double"
+    return Member(kind, name, values.shape, text(values), values.tobytes())

@@ -5,6 +5,7 @@ import json
 import shlex
 import shutil
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +16,15 @@ from jointfmu_fmu_src.native.compiled.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES
+from jointfmu_tools.fem.whole_joint import WholeJoint
+from jointfmu_tools.joints.bolted_joint.new import computed as new_computed
 from jointfmu_tools.parser import parser
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import default
+from jointfmu.parameters import ParameterFile, default
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -79,24 +82,31 @@ def shear() -> str:
     return "".join(f"{2.0 * a:.8g},{5e3 * b:.8g}\n" for a, b in zip(u, force, strict=True))
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def read(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What examples read: parameters, a scan, loops, a log, stiffness over preload."""
+    place = tmp_path_factory.mktemp("read")
     curve = HarmonicDriveSpring.of(default("harmonic_drive").values).curve
     torque = 15.0 * np.sin(np.linspace(0.0, 2.5 * np.pi, 200))
     angle = np.sign(torque) * np.interp(np.abs(torque), curve.load, curve.displacement)
     rows = "".join(f"{a:.8g},{b:.8g}\n" for a, b in zip(torque, angle, strict=True))
-    (tmp_path / "loop.csv").write_text(f"torque [N.m],angle [rad]\n{rows}")
-    (tmp_path / "stiffness.csv").write_text(
+    (place / "loop.csv").write_text(f"torque [N.m],angle [rad]\n{rows}")
+    (place / "stiffness.csv").write_text(
         "preload [N],stiffness [N/m]\n3000,4e9\n9000,9e9\n15000,1.3e10\n20000,1.6e10\n30000,2.2e10\n"
     )
-    shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", tmp_path / "my_joint.toml")
+    shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", place / "my_joint.toml")
     speeds = "".join(f"{s * w},{s * (0.5 + 0.3 * w)}\n" for s in (-1.0, 1.0) for w in (0.1, 0.5, 1.0, 2.0))
-    (tmp_path / "robot.csv").write_text("dq [rad/s],i [A]\n" + speeds)
-    shutil.copy(ROOT / "models/robots/six_axis.xml", tmp_path / "my_robot.xml")
-    (tmp_path / "shear.csv").write_text("displacement [um],force [N]\n" + shear())
-    assert cli.main([*shlex.split(EXAMPLES["surface synthesize"])[:-1], str(tmp_path / "scan.csv")]) == 0
-    return tmp_path
+    (place / "robot.csv").write_text("dq [rad/s],i [A]\n" + speeds)
+    shutil.copy(ROOT / "models/robots/six_axis.xml", place / "my_robot.xml")
+    (place / "shear.csv").write_text("displacement [um],force [N]\n" + shear())
+    assert cli.main([*shlex.split(EXAMPLES["surface synthesize"])[:-1], str(place / "scan.csv")]) == 0
+    return place
+
+
+@pytest.fixture
+def folder(read: Path, tmp_path: Path) -> Path:
+    """Those files in a folder of its own."""
+    return shutil.copytree(read, tmp_path, dirs_exist_ok=True)
 
 
 @pytest.mark.parametrize(
@@ -124,6 +134,11 @@ def built(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
     return place
 
 
+def coarse(file: ParameterFile, plates: new_computed.Plates, attached: str) -> new_computed.ComputedJoint:
+    """The whole joint of a drawing, solved here."""
+    return new_computed.whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
@@ -143,6 +158,9 @@ def test_an_example_with_fmus_runs(
         computed = shlex.split(EXAMPLES["footprint compute"])
         monkeypatch.chdir(built)
         assert cli.main([*computed, "--field", "my_field.csv"]) == 0
+    if line.startswith("new bolted-joint"):  # coarse elements, which no other test is to find
+        monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+        monkeypatch.setattr(new_computed, "whole_joint", coarse)
     monkeypatch.chdir(built)
     with here_alone():
         assert cli.main(shlex.split(line)) == 0

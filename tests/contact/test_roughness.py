@@ -140,6 +140,7 @@ def test_a_roughness_acts_or_is_refused(tmp_path):
         load(path)
 
 
+@pytest.mark.slow
 def test_a_field_keeps_it():
     file = default("bolted_joint")
     shape = pressure_shape(file.values.pattern)

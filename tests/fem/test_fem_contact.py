@@ -10,7 +10,7 @@ from jointfmu_tools.fem.balance import RigidBalance
 from jointfmu_tools.fem.bolted_contact import BoltedContact, elastic_body, midway
 from jointfmu_tools.fem.contact import ContactModel, ContactSolution, Interface
 from jointfmu_tools.fem.elasticity import Cholesky, ElasticBody
-from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate, TappedPlate
 from scipy.sparse import diags_array
 from skfem import MeshHex, MeshQuad
 
@@ -300,3 +300,41 @@ def test_neighbours_of_bolts():
     assert len(middles) == 8
     assert (0.05, 0.15) in middles
     assert (0.1, -0.075) in middles
+
+
+# Threads in side 2: its body is held by their walls
+
+
+def test_a_stiff_side_does_not_tell_how_a_bolt_holds_it(law):
+    """Head and nut, or head and thread: the same pressure, also off the middle."""
+    stiff = STEEL | {"E": 1e5 * STEEL["E"]}
+    sizes = {"length": 0.08, "width": 0.06, "thickness": 0.012}
+    bolts = BoltList(x=(-0.011, 0.015), y=(-0.004, 0.007), hole_diameter=0.009, head_diameter=0.016)
+    fields = [
+        BoltedContact.of(Assembly("stiff", Plate(**sizes, **STEEL), side, bolts), 0.5).solve(law, 15e3).field
+        for side in (Plate(**sizes, **stiff), TappedPlate(**sizes, **stiff, depth=0.008))
+    ]
+    nut, thread = fields
+    assert thread.force == pytest.approx(30e3, rel=1e-6)
+    np.testing.assert_allclose(thread.pressure, nut.pressure, atol=1e-3 * nut.pressure.max())
+
+
+def test_a_thread_pulls_beside_its_hole(law):
+    """Two halves whose bolts pull at the wall of the hole press nearer to it than halves under heads, in the
+    mirror image alike; the wall bears all of the force in the bolt's own axis."""
+    sizes = {"length": 0.06, "width": 0.06, "thickness": 0.015}
+    bolt = BoltList(x=(0.004,), y=(0.0,), hole_diameter=0.009, head_diameter=0.016)
+    reach = []
+    for tapped in (False, True):
+        side = TappedPlate(**sizes, **STEEL, depth=0.008) if tapped else Plate(**sizes, **STEEL)
+        joint = BoltedContact.of(Assembly("thread", Plate(**sizes, **STEEL), side, bolt), 0.5)
+        field, head = joint.solve(law, 15e3).field, joint.heads[-1][:, 0].reshape(-1, 3)
+        assert head.sum(axis=0) == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)
+        at = joint.bodies[-1].nodes[:, np.abs(head[:, 2]) > 1e-9]
+        if tapped:
+            np.testing.assert_allclose(np.hypot(at[0] - 0.004, at[1]), 0.0045, rtol=0.05)
+            assert (at[2].min(), at[2].max()) == pytest.approx((0.0, 0.008), abs=1e-12)
+        force = field.area * field.pressure
+        assert force @ field.position / force.sum() == pytest.approx([0.004, 0.0], abs=1e-5)
+        reach.append(np.sqrt(force @ ((field.position - [0.004, 0.0]) ** 2).sum(axis=1) / force.sum()))
+    assert 0.7 < reach[1] / reach[0] < 1.0

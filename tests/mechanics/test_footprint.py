@@ -36,7 +36,7 @@ patterns = st.builds(
 # Bolts
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(pattern=patterns)
 def test_force_is_conserved(pattern):
     """1 N in a bolt is 1 N in the contact, for each bolt and for the shapes of all."""

@@ -12,7 +12,8 @@ from jointfmu.mechanics.footprint.elimination import solved
 from jointfmu.mechanics.footprint.friction import friction_patches
 from jointfmu.mechanics.footprint.patches import few_points
 from jointfmu.mechanics.footprint.plate import BoltedPlate
-from jointfmu.mechanics.footprint.shape import PressureShape
+from jointfmu.mechanics.footprint.shape import FrictionPatches, PressureShape
+from jointfmu.mechanics.sliders import SLIDERS, turning
 from jointfmu.parameters import default
 
 CONTACTS = ("frame", "plate", "row")
@@ -23,6 +24,10 @@ def contact(name: str) -> PressureShape:
     """The default frame, a plate without symmetry, one with bolts at random, one with a row of bolts."""
     if name == "random":
         return patch_reduction.random_plate(5)
+    if name == "annulus":
+        return patch_reduction.annulus()
+    if name == "square":
+        return dict(patch_reduction.contacts())["plate, 4 x M12"]
     if name == "frame":
         return pressure_shape(default("bolted_joint").values.pattern)
     if name == "plate":
@@ -39,7 +44,7 @@ def reduced(name: str, count: int) -> PressureShape:
 
 
 @cache
-def moved(name: str) -> PressureShape:
+def moved(name: str) -> FrictionPatches:
     """The patches of its friction."""
     return friction_patches(contact(name), 22)
 
@@ -47,8 +52,10 @@ def moved(name: str) -> PressureShape:
 def balance(shape: PressureShape) -> np.ndarray:
     """Sums that are exact, each over the sum of its sizes."""
     (x, y), share, equal, tilt = shape.position.T, shape.share, shape.equal, shape.tilt
-    one = np.ones_like(x)
-    rows = np.stack([one, x, y, x * x, x * y, y * y, equal, equal * x, equal * y, tilt, tilt * x, tilt * y])
+    one, own = np.ones_like(x), 0.5 * shape.radius**2 if isinstance(shape, FrictionPatches) else 0.0
+    rows = np.stack(
+        [one, x, y, x * x + own, x * y, y * y + own, equal, equal * x, equal * y, tilt, tilt * x, tilt * y]
+    )
     return rows @ share, np.abs(rows) @ share
 
 
@@ -88,7 +95,9 @@ def test_largest_pressure_is_that_of_all_nodes(name):
 def test_few_nodes_stay_as_they_are():
     shape = contact("frame")
     assert few_points(shape, shape.share.size) is shape
-    assert friction_patches(shape, shape.share.size) is shape
+    few = friction_patches(shape, shape.share.size)
+    assert few.position is shape.position
+    assert not np.any(few.radius)
 
 
 def test_equations_are_solved_as_lapack_does():
@@ -128,8 +137,8 @@ def test_force_and_stiffness_are_those_of_all_nodes(spring, name, states, force,
 @pytest.mark.parametrize("name", CONTACTS)
 def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     """Coulomb alone, by a law that the patches do not know: the sum of p |r - pole|, with a kink at the pole,
-    of tilted contacts. Over 400 poles 95 % are within 0.75 % of the friction, all within 2 %: a patch near
-    the pole has an arm that is wrong by part of its size. Seen: 0.42 % and 1.15 %.
+    of tilted contacts. Over 400 poles 95 % are within 1.6 % of the friction, all within 4 %: a patch has one
+    pressure, where tilts change it across. Seen: 1.3 % and 2.9 %.
     """
     shape, patches, rng = contact(name), moved(name), np.random.default_rng(6)
     gyration = np.sqrt(shape.share @ np.sum(shape.position**2, axis=1))
@@ -138,21 +147,39 @@ def test_a_turn_about_any_pole_slips_as_all_nodes_do(spring, name):
     mean = patch_reduction.mean_pressure(spring)
     largest = np.max(patch_reduction.tightened(spring.curve, shape, (mean, 0.0)))
     largest -= spring.curve.displacement[0]
+    circle = turning(SLIDERS)[::-1].T
 
     def friction(points, load, turn, pole):
         start = patch_reduction.tightened(spring.curve, points, load)
         p = spring.curve.derivatives(start - largest * (points.position @ turn), 0)[0]
-        arm = np.hypot(*(points.position - pole).T)
+        places = points.position[:, None] + points.radius[:, None, None] * circle
+        arm = np.mean(np.hypot(*np.moveaxis(places - pole, -1, 0)), axis=1)
         return points.share @ (p * arm), points.share @ p
 
     off = []
     for _ in range(400):
         load = mean, moment * rng.uniform(-1.0, 1.0)
         turn, pole = 0.2 / reach * rng.uniform(-1.0, 1.0, 2), 1.5 * reach * rng.uniform(-1.0, 1.0, 2)
-        (there, force), (few, _) = (friction(points, load, turn, pole) for points in (shape, patches))
+        (there, force), (few, _) = (
+            friction(points, load, turn, pole) for points in (shape.as_patches(), patches)
+        )
         off.append(abs(few - there) / (force * np.hypot(gyration, np.hypot(*pole))))
-    assert np.quantile(off, 0.95) < 0.0075
-    assert np.max(off) < 0.02
+    assert np.quantile(off, 0.95) < 0.016
+    assert np.max(off) < 0.04
+
+
+@pytest.mark.parametrize(
+    ("name", "most"), [("frame", 0.01), ("square", 0.01), ("annulus", 0.01), ("row", 0.012)]
+)
+def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
+    """A patch at the pole pulls no way: 95 % of 400 poles within 1 % of the friction (three bolts in a row:
+    1.2 %), all within 2 %. Seen: 0.9, 0.9, 0.8 and 1.1 %; largest 1.7 %. Points would have 4 to 5 and 9 %.
+    """
+    patches = moved(name)
+    found = patch_reduction.pole_deviations(contact(name), patches)
+    assert found[0] < most
+    assert found[1] < 0.02
+    assert patch_reduction.pole_deviations(contact(name), PressureShape.as_patches(patches))[0] > 2.0 * most
 
 
 @pytest.mark.slow

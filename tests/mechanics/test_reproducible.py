@@ -9,7 +9,7 @@ from jointfmu.mechanics.footprint import friction, patches
 from jointfmu.mechanics.footprint.reproducible import cleared, product, root, rounded, to_power
 from jointfmu.mechanics.footprint.shape import PressureShape
 
-TIMES = 50
+TIMES = 20
 """Each moves thousands of numbers, so that many lie where rounding changes its mind if any do."""
 AGREE = 1e-9
 NUMBERS = ("share", "position", "equal", "tilt")

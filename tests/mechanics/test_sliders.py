@@ -181,7 +181,7 @@ def test_ten_times_larger_steps_agree_along_straight_paths(sliders, approaches):
 
 
 def test_steps_on_a_circle_converge_with_second_order(sliders):
-    """Half the step leaves a quarter of what is missing, against 1024; the loss of a turn of 1.5 times gross
+    """Half the step leaves a quarter of what is missing, against 512; the loss of a turn of 1.5 times gross
     slip in 24 steps is 1.6 % short, where a return straight to the centre has 9 %."""
 
     def around(count: int) -> tuple[np.ndarray, float]:
@@ -190,7 +190,7 @@ def test_steps_on_a_circle_converge_with_second_order(sliders):
         tractions, losses, _ = walk(sliders, np.column_stack([np.full_like(x, APPROACH), x, y]))
         return tractions[-1], float(np.sum(losses[-count:]))
 
-    force, loss = around(1024)
+    force, loss = around(512)
     found = [around(count) for count in (24, 48, 96)]
     errors = [float(np.hypot(*(one - force))) for one, _ in found]
     misses = [1.0 - lost / loss for _, lost in found]

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
-import lief
 import pytest
 from conftest import run_host
 from jointfmu_fmu_src.building import build
@@ -22,7 +21,6 @@ from jointfmu.joints import MODELS
 
 pytestmark = pytest.mark.slow
 
-lief.logging.disable()
 VERSIONS = ("fmi2", "fmi3")
 BINARIES = {
     "fmi2": {
@@ -41,7 +39,6 @@ BINARIES = {
 }
 LARGEST_FMU = 600_000
 """Bytes [1]. The proof inside is less than a tenth of them, the own elementary functions are another."""
-MACHO = lief.MachO.Header.CPU_TYPE
 SYSTEM_DLL = re.compile(r"api-ms-win-crt-[a-z]+-l1-1-0\.dll|kernel32\.dll", re.IGNORECASE)
 LINKER_MADE = {"__mh_dylib_header", "___dso_handle"}
 """What zig's linker adds to every macOS library."""
@@ -61,7 +58,11 @@ def binaries(native: Path, version: str) -> Iterator[tuple[str, bytes]]:
 
 
 def images(content: bytes) -> Iterator[Any]:
-    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator."""
+    """The libraries in a file: one, or all of a universal file. lief frees them with the iterator. It takes
+    half a second to load: what does not use it does not wait for it."""
+    import lief
+
+    lief.logging.disable()
     if lief.is_macho(list(content)):
         file = lief.MachO.parse(list(content))
         yield from file
@@ -70,6 +71,8 @@ def images(content: bytes) -> Iterator[Any]:
 
 
 def exported(image: Any) -> set[str]:
+    import lief
+
     if isinstance(image, lief.PE.Binary):
         return {entry.name for entry in image.get_export().entries}
     if isinstance(image, lief.MachO.Binary):
@@ -92,6 +95,8 @@ def test_every_platform_is_there(native: Path, version: str) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Path, version: str) -> None:
+    import lief
+
     functions = declared(version)
     assert len(functions) == {"fmi2": 44, "fmi3": 75}[version]
     for path, content in binaries(native, version):
@@ -102,6 +107,8 @@ def test_each_exports_every_function_of_the_standard_and_nothing_else(native: Pa
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_linux_needs_the_c_runtime_of_glibc_2_17_alone(native: Path, version: str) -> None:
+    import lief
+
     seen = set()
     for path, content in binaries(native, version):
         if not path.endswith(".so"):
@@ -119,6 +126,8 @@ def test_linux_needs_the_c_runtime_of_glibc_2_17_alone(native: Path, version: st
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_windows_needs_the_c_runtime_of_the_system_alone(native: Path, version: str) -> None:
+    import lief
+
     for path, content in binaries(native, version):
         if not path.endswith(".dll"):
             continue
@@ -133,7 +142,9 @@ def test_windows_needs_the_c_runtime_of_the_system_alone(native: Path, version: 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
-    seen = []
+    import lief
+
+    cpu, seen = lief.MachO.Header.CPU_TYPE, []
     for path, content in binaries(native, version):
         if not path.endswith(".dylib"):
             continue
@@ -147,10 +158,10 @@ def test_macos_11_and_newer_can_load_it(native: Path, version: str) -> None:
                 (kinds.ID_DYLIB, f"@rpath/{Path(path).name}"),
                 (kinds.LOAD_DYLIB, "/usr/lib/libSystem.B.dylib"),
             }, path
-            if image.header.cpu_type == MACHO.ARM64:
+            if image.header.cpu_type == cpu.ARM64:
                 signed = bytes(content[image.fat_offset :])
                 check_signature(signed, image.code_signature.data_offset)
-    assert sorted(map(str, seen)) == sorted(map(str, [MACHO.X86_64, MACHO.ARM64] * len(MODELS)))
+    assert sorted(map(str, seen)) == sorted(map(str, [cpu.X86_64, cpu.ARM64] * len(MODELS)))
 
 
 def check_signature(library: bytes, at: int) -> None:

@@ -1,7 +1,8 @@
 """The C sources of every native FMU: two compilers' warnings, with sanitizers, in and out of order, fuzzed.
 
-The programs in tests/native drive both FMI versions of a joint. Joints of their own there test the runtime
-alone: `dummy` has everything a joint without memory can have, `passthrough` the least, `slider` a memory.
+The programs in tests/native/hosts drive both FMI versions of a joint. Joints of their own there test the
+runtime alone: `dummy` has everything a joint without memory can have, `passthrough` the least, `slider` a
+memory.
 """
 
 import math
@@ -16,7 +17,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import fmpy
-import lief
 import pytest
 from conftest import RELEASED
 from joint_cases import JOINTS
@@ -31,7 +31,7 @@ from jointfmu.parameters import default
 
 pytestmark = pytest.mark.slow
 
-HOSTS = Path(__file__).parent
+HOSTS = Path(__file__).parent / "hosts"
 FMI_HEADERS = Path(fmpy.__file__).parent / "c-code"
 STRICT = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion")
 COMPILERS = {"gcc": ("gcc",), "clang": ("clang",), "zig": (sys.executable, "-m", "ziglang", "cc")}
@@ -41,12 +41,12 @@ SANITIZERS = {"clang": "address,undefined", "gcc": "address,undefined", "zig": "
 PLAIN = ("-O2", "-fPIC", "-fno-sanitize=all")
 LINUX, HERE = (("-target", TARGETS[place]) for place in ("x86_64-linux", fmpy.platform_tuple))
 VERSIONS = ("2", "3")
-FUZZ_CALLS = 500_000 // (len(MODELS) * len(VERSIONS))
+FUZZ_CALLS = 250_000 // (len(MODELS) * len(VERSIONS))
 
 FEW_PARTNERS = ("RotationalInertia", "TorqueProfile")
 """One with states and one that follows time: the others have the same C but for their equations."""
 ALONE = {"dummy": (2, 3, 4), "passthrough": (2, 2, 1), "slider": (2, 3, 2)}
-"""{joint of tests/native: numbers of inputs, outputs, parameters}."""
+"""{joint of tests/native/hosts: numbers of inputs, outputs, parameters}."""
 C_LIBRARY = {
     "calloc", "free", "memcpy", "memmove", "memset", "memcmp", "strlen", "strcmp", "strchr", "snprintf",
     "sqrt", "fabs", "fmin", "fmax", "floor", "ceil", "copysign",
@@ -59,7 +59,7 @@ mathematical library what is exact: the same bits on every machine."""
 
 def sanitized(compiler: str) -> tuple[str, ...]:
     """A compiler's options for its sanitizers."""
-    return ("-O1", "-g1", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
+    return ("-O0", "-g1", f"-fsanitize={SANITIZERS[compiler]}", "-fno-sanitize-recover=all")
 
 
 UNDEFINED = 0
@@ -82,7 +82,7 @@ class Sources(NamedTuple):
 
 @cache
 def c_of(name: str) -> Sources:
-    """The sources of an FMU, or of the joint in a folder of tests/native."""
+    """The sources of an FMU, or of the joint in a folder of tests/native/hosts."""
     if model := (MODELS | PARTNERS).get(name):
         files = sources(name, partner_parameters(name) if name in PARTNERS else default(model.joint))
         return Sources(files, len(model.inputs), len(model.outputs), len(model.parameter_fields()))
@@ -177,7 +177,7 @@ every_version = pytest.mark.parametrize("version", VERSIONS)
     ("compiler", "name"),
     [
         *(("zig", name) for name in (*MODELS, *FEW_PARTNERS, *ALONE)),
-        *(("gcc", name) for name in ("BoltedJoint", "GearMesh", "HarmonicDriveSpring", *ALONE)),
+        *(("gcc", name) for name in ("BoltedJoint", "GearMesh", "HarmonicDriveSpring", "dummy")),
     ],
 )
 def test_no_warning(compiler: str, builder: Builder, name: str) -> None:
@@ -198,6 +198,8 @@ def test_files_use_each_other_in_one_direction() -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_no_data_that_changes_and_little_of_the_c_library(builder: Builder, name: str) -> None:
+    import lief
+
     (merged,) = builder.objects("zig", name, *PLAIN, *LINUX)
     binary = lief.parse(str(merged))
     assert isinstance(binary, lief.ELF.Binary)

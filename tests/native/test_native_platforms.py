@@ -1,8 +1,8 @@
 """Binaries for other platforms, run: Windows in wine, Linux aarch64 in qemu; both against Linux x86_64.
 
-The hosts in tests/native are built for each platform by the same compiler as the FMUs. macOS is not run.
-Where there is no C library of aarch64 to load a binary with, programs that need none are run all the same:
-the FMU's own sources and a host, linked into one.
+The hosts in tests/native/hosts are built for each platform by the same compiler as the FMUs. macOS is not
+run. Where there is no C library of aarch64 to load a binary with, programs that need none are run all the
+same: the FMU's own sources and a host, linked into one.
 """
 
 import os
@@ -30,7 +30,7 @@ pytestmark = pytest.mark.slow
 
 POINTS = 200
 SYSROOT = Path("/usr/aarch64-linux-gnu")
-HOSTS = Path(__file__).parent
+HOSTS = Path(__file__).parent / "hosts"
 VERSIONS = ("fmi2", "fmi3")
 
 
@@ -104,9 +104,16 @@ STATIC = {
 Run = Callable[..., str]
 
 
+WINE = ("usr/lib*/wine", "usr/lib*/*/wine", "opt/wine*/lib*/wine")
+"""Where Wine may have its own libraries of Windows."""
+
+
 @pytest.fixture(scope="module")
 def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
-    """The environment of a Windows of its own, which runs until the end."""
+    """The environment of a Windows of its own, which runs until the end.
+
+    Hosts need its libraries alone; what Wine would install in a minute, from fonts to a browser, they do not.
+    """
     folder = tmp_path_factory.mktemp("wine")
     setting = {"WINEPREFIX": str(folder), "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml="}
 
@@ -116,6 +123,13 @@ def wine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
         )
 
     if not OTHERS["windows"].lacks():
+        system = folder / "drive_c" / "windows" / "system32"
+        found = [own for place in WINE for own in Path("/").glob(f"{place}/x86_64-windows")]
+        for libraries in found[:1]:
+            (folder / ".update-timestamp").write_text("disable\n")
+            system.mkdir(parents=True)
+            for file in libraries.iterdir():
+                (system / file.name).symlink_to(file)
         call("wineserver", "-p")
         call("wine", "wineboot", "--init")
     yield setting

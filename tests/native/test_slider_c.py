@@ -14,11 +14,12 @@ from jointfmu_fmu_src.native.code.emit import HELPERS, function
 from jointfmu_fmu_src.native.code.generate import RUNTIME
 from jointfmu_fmu_src.native.compiled import compiler
 
-from jointfmu.mechanics.jenkins import Sliders, beyond, direction, reaches, slide, trial
+from jointfmu.mechanics.jenkins import Sliders, beyond, reaches, slide, trial
+from jointfmu.mechanics.sliders import turning
 
 pytestmark = pytest.mark.slow
 
-MOVES, SLIDERS = 100_000, 8
+MOVES, SLIDERS = 100_000, 40
 ROUND_OFF = 1e-13
 """Of a sum of some products, over the largest of what is compared: C adds in another order."""
 POINTER_TO = POINTER(c_double)
@@ -26,16 +27,19 @@ AVX = " avx " in Path("/proc/cpuinfo").read_text(encoding="utf-8")
 """Whether this processor has vectors of four."""
 
 
+ROWS = ("K", "per_K", "before", "after", "force_x", "force_y", "turning_x", "turning_y")
+
+
 class CSliders(Structure):
     """`Sliders` of sliders.h."""
 
-    _fields_ = [(name, POINTER_TO) for name in ("K", "per_K", "before", "after", "force_x", "force_y")]
+    _fields_ = [(name, POINTER_TO) for name in ROWS]
 
 
 class Sum(Structure):
     """`SliderSum`."""
 
-    _fields_ = [("force", c_double * 2), ("tangent", c_double * 3), ("loss", c_double)]
+    _fields_ = [("force", c_double * 3), ("tangent", c_double * 6), ("loss", c_double)]
 
 
 class Abreast(Structure):
@@ -78,8 +82,8 @@ def pointer(values: np.ndarray) -> "POINTER_TO":
 
 
 def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
-    """Springs, limits before and after, forces (2, n) within the former, shift (2): some at the limit, some
-    without limit or spring, many small shifts and none."""
+    """Springs, limits before and after, forces (2, n) within the former, shift x, y and around (3): some
+    at the limit, some without limit or spring, many small shifts and none."""
     rng = np.random.default_rng(1)
     for _ in range(MOVES // SLIDERS):
         K = rng.uniform(0.1, 2.0, SLIDERS) * (rng.random(SLIDERS) > 0.1)
@@ -87,7 +91,7 @@ def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
         after = before if rng.random() < 0.5 else rise
         angle = rng.uniform(0.0, 2.0 * np.pi, SLIDERS) if plane else np.pi * rng.integers(0, 2, SLIDERS)
         size = before * np.where(rng.random(SLIDERS) < 0.3, 1.0, rng.random(SLIDERS))
-        shift = rng.normal(size=2) * rng.choice([0.0, 1e-9, 1e-3, 0.3, 3.0])
+        shift = rng.normal(size=3) * rng.choice([0.0, 1e-9, 1e-3, 0.3, 3.0])
         yield K, before, after, size * np.array([np.cos(angle), np.sin(angle) * plane]), shift
 
 
@@ -96,7 +100,7 @@ def in_c(
 ) -> tuple[CSliders, np.ndarray]:
     """The struct, and what has to stay alive as long as it."""
     per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
-    kept = np.stack([K, per_K, before, after, force[0], force[1]])
+    kept = np.stack([K, per_K, before, after, *force, *turning(SLIDERS)])
     rows = [pointer(row) for row in kept]
     if after is before:
         rows[3] = rows[2]
@@ -110,7 +114,7 @@ def close(found: object, expected: object, size: float) -> None:
 def test_along_one_direction(library: CDLL) -> None:
     """Forces, sums, tangent and rates of a limit that changes, slope of the heat of one that stays."""
     moved, slipped = np.empty(SLIDERS), 0
-    for K, before, after, force, (u, _) in moves(plane=False):
+    for K, before, after, force, (u, *_) in moves(plane=False):
         s, kept = in_c(K, before, after, force)
         total, rate = Sum(), Sum()
         library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
@@ -134,22 +138,28 @@ def test_along_one_direction(library: CDLL) -> None:
     assert 0.2 * MOVES < slipped < 0.8 * MOVES
 
 
+def of_each(shift: np.ndarray) -> np.ndarray:
+    """Shifts (2, n) of the sliders."""
+    return np.asarray(shift[:2, None] + shift[2] * turning(SLIDERS))
+
+
 def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) -> np.ndarray:
     """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
     forces alone are the same, however many sliders stand abreast, and all the bits by vectors of four."""
-    K, per_K, before, after, *force = kept
-    tried, sticks = np.empty((2, SLIDERS)), (c_double * 2)()
-    out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 2)(*shift)
-    first = library.sliders_stick(SLIDERS, byref(s), way, out, sticks)
+    K, per_K, before, after, *force, e_x, e_y = kept
+    tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
+    out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 3)(*shift)
+    first = library.sliders_stick(AVX, SLIDERS, byref(s), way, out, sticks)
     limits = np.append(reaches(list(tried), after) > 0.0, True)
     assert first == np.argmax(limits) // 2 * 2
-    close(list(sticks), np.sum(tried[:, :first], axis=1), SLIDERS * (1.0 + np.max(np.abs(tried))))
-    e_x, e_y, size = np.array(direction(list(shift)))[:, None] * np.ones(SLIDERS)
+    around = np.sum(e_x * tried[0] + e_y * tried[1], where=np.arange(SLIDERS) < first)
+    sums = [*np.sum(tried[:, :first], axis=1), around]
+    close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
     abreast, alone = Abreast(n=SLIDERS), Abreast(n=SLIDERS - 2)
     fours = Abreast(n=SLIDERS, fours=AVX)
     for rows in (abreast, fours, alone):
         given = np.ctypeslib.as_array(rows.given)
-        given[:, :SLIDERS] = [*force, *tried, e_x, e_y, K * size, before, after, K, per_K]
+        given[:, :SLIDERS] = [*force, *tried, *of_each(shift), K, before, after, K, per_K]
         library.sliders_slide(byref(rows), c_bool(rows is alone))
     found = np.array(abreast.found)[:, :SLIDERS]
     np.testing.assert_array_equal(np.array(fours.found)[:, :SLIDERS], found)
@@ -164,9 +174,9 @@ def test_in_a_plane(library: CDLL) -> None:
     for K, before, after, force, shift in moves(plane=True):
         s, kept = in_c(K, before, after, force)
         moved, tangent, loss = np.split(in_plane(library, s, kept, shift)[:6], [2, 5])
-        tried = trial(list(force), 1.0, K, list(shift[:, None]))
-        slid = slide(list(force), 1.0, K, list(shift[:, None]), before, after, K, kept[1])
-        size = 1.0 + float(np.hypot(*shift) * np.sum(K))
+        tried = trial(list(force), 1.0, K, list(of_each(shift)))
+        slid = slide(list(force), 1.0, K, list(of_each(shift)), before, after, K, kept[1])
+        size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
         close(moved, slid.force, size)
         close(loss[0], slid.loss, size**2)
         close(tangent, slid.tangent, SLIDERS)
@@ -183,14 +193,14 @@ def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
         s, kept = in_c(K, limit, limit, force)
         there = in_plane(library, s, kept, shift)[:2]
         s, kept = in_c(K, limit, limit, there)
-        found = in_plane(library, s, kept, np.zeros(2))
+        found = in_plane(library, s, kept, np.zeros(3))
         np.testing.assert_array_equal(found[:2], there)
         assert np.all(found[5] == 0.0)
 
 
 def test_force_alone(library: CDLL) -> None:
     """It is that of the whole, with its tangent."""
-    for K, limit, _, force, (u, _) in moves(plane=False):
+    for K, limit, _, force, (u, *_) in moves(plane=False):
         s, kept = in_c(K, limit, limit, force)
         tangent = c_double()
         found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))

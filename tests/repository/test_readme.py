@@ -17,6 +17,8 @@ from jointfmu_tools import cli
 from jointfmu_tools.fields import nodal_result
 from jointfmu_tools.fields.nodal_result import ContactField
 from jointfmu_tools.published import validation
+from jointfmu_tools.ramps.loops import Swing
+from jointfmu_tools.report import course
 
 from jointfmu.mechanics.footprint import bolts
 from jointfmu.parameters import default
@@ -37,8 +39,15 @@ def test_the_readme_is_short():
     assert len(re.findall(r"\S*\w\S*", README)) <= 700
 
 
+@pytest.fixture
+def few_points(monkeypatch):
+    """A page's ramp and loops have few points: of elastic plates all take 20 s, and are drawn alike."""
+    monkeypatch.setattr(course, "_POINTS", 21)
+    monkeypatch.setattr(course, "_SWING", Swing(points=20))
+
+
 @pytest.mark.slow
-def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, monkeypatch):
+def test_every_block_of_the_readme_runs_top_to_bottom(tmp_path, few_points, monkeypatch):
     """In a clone; what installs and builds all is run by `.ci/run` in an environment of its own."""
     if not (ROOT / ".git").exists() or shutil.which("git") is None:
         pytest.skip("needs git and a checkout")
@@ -87,7 +96,7 @@ def folder(tmp_path_factory, native):
     return place
 
 
-def test_python_blocks_run(folder, monkeypatch):
+def test_python_blocks_run(folder, few_points, monkeypatch):
     monkeypatch.chdir(folder)
     names = {}
     for page in (FMUS, PYTHON):

@@ -23,7 +23,7 @@ SAID = {
     "modes": "every call is answered in every mode\n",
     "refusals": "every wrong call is refused with its reason\n",
 }
-"""{program of tests/native: what it prints at its end}; a program that was never run prints nothing."""
+"""{program of tests/native/hosts: what it prints at its end}; a program that was never run prints nothing."""
 
 
 def close(expected: Any, tolerance: float = SAME) -> Any:

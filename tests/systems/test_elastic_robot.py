@@ -217,6 +217,7 @@ def test_bristles_bear_steps_that_the_drives_bear(six):
     assert np.abs(fallen(model, 5e-4, "constraint") - fine).max() > 0.05
 
 
+@pytest.mark.slow
 def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_path, capsys, few_poses):
     """With a short step they are the drive's; with MuJoCo's own softer for a light rotor, which is said."""
     text = ROBOT.read_text()
@@ -236,6 +237,7 @@ def test_friction_is_a_constraint_where_the_integrator_bears_no_bristles(tmp_pat
         assert [line for line in said["notes"] if "timestep" in line] == ([] if "2e-4" in option else beyond)
 
 
+@pytest.mark.slow
 def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, few_poses):
     words = ["--drive", "joint2=CSG-40-100", "joint3=CSG-25-100", "--payload", "3"]
     free = made(capsys, ROBOT, tmp_path / "free", *words)
@@ -247,6 +249,7 @@ def test_without_a_pose_the_arm_is_where_its_tip_sinks_most(tmp_path, capsys, fe
     assert free["tip_error"] > posed["tip_error"]
 
 
+@pytest.mark.slow
 def test_seven_axes_of_a_urdf(tmp_path, capsys, few_poses):
     """URDF has no armature: said for each axis. One axis hangs upright, so its weight winds nothing."""
     links = "".join(LINK.format(i, i - 1, "0 1 0" if i % 2 == 0 else "0 0 1", 8 - i) for i in range(1, 8))

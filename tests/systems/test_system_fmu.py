@@ -68,6 +68,8 @@ def test_any_step_is_as_right_as_model_exchange(tmp_path, name):
         found = prove(files[version], importer)
         assert found.misses == []
         assert found.runs == (3 if importer == "fmpy" else 2)
+    if name == "six_axis_robot":  # fmpy's master has nothing in it that the robot's one joint has not
+        return
     stop = max(systems()[name].stop_time, TURNED)
     references = Related(files["2"]).experiments()[0].references
     expected = exchange(files["2"], [output], stop, 1e-9, stop / 20_000)

@@ -128,11 +128,12 @@ TILT = 1.0 / 3.0
 
 
 def with_solution(
-    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
+    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0, elastic: bool = False
 ) -> ParameterFile:
     """The joint with the field at a preload [N] per bolt, and what a moment adds from a second one.
 
     solution : at that preload and moment [N.m]; what is missing is solved from there
+    elastic  : whether the joint's sides are going to be
     """
     joint = solution.joint
     tilting = moment or TILT * joint.assembly.most_moment(preload)
@@ -140,5 +141,6 @@ def with_solution(
     tilted = solution.field if moment else solution.under(preload, tilting).field if tilting else None
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
-    file, _ = with_field(file, equal, preload, source, tilted=tilted, moment=tilting or None, bolts=bolts)
+    second = {"tilted": tilted, "moment": tilting or None}
+    file, _ = with_field(file, equal, preload, source, bolts=bolts, elastic=elastic, **second)
     return replace(file, name=f"{file.name}, computed field")

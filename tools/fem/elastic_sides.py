@@ -7,11 +7,12 @@ axes, gives states of the whole joint. The modes are the deformations that these
 
 What a mode does at a point of the joint is its mean over the point's cell, by the stiffness there. Few points
 miss what it does inside the cells; their means are changed in common, so that the tightened interface is as
-stiff against all modes as that of the finite elements.
+stiff against all modes as that of the finite elements. At the patches they are then fitted to the work of
+friction (`patch_work`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,9 +23,11 @@ from scipy.spatial import cKDTree
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.joints.bolted_joint.spring import patches as patches_of
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
+from .patch_work import Friction, PatchWork, Shears, Surface, into_slip, work
 from .whole_joint import AXES, Linear, WholeJoint
 
 LEAST = 1e-3
@@ -35,6 +38,9 @@ OPENED = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
 """Motions apart, over that at which the linear joint would lose its clamping force [1]."""
 MIXED = 12
 """Motions along and about all axes at once [1]."""
+OPENING = 0.3
+"""Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
+found: the loss in partial slip needs finer ones."""
 STEPS, CLOSE = 40, 1e-9
 """Of Newton's method [1], and its residual over the largest motion [1]."""
 GAIN = 10.0
@@ -192,13 +198,14 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
 
     Raises RuntimeError if a body can move freely.
     """
-    joint = linear.joint
+    joint, spring = linear.joint, replace(spring, patches=patches_of(spring.joint.pattern, elastic=True))
     cells = Cells.of(joint, spring, normal)
     at = joint.interface
     bolts = joint.bolts - at.centroid
     states = States.of(cells, bolts, preload)
-    forces = np.stack([states.forces(motion) for motion in states.motions()], axis=1)
-    fields = _modes(linear, cells.moved @ forces)
+    motions = np.array(list(states.motions()))
+    deformed = cells.moved @ np.stack([states.forces(motion) for motion in motions], axis=1)
+    fields = _modes(linear, deformed, motions)
     stretch = cells.loads[3 * states.start.size :] @ fields
     patches = spring.patches
     tight = spring.curve.derivatives(states.start, 1)[1]
@@ -216,6 +223,15 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         traces[2],
         area,
     )
+    slip = into_slip(motions)
+    bent = -(deformed @ slip.T)
+    shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
+    curve, law = spring.curve, spring.foundation()
+    closed = np.interp(normal, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
+    every = np.concatenate([_turns(at.centred), np.concatenate(traces[:2])], axis=1)
+    shift = np.concatenate([shears.motion, shears.amplitude], axis=1) @ every.T
+    aim = work(Friction.of(law, closed, shift), at.area, every)
+    some = Surface(weight * patches.share, few, _turns(patches.position))
     means = cell_means(joint, patches.position, normal)
     both = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
@@ -225,6 +241,10 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         np.concatenate(traces[:2]),
         np.tile(ratio * area, 2),
     )
+    working = PatchWork(law, shears, some, aim)
+    unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
+    sticks = Friction.of(law, closed, np.concatenate([unit.motion, unit.amplitude], axis=1) @ every.T)
+    both = working.held(working.fitted(both), unit, work(sticks, at.area, every).stuck)
     pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
     moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
@@ -259,18 +279,25 @@ def _listed(values: Array) -> tuple[float, ...]:
     return tuple((values + 0.0).tolist())
 
 
-def _modes(linear: Linear, states: Array) -> Array:
-    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most."""
-    first = _unit(linear.moved - linear.rigid, linear)
+def _modes(linear: Linear, states: Array, motions: Array) -> Array:
+    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most, which
+    moved by (s, 6) [m, rad]."""
+    first = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
     for _ in range(2):  # twice is enough
         states = states - first @ (first.T @ (linear.bodies @ states))
-        states = states / np.sqrt(np.sum(states * (linear.bodies @ states), axis=0))
-    return np.concatenate([first, _unit(states, linear)[:, : MODES - first.shape[1]]], axis=1)
+        states = _of_unit_energy(states, linear)
+    weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
+    rest = _unit(weight * states, linear)[:, : MODES - first.shape[1]]
+    return np.concatenate([first, rest], axis=1)
+
+
+def _of_unit_energy(fields: Array, linear: Linear) -> Array:
+    """Displacements (n, s) [m] over the root of twice their energy."""
+    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0)))
 
 
 def _unit(fields: Array, linear: Linear) -> Array:
     """Displacements (n, k) of unit energy norm that span fields (n, s), those that they need most first."""
-    fields = fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0))
     energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
     energy, vectors = energy[::-1], vectors[:, ::-1]
     count = int(np.sum(energy > LEAST**2 * energy[0]))

@@ -139,7 +139,7 @@ class Sums:
         """Of a joint at a preload [N] per bolt."""
         curve = approach_curve(joint)
         x = curve.displacement
-        fine = (x[:-1, None] + np.diff(x)[:, None] * _TABLE).ravel()
+        fine = np.append(x[:-1, None] + np.diff(x)[:, None] * _TABLE, x[-1])
         p = curve.derivatives(fine, 0)[0]
         return cls(joint, curve, preload, pressures, (p, np.cbrt(p), fine))
 
@@ -154,13 +154,15 @@ class Sums:
         """Approach (...) [m] and stiffness per area [Pa/m] at a pressure: the table's, after one step of
         Newton's method.
 
-        While the contact closes the pressure grows with the third power of the approach.
+        While the contact closes the pressure grows with the third power of the approach; beyond the hardness,
+        the end of the curve, it goes on straight.
         """
         pressure, root, approach = self.table
         start = np.interp(p, pressure, approach)
         slow = p < _FAST * self.curve.closed
         start[slow] = np.interp(np.cbrt(p[slow]), root, approach)
         value, slope, bend = self.curve.derivatives(start, 2)
+        bend = np.where(start < self.curve.end[0], bend, 0.0)
         step = np.divide(p - value, slope, out=np.zeros_like(p), where=slope > 0.0)
         return start + step, slope + bend * step
 

@@ -174,7 +174,8 @@ class Moved:
 
     force   : (..., n) of each along a single direction, (..., 2, n) in a plane
     loss    : (...) turned into heat on the way
-    tangent : (...) of a further motion, see `Slid`; (..., 3): xx, xy, yy in a plane
+    tangent : (...) of a further motion, see `Slid`; (..., 6) of a foundation in a plane: xx, xy, yy, xt, yt,
+              tt, t the way around the centre of its patch
     """
 
     force: Array

@@ -28,6 +28,8 @@ derivatives at the ends (to the fourth order) and not by the difference of its l
 SHORT = 3e-2
 """Fall of the load over an amplitude, by the stiffness, over the load [1]: below it a loop is taken from the
 derivatives of the curve, as its differences cancel."""
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+"""The golden section [1]."""
 SPREAD = 1.0 / np.sqrt(12.0)
 """Standard deviation of evenly spread springs over the range of their heights [1]."""
 
@@ -47,7 +49,7 @@ def offsets(load: Array) -> Array:
     neighbours in it miss cancels.
     """
     rank = np.argsort(np.argsort(-to_digits(load), kind="stable"), kind="stable")
-    return np.asarray((rank * (0.5 * (np.sqrt(5.0) - 1.0)) + 0.5) % 1.0)
+    return np.asarray((rank * GOLDEN + 0.5) % 1.0)
 
 
 def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
@@ -85,6 +87,24 @@ def lowered(height: Array, lowest: ArrayLike) -> Array:
     next_above = below[..., :-1] & ~below[..., 1:]
     next_above[..., -1] = False  # no springs are beyond the last height
     return np.concatenate([height[..., :1], np.where(next_above, given, height[..., 1:])], axis=-1)
+
+
+def turning(sliders: int) -> Array:
+    """Shifts (2, n) [1] of sliders in a turn about the centre of their patch, over its radius and the turn.
+
+    They stand on a circle around it. The two of a range are opposite, so that a turn makes no force and a
+    shift no torque while they stick; the ranges follow by golden sections of half the circle.
+    """
+    angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
+    unit = to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
+    unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
+    return np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
+
+
+def together(each: Array) -> Array:
+    """Forces (..., 2, n) of sliders together (..., 3): along x, y and around the centre of their patch."""
+    around_it = np.sum(turning(each.shape[-1]) * each, axis=(-2, -1))
+    return np.concatenate([np.sum(each, axis=-1), around_it[..., None]], axis=-1)
 
 
 HARDLY = 1e-3
@@ -156,11 +176,11 @@ class Foundation:
     def rested(
         self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike
     ) -> tuple[Array, Array]:
-        """Traction (..., 2) [Pa] of sliders that all stick after a straight path, and whether (...) they do.
+        """Traction (..., 3) [Pa] of sliders that all stick after a straight path, and whether (...) they do.
 
-        force         : (..., 2) [Pa] of all sliders before
+        force         : (..., 3) [Pa] of all sliders before, see `together`
         before, after : (...) [m] approaches
-        shift         : (..., 2) [m] of the other side along the surface
+        shift         : (..., 3) [m] of the other side along the surface, and around the centre of the patch
         """
         stiff, now = self.stick(before), self.stick(after)
         falls = np.asarray(after) < np.asarray(before)
@@ -168,14 +188,15 @@ class Foundation:
         kept, gain = (np.asarray(each)[..., None] for each in rule)
         traction = kept * force + gain * np.asarray(shift)
         most = HARDLY * self.friction / self.ratio * now * (np.asarray(after) - self.height[..., 0])
-        return traction, np.hypot(traction[..., 0], traction[..., 1]) <= most
+        return traction, np.sqrt(np.sum(traction**2, axis=-1)) <= most
 
     def spread(self, force: Array, approach: ArrayLike) -> Array:
-        """Forces (..., 2, n) of sliders that have stuck so far with forces (..., 2) together."""
+        """Forces (..., 2, n) of sliders that have stuck so far with forces (..., 3) `together`."""
         stiffness = self.carried(approach).stiffness
         whole = np.sum(stiffness, axis=-1, keepdims=True)
         part = np.divide(stiffness, whole, out=np.zeros_like(stiffness), where=whole > 0.0)
-        return np.asarray(force[..., None] * part[..., None, :])
+        each = force[..., :2, None] + force[..., 2:, None] * turning(self.sliders)
+        return np.asarray(each * part[..., None, :])
 
     def backbone(self, approach: ArrayLike, shift: ArrayLike) -> Array:
         """Traction (...) [Pa] from rest over shifts (...) >= 0 [m], at approaches (...) [m] that stay.
@@ -245,20 +266,33 @@ class Foundation:
 
         force         : (..., 2, n) [Pa] of the sliders before
         before, after : (...) [m] approaches
-        shift         : (..., 2) [m] of the other side along the surface
+        shift         : (..., 2) [m] of the other side along the surface, (..., 3) and around the centre of
+                        the patch
 
         The heat is exact for sliders whose stiffness stays, else of third order in the path.
         """
-        path, end = _Path.of(before, after, shift), self.carried(after)
+        path, end = _Path.of(before, after, self._along(shift)), self.carried(after)
         start = self.carried(before) if np.any(path.change) else end
         slid, loss = on_way(_parts(force), start, end, self._way(start, end, path)), None
         if np.any(start.stiffness != end.stiffness):
             across = ~self._stays(path)
             middle = self._halfway(force, start, path) if np.any(across) else [0.0, 0.0]
             loss = heat(_parts(force), path.parts, start, end, slid, across, middle)
-        tangent = np.stack([np.sum(t, axis=-1) for t in slid.tangent], axis=-1)
         loss = slid.loss if loss is None else loss
-        return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), tangent)
+        return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), self._tangent(*slid.tangent))
+
+    def _along(self, shift: ArrayLike) -> Array:
+        """Shifts (..., 2, 1) or (..., 2, n) [m] of the sliders."""
+        given = np.asarray(shift, dtype=np.float64)[..., None]
+        turns = given.shape[-2] > 2
+        return np.asarray(given[..., :2, :] + given[..., 2:, :] * turning(self.sliders) if turns else given)
+
+    def _tangent(self, xx: Array, xy: Array, yy: Array) -> Array:
+        """Of all sliders (..., 6) [Pa/m]: xx, xy, yy, and with the way around the centre xt, yt, tt."""
+        e_x, e_y = turning(self.sliders)
+        x_t, y_t = xx * e_x + xy * e_y, xy * e_x + yy * e_y
+        each = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
+        return np.asarray(np.moveaxis(np.sum(each, axis=-1), 0, -1))
 
     def _way(self, start: Carried, end: Carried, path: "_Path") -> "Way":
         """What the sliders (..., n) meet on a path."""
@@ -286,16 +320,16 @@ class Foundation:
 
 @dataclass(frozen=True, slots=True)
 class _Path:
-    """A straight path: approaches (..., 1) [m] at its ends, shift (..., 2, 1) [m]."""
+    """A straight path: approaches (..., 1) [m] at its ends, shifts (..., 2, 1) or (..., 2, n) [m]."""
 
     first: Array
     last: Array
     along: Array
 
     @classmethod
-    def of(cls, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> "_Path":
-        first, last, along = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after, shift))
-        return cls(first, last, along)
+    def of(cls, before: ArrayLike, after: ArrayLike, shift: Array) -> "_Path":
+        first, last = (np.asarray(x, dtype=np.float64)[..., None] for x in (before, after))
+        return cls(first, last, shift)
 
     @property
     def change(self) -> Array:
@@ -304,7 +338,7 @@ class _Path:
 
     @property
     def parts(self) -> tuple[Array, Array]:
-        """Shift (..., 1) along x and along y."""
+        """Shifts (..., 1) or (..., n) along x and along y."""
         return _parts(self.along)
 
     def part(self, part: float) -> "_Path":

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "tabulated.h"
 #include "vectors.h"
 
@@ -22,7 +23,7 @@ _Static_assert(SUM_TANGENT_Y == SUM_TANGENT_X + 1 && SUM_TANGENT_Z == SUM_TANGEN
 _Static_assert(N_LAW_STATE == 2 && SUM_ELASTIC == SUM_PLASTIC + 1, "plastic and elastic work");
 _Static_assert((int)AT_APART == (int)AT_FORCE + MOST_PATCHES * 2 * SLIDERS, "room for all patches");
 _Static_assert((int)AT_AMPLITUDE == (int)AT_APART + 3 && (int)AT_TANGENT == (int)AT_AMPLITUDE + MODES &&
-                   (int)N_MEMORY == (int)AT_TANGENT + 3 * MOST_PATCHES,
+                   (int)N_MEMORY == (int)AT_TANGENT + 6 * MOST_PATCHES,
                "as the key of Kind");
 
 static inline int n_nodes(void)
@@ -33,6 +34,12 @@ static inline int n_nodes(void)
 static inline int n_patches(void)
 {
     return (int)data.n_patches;
+}
+
+/* Whether friction remembers, as elastic sides ask for. */
+static inline bool remembers(const Joint *joint)
+{
+    return ELASTIC || joint->kind.memory;
 }
 
 static bool tabulate(Joint *joint, int steps, Text *why)
@@ -87,6 +94,8 @@ bool kind_tabulate(Joint *joint, Text *why)
         f->energy = &kind->energy;
         f->mu = kind->mu;
         f->ratio = kind->ratio;
+        f->turning[0] = data.turning[0];
+        f->turning[1] = data.turning[1];
         f->offset = data.offsets[j][0];
         foundation_lay(f, 0.0);
         kind->from[j] = kind->to[j] = foundation_point(f, f->curve->end.x, 0);
@@ -233,6 +242,21 @@ static inline void add_shear(double *x, const double *point, const double *tract
         x[SUM_TANGENT_X + d] += motions[d];
 }
 
+/* The same of a patch, with what its sliders have around its centre. */
+static inline void add_patch(double *x, const double *patch, const double traction[3])
+{
+    add_traction(x, patch, traction);
+    x[SUM_TORSION] += patch[SHARE] * (patch[RADIUS] * traction[2]);
+}
+
+static inline void for_patch(const double *patch, const double tangent[6], double *motions)
+{
+    const double share = patch[SHARE], radius = patch[RADIUS];
+    for_motions(patch, tangent, motions);
+    motions[2] += share * (2.0 * radius * (patch[PLACE_X] * tangent[4] - patch[PLACE_Y] * tangent[3]) +
+                           radius * radius * tangent[5]);
+}
+
 /* Sums over the patches for `further_tangent` of the package: of all that stick, of what those at their limits miss,
  * and this with the sign by which the traction goes along the motion. */
 typedef struct {
@@ -242,11 +266,14 @@ typedef struct {
 static inline void add_further(Further *sum, const double *patch, double stick, const double *tangent,
                                const double *traction)
 {
-    const double px = patch[PLACE_X], py = patch[PLACE_Y], t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0]};
-    const double all[3] = {stick, 0.0, stick}, less[3] = {stick - tangent[0], -tangent[1], stick - tangent[2]};
-    double sticks[3], spent[3];
-    for_motions(patch, all, sticks);
-    for_motions(patch, less, spent);
+    const double px = patch[PLACE_X], py = patch[PLACE_Y];
+    const double t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0] + patch[RADIUS] * traction[2]};
+    const double all[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
+    double sticks[3], spent[3], less[6];
+    for (int d = 0; d < 6; d++)
+        less[d] = all[d] - tangent[d];
+    for_patch(patch, all, sticks);
+    for_patch(patch, less, spent);
     for (int d = 0; d < 3; d++) {
         sum->stick[d] += sticks[d];
         sum->spent[d] += spent[d];
@@ -451,7 +478,7 @@ static inline PatchPath path_of(const Joint *joint, int j, const double *inputs,
     return (PatchPath){.force = {force, force + SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
-                       .shift = {u, v},
+                       .shift = {u, v, turn * patch[RADIUS]},
                        .straight = joint->kind.moved < FREE};
 }
 
@@ -508,7 +535,8 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     for (int j = 0; j < n_patches(); j++) {
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs) + joint->kind.bent[j][0];
-        const double v = along_y(data.patches[j], inputs) + joint->kind.bent[j][1], size = sqrt(u * u + v * v);
+        const double v = along_y(data.patches[j], inputs) + joint->kind.bent[j][1];
+        const double w = inputs[THETA + 2] * data.patches[j][RADIUS], size = sqrt(u * u + v * v + w * w);
         const double reach = size * per_reach;
         double y[2];
         if (is_short(at, reach)) {
@@ -529,16 +557,17 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
     x[SUM_LOOP_ENERGY] = energies;
 }
 
-/* Add the rate of the loop of a patch, whose approach, shift x and y have these rates. */
+/* Add the rate of the loop of a patch, whose approach, shift along x, y and around its centre have these rates. */
 static void add_loop_rate(const Joint *joint, int j, const double *inputs, const double *rates, double *dx)
 {
     const double *patch = data.patches[j], *bent = joint->kind.bent[j];
     const Point *at = &joint->kind.to[j];
-    const double u = along_x(patch, inputs) + bent[0], v = along_y(patch, inputs) + bent[1], size = sqrt(u * u + v * v);
+    const double u = along_x(patch, inputs) + bent[0], v = along_y(patch, inputs) + bent[1];
+    const double w = inputs[THETA + 2] * patch[RADIUS], size = sqrt(u * u + v * v + w * w);
     if (size == 0.0)
         return;
     const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio;
-    const double grows = (u * rates[1] + v * rates[2]) / size, falls = rates[0] - grows / reach;
+    const double grows = (u * rates[1] + v * rates[2] + w * rates[3]) / size, falls = rates[0] - grows / reach;
     double now[5], then[5], y[2], x[2 * N_SHORT - L_SIZE] = {mu, ratio, size};
     both_ends(joint, at, size / reach, now, then);
     if (is_short(at, size / reach)) {
@@ -572,15 +601,16 @@ static int moved_on(const double *inputs, const double *memory)
     bool straight = !ELASTIC && (int)memory[AT_STATE] != FREE && inputs[S_REL + 1] == memory[AT_RIGID + 1] &&
                     inputs[THETA + 2] == memory[AT_RIGID + 2];
     for (int j = 0; j < n_patches() && straight; j++)
-        straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0;
+        straight = memory[AT_FORCE + (2 * j + 1) * SLIDERS] == 0.0 && memory[AT_FORCE + (2 * j + 1) * SLIDERS + 1] == 0.0;
     return straight ? ALONG : FREE;
 }
 
-/* The traction of a patch at rest. */
-static inline void resting_traction(const double *memory, int j, double traction[2])
+/* The traction of a patch at rest, with that around its centre. */
+static inline void resting_traction(const double *memory, int j, double traction[3])
 {
     traction[0] = memory[AT_FORCE + 2 * j * SLIDERS];
     traction[1] = memory[AT_FORCE + (2 * j + 1) * SLIDERS];
+    traction[2] = memory[AT_FORCE + (2 * j + 1) * SLIDERS + 1];
 }
 
 /* All patches after the way if they stay at rest; false: one moves more than hardly. */
@@ -593,7 +623,7 @@ static bool rest_all(Joint *joint, const double *inputs, const double *memory, S
     }
     for (int j = 0; j < n_patches() && rests; j++) {
         const PatchPath path = path_of(joint, j, inputs, memory);
-        double before[2];
+        double before[3];
         resting_traction(memory, j, before);
         rests = foundation_rest(&joint->kind.foundation[j], &path, before, &shears[j]);
     }
@@ -609,7 +639,7 @@ static void move_all(Joint *joint, const double *inputs, const double *memory, S
     kind->moved = moved_on(inputs, memory);
     find_points(joint, inputs, memory);
     for (int j = 0; j < n_patches() && (int)memory[AT_STATE] < ALONG; j++) {
-        double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[2];
+        double *const spread[2] = {kind->spread[j][0], kind->spread[j][1]}, before[3];
         resting_traction(memory, j, before);
         foundation_spread(&kind->foundation[j], &kind->from[j], before, spread);
     }
@@ -627,13 +657,14 @@ static void slide(Joint *joint, int j, const double *inputs, const double *memor
     memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *moved[1]);
 }
 
-/* A patch at rest: its force stands in the place of the first slider. */
+/* A patch at rest: its force stands in the place of the first slider, that around its centre in y of the second. */
 static void keep_at_rest(const Shear *shear, double *const moved[2])
 {
     for (int d = 0; d < 2; d++) {
         memset(moved[d], 0, SLIDERS * sizeof *moved[d]);
         moved[d][0] = shear->traction[d];
     }
+    moved[1][1] = shear->traction[2];
 }
 
 /* Sums over the patches, and the memory after the way. */
@@ -643,13 +674,13 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
     double heat = 0.0;
     Further sum = {.stick = {0.0}};
     Shear shears[MOST_PATCHES];
-    if (kind->memory) {
+    if (remembers(joint)) {
         move_all(joint, inputs, memory, shears);
     } else {
         kind->moved = RESTING;
         find_points(joint, inputs, memory);
     }
-    for (int j = 0; j < n_patches() && kind->memory; j++) {
+    for (int j = 0; j < n_patches() && remembers(joint); j++) {
         double *const force = after + AT_FORCE + 2 * j * SLIDERS, *const moved[2] = {force, force + SLIDERS};
         if (kind->moved == RESTING)
             keep_at_rest(&shears[j], moved);
@@ -657,9 +688,9 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
             slide(joint, j, inputs, memory, moved, &shears[j]);
     }
     foundations_end(&kind->work);
-    for (int j = 0; j < n_patches() && kind->memory; j++) {
+    for (int j = 0; j < n_patches() && remembers(joint); j++) {
         const Shear shear = shears[j];
-        add_traction(x, data.patches[j], shear.traction);
+        add_patch(x, data.patches[j], shear.traction);
         add_further(&sum, data.patches[j], foundation_stick(&kind->foundation[j], &kind->to[j]), shear.tangent, shear.traction);
         memcpy(kind->traction[j], shear.traction, sizeof shear.traction);
         memcpy(kind->tangent[j], shear.tangent, sizeof shear.tangent);
@@ -668,17 +699,17 @@ static void slide_all(Joint *joint, const double *inputs, const double *memory, 
         after[AT_LOWEST + j] = kind->moved == RESTING ? kind->to[j].approach : kind->foundation[j].lowest;
         after[AT_APPROACH + j] = kind->to[j].approach;
     }
-    if (kind->memory) {
+    if (remembers(joint)) {
         memcpy(kind->along, sum.along, sizeof sum.along);
         tell_further(&sum, kind->along, x);
     }
     const double loss = memory[AT_LOSS] + kind->area * heat;
     x[SUM_LOSS] = loss / kind->area;
-    after[AT_STATE] = kind->memory ? kind->moved : UNKNOWN;
+    after[AT_STATE] = remembers(joint) ? kind->moved : UNKNOWN;
     after[AT_LOSS] = loss;
-    after[AT_RIGID] = kind->memory ? inputs[S_REL] : 0.0;
-    after[AT_RIGID + 1] = kind->memory ? inputs[S_REL + 1] : 0.0;
-    after[AT_RIGID + 2] = kind->memory ? inputs[THETA + 2] : 0.0;
+    after[AT_RIGID] = remembers(joint) ? inputs[S_REL] : 0.0;
+    after[AT_RIGID + 1] = remembers(joint) ? inputs[S_REL + 1] : 0.0;
+    after[AT_RIGID + 2] = remembers(joint) ? inputs[THETA + 2] : 0.0;
 }
 
 /* Outputs */
@@ -702,7 +733,7 @@ static bool as_tightened(const Kind *kind, const double *inputs)
     for (int k = 0; k < MODES && ELASTIC; k++)
         if (kind->amplitude[k] != 0.0)
             return false;
-    return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (kind->memory || !sheared);
+    return s[2] == 0.0 && turn[0] == 0.0 && turn[1] == 0.0 && (ELASTIC || kind->memory || !sheared);
 }
 
 bool joint_press(Joint *joint, const double *inputs, Text *why)
@@ -736,7 +767,7 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 {
     Kind *kind = &joint->kind;
     tighten(joint, inputs);
-    if (kind->memory) {
+    if (remembers(joint)) {
         if (!press(joint, inputs, why))
             return false;
         memcpy(x, kind->normal, sizeof kind->normal);
@@ -782,6 +813,8 @@ bool joint_evaluate(Joint *joint, const double *inputs, const double *memory, do
     return true;
 }
 
+COLD
+
 /* Derivatives */
 
 /* Rates of the sums over the nodes; of the patches' come from the sliders with memory. */
@@ -800,7 +833,7 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
             curve_at(&joint->curve, kind->start[i], 1, carried);
         if (!node_at(joint, approach, 4, y, works, slopes, why))
             return false;
-        if (!kind->memory) {
+        if (!remembers(joint)) {
             elastic_arguments(joint, i, y, inputs, at);
             at[N_E + E_LIMIT] = kind->mu * carried[1] * tightening;
             for (int d = 0; d < 4; d++)
@@ -829,7 +862,7 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
 
 /* Rates of a patch in a further motion from the place of the last evaluation, whose memory is `after`: the mean of
  * both directions, of which sliders at their limits slip on in one and stick in the other. */
-static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[2])
+static Shear further_rates(const Joint *joint, int j, const double *after, const double ends[2], const double shift[3])
 {
     const double *force = after + AT_FORCE + j * 2 * SLIDERS;
     const Foundation *f = &joint->kind.foundation[j];
@@ -839,16 +872,16 @@ static Shear further_rates(const Joint *joint, int j, const double *after, const
     foundation_rates(f, &path, ends, shift, &mean);
     path.onward = true;
     foundation_rates(f, &path, ends, shift, &on);
-    for (int d = 0; d < 2; d++)
-        mean.traction[d] = 0.5 * (mean.traction[d] + on.traction[d]);
     for (int d = 0; d < 3; d++)
+        mean.traction[d] = 0.5 * (mean.traction[d] + on.traction[d]);
+    for (int d = 0; d < 6; d++)
         mean.tangent[d] = 0.5 * (mean.tangent[d] + on.tangent[d]);
     mean.loss = 0.5 * (mean.loss + on.loss);
     return mean;
 }
 
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
-                 double rate, const double shift[2])
+                 double rate, const double shift[3])
 {
     const Kind *kind = &joint->kind;
     const Foundation *f = &kind->foundation[j];
@@ -857,7 +890,7 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     Shear shear;
     if (kind->moved == RESTING) {
         const PatchPath here = {.from = path.to, .to = path.to};
-        double before[2];
+        double before[3];
         resting_traction(after ? after : memory, j, before);
         foundation_rest_rates(f, after ? &here : &path, before, ends, shift, &shear);
     } else if (after) {
@@ -868,29 +901,34 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     return shear;
 }
 
-void patch_tangents(Joint *joint, const double *inputs, const double *memory, double step, double (*tangent)[3])
+void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2])
 {
     Kind *kind = &joint->kind;
     double *const moved[2] = {kind->tried[0], kind->tried[1]};
     Shear shears[MOST_PATCHES];
-    if (kind->moved == RESTING) {
-        memcpy(tangent, kind->tangent, (size_t)n_patches() * sizeof *tangent);
+    if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
+        for (int j = 0; j < n_patches(); j++)
+            slopes_of(kind->tangent[j], slope[j]);
         return;
     }
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 3; d++) {
         kind->work.forces = true;
         for (int j = 0; j < n_patches(); j++) {
+            const Foundation *f = &kind->foundation[j];
             PatchPath path = path_of(joint, j, inputs, memory);
-            path.shift[d] += step;
-            foundation_move(&kind->foundation[j], &path, moved, &kind->work, &shears[j]);
+            Point apart;
+            if (d < 2) {
+                path.shift[d] += step;
+            } else {
+                apart = foundation_point(f, path.to->approach - step, path.to->full);
+                path.to = &apart;
+            }
+            foundation_move(f, &path, moved, &kind->work, &shears[j]);
         }
         foundations_end(&kind->work);
-        for (int j = 0; j < n_patches(); j++) {
-            const double *now = shears[j].traction, *before = kind->traction[j];
-            tangent[j][2 * d] = (now[d] - before[d]) / step;
-            const double other = 0.5 * (now[1 - d] - before[1 - d]) / step;
-            tangent[j][1] = d == 0 ? other : tangent[j][1] + other;
-        }
+        for (int j = 0; j < n_patches(); j++)
+            for (int t = 0; t < 2; t++)
+                slope[j][d][t] = (shears[j].traction[t] - kind->traction[j][t]) / step;
     }
 }
 
@@ -903,17 +941,18 @@ static void patch_rates(Joint *joint, const double *inputs, const double *memory
         const double *patch = data.patches[j];
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) -
                             (apart_at(patch, seed) + kind->patch_opened_rate[j]);
-        const double shift[2] = {along_x(patch, seed) + kind->bent_rate[j][0], along_y(patch, seed) + kind->bent_rate[j][1]};
-        const double loop[3] = {rate, shift[0], shift[1]};
+        const double shift[3] = {along_x(patch, seed) + kind->bent_rate[j][0],
+                                 along_y(patch, seed) + kind->bent_rate[j][1], patch[RADIUS] * seed[THETA + 2]};
+        const double loop[4] = {rate, shift[0], shift[1], shift[2]};
         add_loop_rate(joint, j, inputs, loop, dx);
-        if (!kind->memory)
+        if (!remembers(joint))
             continue;
         const Shear shear = kind->shears[j] = patch_rate(joint, j, inputs, memory, after, rate, shift);
-        add_traction(dx, patch, shear.traction);
+        add_patch(dx, patch, shear.traction);
         add_further(&sum, patch, kind->ratio * kind->to[j].y[2] * rate, shear.tangent, kind->traction[j]);
         dx[SUM_LOSS] += patch[SHARE] * shear.loss;
     }
-    if (kind->memory)
+    if (remembers(joint))
         tell_further(&sum, kind->along, dx);
 }
 
@@ -958,3 +997,5 @@ void joint_derivative(Joint *joint, const double *inputs, const double *memory, 
     if (ELASTIC)
         whole_bolt_rates(joint, inputs, seed, result + N_INTERFACE_OUTPUTS);
 }
+
+END_OF_COLD

@@ -12,12 +12,12 @@
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 
 /* Preload, moment, shift along the surface, and the end of the memory. */
-enum { FOLLOW_KEY = 5 + 3 + MODES + 3 * MOST_PATCHES };
+enum { FOLLOW_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
 
-/* Amplitudes per motion, and what decides them; the stiffness by normal motions. */
+/* Amplitudes per motion, and what decides them. */
 typedef struct {
     bool known;
-    double key[FOLLOW_KEY], follow[6][MODES], by_normal[WIDE][WIDE];
+    double key[FOLLOW_KEY], follow[6][MODES];
 } Followed;
 
 typedef struct {
@@ -39,7 +39,7 @@ typedef struct {
     Point from[MOST_PATCHES], to[MOST_PATCHES]; /* of the last evaluation */
     int moved;                       /* how it has moved up to the last evaluation */
     double known[N_X];               /* arguments of `outputs` in it, for its derivative */
-    double traction[MOST_PATCHES][2], along[3]; /* of the patches in it, and what `Further` has there */
+    double traction[MOST_PATCHES][3], along[3]; /* of the patches in it, and what `Further` has there */
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work;
 
@@ -49,15 +49,17 @@ typedef struct {
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
     double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][2];
     double bent_before[MOST_PATCHES][2];
-    double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][3]; /* pressures, and the tangents of a further motion */
+    double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][6]; /* pressures, and the tangents of a further motion */
     Followed begin, end; /* at the memory before the last evaluation, and after it */
     double whole[6];     /* the stiffness of the whole after it */
     /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
     double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][2];
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
-    /* Room, as large frames need more on Windows: weighted rows, stiffness by normal motions and shear beside the
-     * modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last derivative. */
+    /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
+     * the modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last
+     * derivative. */
+    double by[MOST_OPENING + MOST_STRETCH];
     double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
     double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], factors[MODES][MODES], tried[2][SLIDERS];
     double steps[NEWTON_STEPS][MODES], squares[NEWTON_STEPS];

@@ -10,7 +10,7 @@ from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
-from jointfmu.mechanics.sliders import offsets
+from jointfmu.mechanics.sliders import SLIDERS, offsets, turning
 from jointfmu.quantity import flatten
 
 from ...joint_parts.data import DataPart, DataTable
@@ -37,23 +37,24 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.patches(joint.pattern)
+    patches = spring.patches(joint.pattern, joint.elastic)
     return {
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
-        "patches": DataTable(_rows(patches), PATCHES),
+        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
+        "turning": DataTable(turning(SLIDERS), 2),
         "offsets": DataTable(offsets(patches.equal)[:, None], PATCHES),
         **_bodies(joint),
     }
 
 
 def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
-    """Modes in rows of all of them, as whole numbers: their bytes are mostly zero, and packed small.
+    """Modes in rows of all of them, as whole numbers of two bytes.
 
     A joint with rigid sides has room for one row.
     """
     modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
     if joint.elastic:
-        places = spring.patches(joint.pattern).position
+        places = spring.patches(joint.pattern, joint.elastic).position
         modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
         lever = modes.lever
         most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
@@ -63,7 +64,7 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
-        **{name: DataTable(_padded(rows), room[name]) for name, rows in moved.items()},
+        **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
     }
 
 

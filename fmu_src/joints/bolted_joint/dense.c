@@ -5,17 +5,19 @@
 
 #include "vectors.h"
 
-/* From a row on, a multiple of four. */
+enum { L = LANES_OF_MODES };
+
+/* x less a multiple of a column, in fours from a row on. */
 static inline void take_fours(double by, const double *restrict column, int first, double *restrict x)
 {
-    for (int r = first; r < MODES; r += LANES_OF_MODES)
-        for (int l = 0; l < LANES_OF_MODES; l++)
+    for (int r = first; r < MODES; r += L)
+        for (int l = 0; l < L; l++)
             x[r + l] -= by * column[r + l];
 }
 
 /* Columns are rows of the array, so that what is done to a column goes side by side. */
 
-void dense_factor(double (*a)[MODES], int *pivots)
+WITHIN void factor(double (*a)[MODES], int *pivots)
 {
     for (int c = 0; c < MODES; c++) {
         double column[MODES];
@@ -34,39 +36,89 @@ void dense_factor(double (*a)[MODES], int *pivots)
         for (int r = 0; r < MODES; r++)
             column[r] = r > c ? a[c][r] : 0.0;
         for (int k = c + 1; k < MODES; k++)
-            take_fours(a[k][c], column, (c + 1) / LANES_OF_MODES * LANES_OF_MODES, a[k]);
+            take_fours(a[k][c], column, (c + 1) / L * L, a[k]);
     }
 }
+COMPILED_TWICE(factor, (double (*a)[MODES], int *pivots), (a, pivots))
 
-static inline void take(double by, const double *restrict column, int first, int end, double *restrict x)
+void dense_factor(bool fours, double (*a)[MODES], int *pivots)
 {
-    for (int r = first; r < end; r++)
-        x[r] -= by * column[r];
+    (fours ? factor_fours : factor_any)(a, pivots);
 }
 
-void dense_solve(const double (*a)[MODES], const int *pivots, double *x)
+/* Four columns at a time: the rows beside their own four side by side. */
+WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
 {
     for (int c = 0; c < MODES; c++) {
         const double kept = x[pivots[c]];
         x[pivots[c]] = x[c];
         x[c] = kept;
     }
-    for (int c = 0; c < MODES; c++)
-        take(x[c], a[c], c + 1, MODES, x);
-    for (int c = MODES - 1; c >= 0; c--) {
-        x[c] *= a[c][c];
-        take(x[c], a[c], 0, c, x);
+    for (int b = 0; b < MODES; b += L) {
+        for (int c = b; c < b + L; c++)
+            for (int r = c + 1; r < b + L; r++)
+                x[r] -= x[c] * a[c][r];
+        for (int c = b; c < b + L; c++)
+            take_fours(x[c], a[c], b + L, x);
     }
+    for (int b = MODES - L; b >= 0; b -= L) {
+        for (int c = b + L - 1; c >= b; c--) {
+            x[c] *= a[c][c];
+            for (int r = b; r < c; r++)
+                x[r] -= x[c] * a[c][r];
+        }
+        for (int c = b + L - 1; c >= b; c--)
+            for (int r = 0; r < b; r += L)
+                for (int l = 0; l < L; l++)
+                    x[r + l] -= x[c] * a[c][r + l];
+    }
+}
+COMPILED_TWICE(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
+
+void dense_solve(bool fours, const double (*a)[MODES], const int *pivots, double *x)
+{
+    (fours ? solve_fours : solve_any)(a, pivots, x);
+}
+
+WITHIN void weigh(int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE])
+{
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < WIDE; k++)
+            result[i][k] = by[i] * row[i][k];
+}
+COMPILED_TWICE(weigh, (int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE]),
+               (n, by, row, result))
+
+void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE])
+{
+    (fours ? weigh_fours : weigh_any)(n, by, row, result);
+}
+
+WITHIN void combine(int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                    const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
+{
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < WIDE; k++)
+            result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * z[i][k];
+}
+COMPILED_TWICE(combine,
+               (int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
+               (n, by, x, y, z, result))
+
+void dense_combine(bool fours, int n, const double (*by)[3], const double (*x)[WIDE], const double (*y)[WIDE],
+                   const double (*z)[WIDE], double (*result)[WIDE])
+{
+    (fours ? combine_fours : combine_any)(n, by, x, y, z, result);
 }
 
 /* Sums go in lanes, which a processor adds side by side. */
 
 WITHIN void products(int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                     double (*restrict h)[WIDE])
+                     bool all, double (*restrict h)[WIDE])
 {
-    enum { L = LANES_OF_MODES }; /* in blocks, whose sums stay in registers */
-    for (int r = 0; r < size; r += L)
-        for (int c = 0; c <= r; c += L) {
+    for (int r = 0; r < size; r += L) /* in blocks, whose sums stay in registers */
+        for (int c = 0; c <= (all ? size - L : r); c += L) {
             double sum[L][L] = {{0.0}};
             for (int i = 0; i < n; i++)
                 for (int k = 0; k < L; k++)
@@ -79,13 +131,13 @@ WITHIN void products(int n, const double (*restrict weighted)[WIDE], const doubl
 }
 COMPILED_TWICE(products,
                (int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE], int size,
-                double (*restrict h)[WIDE]),
-               (n, weighted, rows, size, h))
+                bool all, double (*restrict h)[WIDE]),
+               (n, weighted, rows, size, all, h))
 
 void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
-                    int size, double (*restrict h)[WIDE])
+                    int size, bool all, double (*restrict h)[WIDE])
 {
-    (fours ? products_fours : products_any)(n, weighted, rows, size, h);
+    (fours ? products_fours : products_any)(n, weighted, rows, size, all, h);
 }
 
 WITHIN void add_rows(int n, const double *by, const double (*row)[WIDE], double *restrict sum)
@@ -106,10 +158,30 @@ void dense_add_rows(bool fours, int n, const double *by, const double (*row)[WID
     (fours ? add_rows_fours : add_rows_any)(n, by, row, sum);
 }
 
+/* The lanes of a row side by side, not those of two rows. */
+#ifdef __clang__
+#define ROW_BY_ROW _Pragma("clang loop vectorize(disable)")
+#else
+#define ROW_BY_ROW
+#endif
+
 WITHIN void dots(int n, const double (*row)[WIDE], const double *x, int stride, double *result)
 {
-    for (int i = 0; i < n; i++)
-        result[stride * i] = dense_dot(row[i], x);
+    enum { ROWS = 32 }; /* at a time: first all lanes, then their sums */
+    double sum[ROWS][L];
+    for (int first = 0; first < n; first += ROWS) {
+        const int rows = n - first < ROWS ? n - first : ROWS;
+        ROW_BY_ROW
+        for (int i = 0; i < rows; i++) {
+            double lane[L] = {0.0};
+            for (int k = 0; k < MODES; k += L)
+                for (int l = 0; l < L; l++)
+                    lane[l] += row[first + i][k + l] * x[k + l];
+            memcpy(sum[i], lane, sizeof lane);
+        }
+        for (int i = 0; i < rows; i++)
+            result[stride * (first + i)] = (sum[i][0] + sum[i][2]) + (sum[i][1] + sum[i][3]);
+    }
 }
 COMPILED_TWICE(dots, (int n, const double (*row)[WIDE], const double *x, int stride, double *result),
                (n, row, x, stride, result))

@@ -10,10 +10,6 @@
 enum { LANES_OF_MODES = 4, WIDE = MODES + LANES_OF_MODES };
 _Static_assert(MODES % LANES_OF_MODES == 0, "rows in fours");
 
-/* Factors in place of a matrix, whose columns are the rows of the array, with partial pivoting. */
-void dense_factor(double (*a)[MODES], int *pivots);
-/* Solve with them, in place of the right side. */
-void dense_solve(const double (*factors)[MODES], const int *pivots, double *x);
 /* Sum of the products of two rows. */
 static inline double dense_dot(const double *a, const double *b)
 {
@@ -24,9 +20,17 @@ static inline double dense_dot(const double *a, const double *b)
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 /* The following on a processor with vectors_of_four or any other. */
-/* Add the products of n weighted rows with the rows themselves to h, its lower half up to a size. */
+/* Factors in place of a matrix, whose columns are the rows of the array, with partial pivoting. */
+void dense_factor(bool fours, double (*a)[MODES], int *pivots);
+/* Solve with them, in place of the right side. */
+void dense_solve(bool fours, const double (*factors)[MODES], const int *pivots, double *x);
+/* n rows with their weights, and the sums of those of three sets. */
+void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE]);
+void dense_combine(bool fours, int n, const double (*by)[3], const double (*x)[WIDE], const double (*y)[WIDE],
+                   const double (*z)[WIDE], double (*result)[WIDE]);
+/* Add the products of n weighted rows with rows to h up to a size, all or the lower half. */
 void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
-                    int size, double (*restrict h)[WIDE]);
+                    int size, bool all, double (*restrict h)[WIDE]);
 /* Add n rows with their weights to a sum over the modes. */
 void dense_add_rows(bool fours, int n, const double *by, const double (*row)[WIDE], double *sum);
 /* What n rows are along x, each in its place of the result. */

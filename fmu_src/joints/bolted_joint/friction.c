@@ -3,6 +3,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
+#include "vectors.h"
+
 /* What each slider of a range has at a point, the early and the late one; or rates of it. */
 typedef struct {
     double K, slope, limit[2];
@@ -15,6 +18,8 @@ static double inverse(const Foundation *f, double load)
     double carried;
     return curve_inverse(f->curve, load, &segment, &carried);
 }
+
+COLD
 
 /* As `around` of the package. */
 static void lay_heights(Foundation *f, double reference)
@@ -36,6 +41,8 @@ static void lay_heights(Foundation *f, double reference)
     }
     *h = f->curve->end.x;
 }
+
+END_OF_COLD
 
 /* The sums over the springs of a range, and its sliders. */
 static void lay_range(Foundation *f, int i)
@@ -205,11 +212,32 @@ static const Point *middle_of(const Foundation *f, const PatchPath *path, Middle
 
 static void add(const SliderSum *sum, Shear *shear)
 {
-    for (int d = 0; d < 2; d++)
-        shear->traction[d] += sum->force[d];
     for (int d = 0; d < 3; d++)
+        shear->traction[d] += sum->force[d];
+    for (int d = 0; d < 6; d++)
         shear->tangent[d] += sum->tangent[d];
     shear->loss += sum->loss;
+}
+
+enum { ONE_FORCE, ONE_TANGENT = 3, ONE_LOSS = 9, N_ONE };
+
+/* What one slider gives by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
+static inline void of_one(const double *slid, double e_x, double e_y, double *one)
+{
+    const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
+    const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
+    const double all[N_ONE] = {x, y, x * e_x + y * e_y, xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y, slid[5]};
+    memcpy(one, all, sizeof all);
+}
+
+static inline void add_one(const double *slid, double e_x, double e_y, Shear *shear)
+{
+    double one[N_ONE];
+    of_one(slid, e_x, e_y, one);
+    SliderSum sum = {.loss = one[ONE_LOSS]};
+    memcpy(sum.force, one + ONE_FORCE, sizeof sum.force);
+    memcpy(sum.tangent, one + ONE_TANGENT, sizeof sum.tangent);
+    add(&sum, shear);
 }
 
 /* Sliders of all patches that may slip */
@@ -225,7 +253,7 @@ static inline double changing(const Run *run, int k, const double (*found)[ABREA
     for (int d = 0; d < 2; d++) {
         x[C_FORCE + d] = run->force[d][k];
         x[C_MOVED + d] = found[SLID_FORCE + d][at];
-        x[C_SHIFT + d] = run->shift[d];
+        x[C_SHIFT + d] = run->shift[d] + run->shift[2] * run->turning[d][k];
         x[C_MIDDLE + d] = run->across ? found[SLID_FORCE + d][at + 2] : 0.0;
     }
     x[C_FIRST] = run->K[0];
@@ -235,7 +263,7 @@ static inline double changing(const Run *run, int k, const double (*found)[ABREA
     return loss;
 }
 
-/* Of forces alone. */
+/* Of forces alone, without that around the centre. */
 static inline void end_forces(const Run *run, const double (*found)[ABREAST])
 {
     double x[2] = {0.0}, y[2] = {0.0};
@@ -250,22 +278,27 @@ static inline void end_forces(const Run *run, const double (*found)[ABREAST])
 
 static inline void end_run(const Run *run, double (*found)[ABREAST])
 {
-    double sum[N_SLID - 1][2] = {{0.0}};
+    double sum[N_ONE][2] = {{0.0}};
     if (run->changes)
         for (int k = 0; k < 2; k++)
             found[SLID_LOSS][run->at + k] = changing(run, k, (const double(*)[ABREAST])found);
     for (int k = 0; k < run->n; k += 2)
         for (int l = 0; l < 2; l++) {
+            double slid[N_SLID - 1], one[N_ONE];
             for (int r = 0; r < N_SLID - 1; r++)
-                sum[r][l] += found[r][run->at + k + l];
-            run->moved[0][k + l] = found[SLID_FORCE][run->at + k + l];
-            run->moved[1][k + l] = found[SLID_FORCE + 1][run->at + k + l];
+                slid[r] = found[r][run->at + k + l];
+            of_one(slid, run->turning[0][k + l], run->turning[1][k + l], one);
+            for (int r = 0; r < N_ONE; r++)
+                sum[r][l] += one[r];
+            run->moved[0][k + l] = slid[0];
+            run->moved[1][k + l] = slid[1];
         }
-    const double *t = sum[SLID_TANGENT];
-    add(&(SliderSum){{sum[0][0] + sum[0][1], sum[1][0] + sum[1][1]},
-                     {t[0] + t[1], t[2] + t[3], t[4] + t[5]},
-                     sum[SLID_LOSS][0] + sum[SLID_LOSS][1]},
-        run->shear);
+    Shear *shear = run->shear;
+    for (int d = 0; d < 3; d++)
+        shear->traction[d] += sum[ONE_FORCE + d][0] + sum[ONE_FORCE + d][1];
+    for (int d = 0; d < 6; d++)
+        shear->tangent[d] += sum[ONE_TANGENT + d][0] + sum[ONE_TANGENT + d][1];
+    shear->loss += sum[ONE_LOSS][0] + sum[ONE_LOSS][1];
 }
 
 /* All runs so far. */
@@ -286,61 +319,89 @@ void foundations_end(Work *work)
 }
 
 /* A run of up to so many sliders. */
-static Run *begin_run(Work *work, int most, int k, double *const moved[2], Shear *shear)
+static Run *begin_run(Work *work, int most, int k, double *const moved[2], const double *const turning[2], Shear *shear)
 {
     if (work->abreast.n + most > ABREAST || work->n == ABREAST / 2)
         end_runs(work);
     Run *run = &work->runs[work->n++];
-    *run = (Run){.at = work->abreast.n, .n = most, .moved = {moved[0] + k, moved[1] + k}, .shear = shear};
+    *run = (Run){.at = work->abreast.n,
+                 .n = most,
+                 .moved = {moved[0] + k, moved[1] + k},
+                 .turning = {turning[0] + k, turning[1] + k},
+                 .shear = shear};
     return run;
 }
 
-/* The next pair of sliders of a run. */
+/* Shift of a slider on a path. */
+static inline double shift_of(const double *const turning[2], int k, const double shift[3], int d)
+{
+    return shift[d] + shift[2] * turning[d][k];
+}
+
+/* The next pair of sliders of a run, the part `part` of its path. */
 static inline void add_pair(Abreast *abreast, const double *x, const double *y, const double *tried_x,
-                            const double *tried_y, const double unit[2], double carried, const double *before,
-                            const double *after, double K, double per_K)
+                            const double *tried_y, const double *const turning[2], int k, const double shift[3],
+                            double part, double carries, const double *before, const double *after, double K,
+                            double per_K)
 {
     for (int l = 0; l < 2; l++) {
-        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], unit[0], unit[1],
-                                       carried, before[l], after[l],   K,          per_K};
+        const double u = part * shift_of(turning, k + l, shift, 0), v = part * shift_of(turning, k + l, shift, 1);
+        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], u,    v,
+                                       carries, before[l], after[l],   K,          per_K};
         for (int r = 0; r < N_SLIDER; r++)
             abreast->given[r][abreast->n + l] = given[r];
     }
     abreast->n += 2;
 }
 
-/* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void move_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
-                        double *const moved[2], Work *work, Shear *shear)
+/* Sliders whose stiffness stays, up to the first at its limit, which is returned: `stick` is the sum of the stiffness
+ * of those before each second one. */
+static int stick_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
+                        double *const moved[2], const Work *work, Shear *shear)
 {
     SliderSum sum = {.loss = 0.0};
     const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
-                            : sliders_stick(n, s, path->shift, moved, sum.force);
+                            : sliders_stick(work->abreast.fours, n, s, path->shift, moved, sum.force);
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
+    sum.tangent[5] += K;
     add(&sum, shear);
-    if (along || first == n)
-        return;
-    double way[3];
-    direction(path->shift, NULL, way);
-    begin_run(work, n - first, first, moved, shear);
-    for (int k = first; k < n; k += 2)
-        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, way, s->K[k] * way[2],
-                 s->before + k, s->after + k, s->K[k], s->per_K[k]);
+    return along ? n : first;
 }
+
+/* Those from there on. */
+static void slip_steady(int first, int n, const Sliders *s, const PatchPath *path, double *const moved[2], Work *work,
+                        Shear *shear)
+{
+    if (first == n)
+        return;
+    begin_run(work, n - first, first, moved, s->turning, shear);
+    for (int k = first; k < n; k += 2)
+        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, s->turning, k,
+                 path->shift, 1.0, s->K[k], s->before + k, s->after + k, s->K[k], s->per_K[k]);
+}
+
+WITHIN void grow_limits(int first, int n, const double *restrict limit, const double *restrict K, double to,
+                   double *restrict found)
+{
+    for (int k = first; k < n; k++)
+        found[k] = limit_at(limit[k], K[k], to);
+}
+COMPILED_TWICE(grow_limits, (int first, int n, const double *limit, const double *K, double to, double *found),
+               (first, n, limit, K, to, found))
 
 /* The first `n` sliders, of ranges all in contact. */
 static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
                       Work *work, Shear *shear)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    for (int k = 0; k < n; k++) {
-        work->before[k] = limit_at(f->limit[k], f->K[k], from);
-        work->after[k] = limit_at(f->limit[k], f->K[k], to);
-    }
-    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]}};
-    move_steady(n, &s, f->stick, path, along, moved, work, shear);
+    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]},
+                       {f->turning[0], f->turning[1]}};
+    (work->abreast.fours ? grow_limits_fours : grow_limits_any)(0, n, f->limit, f->K, to, work->after);
+    const int first = stick_steady(n, &s, f->stick, path, along, moved, work, shear);
+    grow_limits_any(first, n, f->limit, f->K, from, work->before);
+    slip_steady(first, n, &s, path, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
@@ -349,9 +410,10 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i}};
+    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i},
+                       {f->turning[0] + 2 * i, f->turning[1] + 2 * i}};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    move_steady(2, &s, &stick, path, along, to, work, shear);
+    slip_steady(stick_steady(2, &s, &stick, path, along, to, work, shear), 2, &s, path, to, work, shear);
 }
 
 /* Arguments of `carrying`. */
@@ -390,14 +452,12 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     const Pair start = pair_at(f, i, path->from), end = pair_at(f, i, path->to);
     const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
     const int n = across ? 2 : 1;
-    double x[N_CARRYING], gained[2], way[3];
-    direction(path->shift, NULL, way);
-    Run *run = begin_run(work, 2 * n, 2 * i, moved, shear);
+    double x[N_CARRYING], gained[2];
+    Run *run = begin_run(work, 2 * n, 2 * i, moved, f->turning, shear);
     run->n = 2;
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 2; d++)
         run->force[d] = path->force[d] + 2 * i;
-        run->shift[d] = path->shift[d];
-    }
+    memcpy(run->shift, path->shift, sizeof run->shift);
     run->across = across;
     run->K[0] = start.K;
     run->K[1] = ends[0].K;
@@ -409,9 +469,10 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
         double tried[2][2];
         for (int d = 0; d < 2; d++)
             for (int l = 0; l < 2; l++)
-                tried[d][l] = gained[0] * run->force[d][l] + gained[1] * (part * path->shift[d]);
-        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], way, gained[1] * (part * way[2]),
-                 start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
+                tried[d][l] = gained[0] * run->force[d][l] +
+                              gained[1] * (part * shift_of(run->turning, l, path->shift, d));
+        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], run->turning, 0, path->shift, part,
+                 gained[1], start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
     }
 }
 
@@ -423,7 +484,7 @@ static int touched_on(const PatchPath *path)
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
-    const bool rests = path->from->approach == path->to->approach, along = rests && path->straight;
+    const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
     Middle middle = {.known = false};
     *shear = (Shear){.loss = 0.0};
     move_full(f, 2 * full, path, along, moved, work, shear);
@@ -443,21 +504,21 @@ double foundation_stick(const Foundation *f, const Point *at)
 enum { R_FALLS, R_BEFORE, R_AFTER, N_REST }; /* arguments of `rest_rule` */
 
 /* As `Foundation.rested` of the package. */
-bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[2], Shear *shear)
+bool foundation_rest(const Foundation *f, const PatchPath *path, const double before[3], Shear *shear)
 {
     const Point *from = path->from, *to = path->to;
     const double x[N_REST] = {to->approach < from->approach, foundation_stick(f, from), foundation_stick(f, to)};
     const double most = SLIDER_HARDLY * f->mu / f->ratio * x[R_AFTER] * (to->approach - f->height[0]);
     double rule[2], *t = shear->traction;
     rest_rule(x, NULL, rule);
-    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER]}};
-    for (int d = 0; d < 2; d++)
+    *shear = (Shear){.tangent = {x[R_AFTER], 0.0, x[R_AFTER], 0.0, 0.0, x[R_AFTER]}};
+    for (int d = 0; d < 3; d++)
         t[d] = rule[0] * before[d] + rule[1] * path->shift[d];
-    return sqrt(t[0] * t[0] + t[1] * t[1]) <= most;
+    return sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]) <= most;
 }
 
-void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[2], const double rates[2],
-                           const double shift[2], Shear *rate)
+void foundation_rest_rates(const Foundation *f, const PatchPath *path, const double before[3], const double rates[2],
+                           const double shift[3], Shear *rate)
 {
     const Point *from = path->from, *to = path->to;
     const double first = f->ratio * from->y[2] * rates[0], last = f->ratio * to->y[2] * rates[1];
@@ -466,43 +527,32 @@ void foundation_rest_rates(const Foundation *f, const PatchPath *path, const dou
     double rule[2], slopes[2];
     rest_rule(x, NULL, rule);
     rest_rule_seed(x, NULL, slopes);
-    *rate = (Shear){.tangent = {last, 0.0, last}};
-    for (int d = 0; d < 2; d++)
+    *rate = (Shear){.tangent = {last, 0.0, last, 0.0, 0.0, last}};
+    for (int d = 0; d < 3; d++)
         rate->traction[d] = slopes[0] * before[d] + slopes[1] * path->shift[d] + rule[1] * shift[d];
 }
 
-void foundation_spread(const Foundation *f, const Point *at, const double traction[2], double *const force[2])
+void foundation_spread(const Foundation *f, const Point *at, const double traction[3], double *const force[2])
 {
     const double stick = foundation_stick(f, at);
     for (int i = 0; i < at->touched; i++) {
         const double part = stick > 0.0 ? pair_at(f, i, at).K / stick : 0.0;
         for (int d = 0; d < 2; d++)
-            force[d][2 * i] = force[d][2 * i + 1] = part * traction[d];
+            for (int k = 2 * i; k < 2 * i + 2; k++)
+                force[d][k] = part * shift_of(f->turning, k, traction, d);
     }
     for (int d = 0; d < 2; d++)
         memset(force[d] + 2 * at->touched, 0, (size_t)(SLIDERS - 2 * at->touched) * sizeof *force[d]);
 }
 
+COLD
+
 /* Rates */
 
 /* Rates of a path: of the approaches at its ends, of the shift. */
 typedef struct {
-    double ends[2], shift[2];
+    double ends[2], shift[3];
 } PathRate;
-
-/* Arguments of `both_on_way`, and a seed of those that change. */
-typedef struct {
-    double approach, load, stiffness, slope;
-} OnCurve;
-typedef struct {
-    OnCurve at[3]; /* start, end and middle */
-    double shift[2];
-} RangePath;
-typedef struct {
-    double small[2], across, flags[3][2], ratio, mu, low[3], high[3], force[2][2];
-    RangePath path, rate;
-} RangeOn;
-_Static_assert(sizeof(RangeOn) == (21 + 2 * 14) * sizeof(double), "arguments of both_on_way_seed");
 
 /* What stands for the limits: in a further motion a little less, so that sliders at their limits slip. */
 static inline double least_limit(const PatchPath *path)
@@ -510,43 +560,108 @@ static inline double least_limit(const PatchPath *path)
     return path->onward ? 1.0 - 2.0 * SLIDER_AT_LIMIT : 1.0;
 }
 
+/* What sliders have, with its rates: a range at a point, or one of its sliders after a way. */
+typedef struct {
+    Pair at, rate;
+} Pairs;
+typedef struct {
+    double at[N_SLID], rate[N_SLID];
+} Slid;
+
+/* The approach of the point and the stiffness' slope change with rates. */
+static Pairs pairs_at(const Foundation *f, int i, const Point *p, double rate, double bend)
+{
+    Pairs pairs = {.at = pair_at(f, i, p)};
+    double x[2 * N_TOUCHING - X_LOAD];
+    if (p->approach < f->height[i])
+        return pairs;
+    if (i < p->full) {
+        for (int late = 0; late < 2; late++)
+            pairs.rate.limit[late] = f->mu / f->ratio * pairs.at.K * rate;
+        return pairs;
+    }
+    entered(f, i, p, x);
+    const double rates[] = {(p->y[1] - f->stiffness[i]) * rate, p->y[2] * rate, bend * rate, rate};
+    memcpy(x + N_TOUCHING, rates, sizeof rates);
+    touching_seed(x, NULL, &pairs.rate.K);
+    return pairs;
+}
+
+/* One slider of a range on a part of a path; `gained` and its rate are of `carrying`. */
+static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate *rates, double part, int k,
+                     const Pairs *start, const Pairs *end, const double gained[2], const double gains[2])
+{
+    const int late = k % 2;
+    const double least = least_limit(path), K = end->at.K, per_K = K > 0.0 ? 1.0 / K : 0.0;
+    const double u = part * shift_of(f->turning, k, path->shift, 0), v = part * shift_of(f->turning, k, path->shift, 1);
+    const double du = part * shift_of(f->turning, k, rates->shift, 0), dv = part * shift_of(f->turning, k, rates->shift, 1);
+    const double before = least * start->at.limit[late], after = least * end->at.limit[late];
+    const double x[] = {path->force[0][k], path->force[1][k], gained[0], gained[1], u, v, before, after, K, per_K,
+                        gains[0], gains[1], du, dv,
+                        least * start->rate.limit[late], least * end->rate.limit[late], end->rate.K, -end->rate.K * per_K * per_K};
+    const double trial[] = {x[0], x[1], x[2], x[3], u, v, after};
+    double tried[3];
+    Slid slid;
+    stick_plane(trial, NULL, tried);
+    const double given[N_SLIDER] = {x[0], x[1], tried[0], tried[1], u, v, x[3], before, after, K, per_K};
+    slide_plane(given, NULL, slid.at);
+    slide_plane_seed(x, NULL, slid.rate);
+    return slid;
+}
+
 /* Rates of the sliders of a range that is not all in contact. */
 static void range_rate(const Foundation *f, int i, const PatchPath *path, const PathRate *rates, const Point *middle,
                        Shear *rate)
 {
-    const Point *from = path->from, *to = path->to, *points[] = {from, to, middle};
-    const double parts[] = {0.0, 1.0, 0.5}, change = to->approach - from->approach;
+    const Point *from = path->from, *to = path->to, *points[2] = {to, middle};
+    const double change = to->approach - from->approach, turned = rates->ends[1] - rates->ends[0];
     const double bend = change != 0.0 ? (to->y[2] - from->y[2]) / change : 0.0;
-    RangeOn x = {.across = !stays(i, from, to), .ratio = f->ratio, .mu = f->mu * least_limit(path)};
-    double y[6];
-    for (int k = 0; k < 3; k++) {
-        const Point *p = points[k];
-        const double r = rates->ends[0] + parts[k] * (rates->ends[1] - rates->ends[0]);
-        x.flags[k][0] = p->approach >= f->height[i];
-        x.flags[k][1] = i < p->full;
-        x.path.at[k] = (OnCurve){p->approach, p->y[0], p->y[1], p->y[2]};
-        x.rate.at[k] = (OnCurve){r, p->y[1] * r, p->y[2] * r, bend * r};
-        if (k > 0)
-            x.small[k - 1] = small_on(f, i, from, p);
+    const bool across = !stays(i, from, to);
+    const Pairs start = pairs_at(f, i, from, rates->ends[0], bend);
+    Pairs ends[2];
+    Slid slid[2][2] = {{{{0.0}, {0.0}}}};
+    for (int at = 0; at < (across ? 2 : 1); at++) {
+        const double part = at > 0 ? 0.5 : 1.0;
+        double x[2 * N_CARRYING - 1], gained[2], gains[2];
+        ends[at] = pairs_at(f, i, points[at], rates->ends[0] + part * turned, bend);
+        gain(f, i, path, &start.at, &ends[at].at, points[at], x);
+        ends_of(f, &start.rate, &ends[at].rate, part * turned, x + N_CARRYING - 1);
+        carrying(x, NULL, gained);
+        carrying_seed(x, NULL, gains);
+        for (int late = 0; late < 2; late++)
+            slid[at][late] = slide_on(f, path, rates, part, 2 * i + late, &start, &ends[at], gained, gains);
     }
-    for (int d = 0; d < 2; d++) {
-        x.force[0][d] = path->force[d][2 * i];
-        x.force[1][d] = path->force[d][2 * i + 1];
-        x.path.shift[d] = path->shift[d];
-        x.rate.shift[d] = rates->shift[d];
+    for (int late = 0; late < 2; late++) {
+        const Slid *end = &slid[0][late], *half = &slid[1][late];
+        const double *moved = end->at;
+        const int k = 2 * i + late;
+        double shift[2], rated[2], dy[N_SLID];
+        memcpy(dy, end->rate, sizeof dy);
+        for (int d = 0; d < 2; d++) {
+            shift[d] = shift_of(f->turning, k, path->shift, d);
+            rated[d] = shift_of(f->turning, k, rates->shift, d);
+        }
+        const double x[] = {across, path->force[0][k], path->force[1][k], moved[0], moved[1],
+                            shift[0], shift[1], start.at.K, ends[0].at.K, moved[SLID_SLIP], half->at[0], half->at[1],
+                            dy[0], dy[1], rated[0], rated[1], start.rate.K, ends[0].rate.K, dy[SLID_SLIP],
+                            half->rate[0], half->rate[1]};
+        if (start.at.K != ends[0].at.K)
+            changing_loss_seed(x, NULL, &dy[SLID_LOSS]);
+        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
-    memcpy(x.low, (double[]){f->height[i], f->load[i], f->stiffness[i]}, sizeof x.low);
-    memcpy(x.high, (double[]){f->height[i + 1], f->load[i + 1], f->stiffness[i + 1]}, sizeof x.high);
-    both_on_way_seed((const double *)&x, NULL, y);
-    add(&(SliderSum){{y[0], y[1]}, {y[2], y[3], y[4]}, y[5]}, rate);
 }
 
 /* Rates of the first `n` sliders, of ranges all in contact. */
 static void full_rates(const Foundation *f, int n, const PatchPath *path, const PathRate *rates, Shear *rate)
 {
     const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const double *u = path->shift, *du = rates->shift, least = least_limit(path);
+    const double least = least_limit(path);
     for (int k = 0; k < n; k++) {
+        double u[2], du[2];
+        for (int d = 0; d < 2; d++) {
+            u[d] = shift_of(f->turning, k, path->shift, d);
+            du[d] = shift_of(f->turning, k, rates->shift, d);
+        }
         const double K = f->K[k], before = least * limit_at(f->limit[k], K, from), after = least * limit_at(f->limit[k], K, to);
         const double x[] = {path->force[0][k], path->force[1][k], 1.0, K, u[0], u[1], before, after, K, f->per_K[k],
                             0.0, 0.0, du[0], du[1], grown * K * rates->ends[0], grown * K * rates->ends[1], 0.0, 0.0};
@@ -555,19 +670,19 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
         stick_plane(trial, NULL, y);
         if (y[2] > 0.0)
             slide_plane_seed(x, NULL, dy);
-        add(&(SliderSum){{dy[0], dy[1]}, {dy[2], dy[3], dy[4]}, dy[SLID_LOSS]}, rate);
+        add_one(dy, f->turning[0][k], f->turning[1][k], rate);
     }
 }
 
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
-                      const double shift[2], Shear *rate)
+                      const double shift[3], Shear *rate)
 {
     const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
     const double approach = fmax(path->from->approach, path->to->approach);
-    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1]}};
+    const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1], shift[2]}};
     int touched = touched_on(path);
     Middle middle = {.known = false};
-    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0;
+    const bool still = path->shift[0] == 0.0 && path->shift[1] == 0.0 && path->shift[2] == 0.0;
     if (still && touched < HEIGHTS && approach == f->height[touched]) /* about to touch; where it shifts they slip */
         touched++;
     *rate = (Shear){.loss = 0.0};
@@ -577,3 +692,5 @@ void foundation_rates(const Foundation *f, const PatchPath *path, const double r
     for (int i = full; i < touched; i++)
         range_rate(f, i, path, &moves, &middle.at, rate);
 }
+
+END_OF_COLD

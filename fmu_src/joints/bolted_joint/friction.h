@@ -17,6 +17,7 @@ typedef struct {
     const Curve *curve;
     const Energy *energy; /* its integral */
     double mu, ratio;
+    const double *turning[2]; /* shifts of the sliders in a turn about the centre, over its way */
     double offset;    /* of the heights, see `around` */
     double reference; /* approach around which they lie */
     double lowest;    /* the least one since then, at which the height `lowered` stands that lay at `laid`; 0: none */
@@ -38,18 +39,19 @@ typedef struct {
     int full, touched; /* ranges whose springs all, or some, touch */
 } Point;
 
-/* A straight path of a patch: force of the sliders before, where it begins and ends, the shift. */
+/* A straight path of a patch: force of the sliders before, where it begins and ends, the shift along x, y and around
+ * the centre. */
 typedef struct {
     const double *force[2];
     const Point *from, *to;
-    double shift[2];
-    bool straight; /* no force and no shift along y */
+    double shift[3];
+    bool straight; /* no force and no shift along y and around the centre */
     bool onward;   /* for rates: sliders at their limits slip, as in a further motion */
 } PatchPath;
 
-/* What the sliders of a patch give together, per area; a rate is its derivative along a seed. */
+/* What the sliders of a patch give together, per area, as SliderSum; a rate is its derivative along a seed. */
 typedef struct {
-    double traction[2], tangent[3], loss; /* the tangent of a further motion */
+    double traction[3], tangent[6], loss; /* the tangent of a further motion */
 } Shear;
 
 /* Sliders of a patch that stand abreast: from the first at its limit on of ranges in contact, or both of a range; of
@@ -57,8 +59,8 @@ typedef struct {
 typedef struct {
     int at, n;
     bool changes, across;
-    double K[2], shift[2];
-    const double *force[2];
+    double K[2], shift[3];
+    const double *force[2], *turning[2];
     double *moved[2];
     Shear *shear;
 } Run;
@@ -72,7 +74,7 @@ typedef struct {
     double before[SLIDERS], after[SLIDERS];
 } Work;
 
-/* Lay the heights around an approach; curve, energy, mu, ratio and offset are given. */
+/* Lay the heights around an approach; curve, energy, mu, ratio, turning and offset are given. */
 void foundation_lay(Foundation *foundation, double reference);
 /* Put the next height above the lowest approach so far there. */
 void foundation_lower(Foundation *foundation, double lowest);
@@ -89,14 +91,14 @@ void foundations_end(Work *work);
 /* Stiffness of all sliders that touch at a point. */
 double foundation_stick(const Foundation *foundation, const Point *at);
 /* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */
-bool foundation_rest(const Foundation *foundation, const PatchPath *path, const double before[2], Shear *shear);
+bool foundation_rest(const Foundation *foundation, const PatchPath *path, const double before[3], Shear *shear);
 /* Derivative of what it gives by the approach at both ends and the shift. */
-void foundation_rest_rates(const Foundation *foundation, const PatchPath *path, const double before[2],
-                           const double rates[2], const double shift[2], Shear *rate);
+void foundation_rest_rates(const Foundation *foundation, const PatchPath *path, const double before[3],
+                           const double rates[2], const double shift[3], Shear *rate);
 /* Forces of sliders that have stuck so far with a traction together. */
-void foundation_spread(const Foundation *foundation, const Point *at, const double traction[2], double *const force[2]);
+void foundation_spread(const Foundation *foundation, const Point *at, const double traction[3], double *const force[2]);
 /* Derivative of what `foundation_move` gives by the approach at both ends and the shift. */
 void foundation_rates(const Foundation *foundation, const PatchPath *path, const double rates[2],
-                      const double shift[2], Shear *rate);
+                      const double shift[3], Shear *rate);
 
 #endif

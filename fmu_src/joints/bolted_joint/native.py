@@ -55,18 +55,17 @@ def _shear(g: Graph) -> None:
     doc = "load, stiffness, its slope, width -> stiffness, its slope, limits of the two"
     x = [ratio, friction, load, stiffness, bend, width]
     y = sliders.touching(load, stiffness, bend, width, ratio, friction)
-    g.add("touching", f"K_T/K_N, mu, {doc}", x, y)
+    g.add_with_seed("touching", f"K_T/K_N, mu, {doc}", x, y, fixed=2)
     small, first, slope, last, then, change, rise = symbols("x", 7)
     doc = "whether small, stiffness and slope at both ends, change, rise -> part kept, gain"
     kept = sliders.carrying((first, slope), (last, then), change, rise, small)
-    g.add("carrying", doc, [small, first, slope, last, then, change, rise], kept)
+    g.add_with_seed("carrying", doc, [small, first, slope, last, then, change, rise], kept, fixed=1)
     across, slip = symbols("x", 2)
     force, moved, shift, ends, middle = (symbols(name, 2) for name in "qfukm")
     doc = "whether across, force before, after, shift, stiffness at both ends, slip, middle -> loss"
     loss = sliders.changing_loss(force, moved, shift, (ends[0], ends[1]), slip, across, middle)
     x = [across, *force, *moved, *shift, *ends, slip, *middle]
-    g.add("changing_loss", doc, x, [loss])
-    _range(g)
+    g.add_with_seed("changing_loss", doc, x, [loss], fixed=3)
 
 
 def _rest(g: Graph) -> None:
@@ -87,44 +86,9 @@ def _loops(g: Graph) -> None:
     g.add_with_seed("short_loop", doc, [mu, ratio, size, *now, *then], y, fixed=2)
 
 
-def _range(g: Graph) -> None:
-    """Both sliders of a range that is not all in contact along a path, for their derivative."""
-    small, flags, forces = symbols("small", 2), symbols("flag", 6), symbols("q", 4)
-    (across, ratio, friction), low, high = symbols("x", 3), symbols("l", 3), symbols("h", 3)
-    points, shift = [symbols(name, 4) for name in "abc"], symbols("u", 2)
-    pairs = [
-        sliders.of_range(point, low, high, flags[2 * k], flags[2 * k + 1], ratio, friction)
-        for k, point in enumerate(points)
-    ]
-    limits = [sum(one.limit for one in pair) for pair in pairs]
-    ways = [
-        sliders.Way(
-            [part * u for u in shift],
-            points[k][0] - points[0][0],
-            0.5 * ratio / friction * (limits[k] - limits[0]),
-            small[k - 1],
-        )
-        for k, part in enumerate((1.0, 0.5), start=1)
-    ]
-    total = [ca.SX(0.0)] * 6
-    for late, force in enumerate((forces[:2], forces[2:])):
-        start, *ends = (pair[late] for pair in pairs)
-        slid, half = (sliders.on_way(force, start, end, way) for end, way in zip(ends, ways, strict=True))
-        loss = sliders.heat(force, shift, start, ends[0], slid, across, half.force)
-        total = [a + b for a, b in zip(total, [*slid.force, *slid.tangent, loss], strict=True)]
-    fixed = [*small, across, *flags, ratio, friction, *low, *high, *forces]
-    doc = (
-        "whether small to the end and to the middle, whether across; whether touching, full at each point; "
-        "K_T/K_N, mu; height, load, stiffness at both ends of the range; forces of the early and the late "
-        "slider; approach, load, stiffness, its slope at start, end and middle; shift -> force, tangent, loss"
-    )
-    moving = [number for point in points for number in point]
-    g.add_with_seed("both_on_way", doc, [*fixed, *moving, *shift], total, fixed=len(fixed))
-
-
 def _definitions(g: Graph, model: Model) -> Definitions:
     counts = {f"SUM_{name.upper()}": k for k, name in enumerate(outputs.SUMS)} | {"N_SUMS": len(outputs.SUMS)}
-    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT"))}
+    counts |= {name: k for k, name in enumerate(("SHARE", "PLACE_X", "PLACE_Y", "EQUAL", "TILT", "RADIUS"))}
     names = ("SMALL", "SHORT", "HARDLY", "SPREAD", "LOWEST", "HIGHEST", "USUAL")
     numbers = {f"SLIDER_{name}": float(getattr(sliders, name)) for name in names}
     numbers["SLIDER_AT_LIMIT"] = jenkins.AT_LIMIT

@@ -3,7 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "cold.h"
 #include "tabulated.h"
+
+COLD
 
 enum { MOTIONS = 6 };
 
@@ -16,7 +19,7 @@ static inline int motion_of(int d)
 /* A joint with rigid sides has nothing of this: ELASTIC is a constant. */
 
 /* A row of what modes move, as numbers, and three motions beside them. */
-static void lay_row(const double *digits, double first, double second, double third, double *row)
+static void lay_row(const int16_t *digits, double first, double second, double third, double *row)
 {
     const double motions[LANES_OF_MODES] = {first, second, third};
     for (int k = 0; k < (int)data.n_modes; k++)
@@ -62,52 +65,69 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
     }
 }
 
-static inline void scale(double by, const double *restrict row, double *restrict scaled)
-{
-    for (int k = 0; k < WIDE; k++)
-        scaled[k] = by * row[k];
-}
-
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
-static void press_all(Kind *kind, int size, double (*by_normal)[WIDE])
+static void press_all(Kind *kind, int size)
 {
     const bool fours = kind->work.abreast.fours;
-    memset(by_normal, 0, WIDE * sizeof *by_normal);
-    for (int i = 0; i < (int)data.n_nodes; i++)
-        scale(kind->area * data.nodes[i][SHARE] * kind->k[i], kind->opening[i], kind->weighted[i]);
-    dense_products(fours, (int)data.n_nodes, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->opening, size, by_normal);
-    for (int b = 0; b < (int)data.n_bolts; b++)
-        scale(kind->bolt, kind->stretch[b], kind->weighted[b]);
-    dense_products(fours, (int)data.n_bolts, (const double(*)[WIDE])kind->weighted,
-                   (const double(*)[WIDE])kind->stretch, size, by_normal);
+    const int sizes[2] = {(int)data.n_nodes, (int)data.n_bolts};
+    const double(*const rows[2])[WIDE] = {(const double(*)[WIDE])kind->opening, (const double(*)[WIDE])kind->stretch};
+    memset(kind->by_normal, 0, sizeof kind->by_normal);
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < sizes[s]; i++)
+            kind->by[i] = s == 0 ? kind->area * data.nodes[i][SHARE] * kind->k[i] : kind->bolt;
+        dense_weigh(fours, sizes[s], kind->by, rows[s], kind->weighted);
+        dense_products(fours, sizes[s], (const double(*)[WIDE])kind->weighted, rows[s], size, false, kind->by_normal);
+    }
 }
 
-/* The same by shear in `by_shear`, of patches with their tangents. */
-static void shear_all(Kind *kind, int size, const double (*tangent)[3])
+/* The same by shear in `by_shear`, of patches with their slopes by shifts along x and y and by coming apart; all of
+ * the matrix or its lower half. */
+static void shear_all(Kind *kind, int size, bool all, const double (*slope)[3][2])
 {
+    const bool fours = kind->work.abreast.fours;
     const int n = (int)data.n_patches;
+    const double(*const rows[3])[WIDE] = {(const double(*)[WIDE])kind->patch[0], (const double(*)[WIDE])kind->patch[1],
+                                          (const double(*)[WIDE])kind->patch[2]};
+    double by[MOST_PATCHES][3];
     memset(kind->by_shear, 0, sizeof kind->by_shear);
     for (int d = 0; d < 2; d++) {
-        for (int j = 0; j < n; j++) {
-            const double weight = kind->area * data.patches[j][SHARE], *t = tangent[j] + d;
-            for (int k = 0; k < WIDE; k++)
-                kind->weighted[j][k] = weight * (t[0] * kind->patch[0][j][k] + t[1] * kind->patch[1][j][k]);
-        }
-        dense_products(kind->work.abreast.fours, n, (const double(*)[WIDE])kind->weighted,
-                       (const double(*)[WIDE])kind->patch[d], size, kind->by_shear);
+        for (int j = 0; j < n; j++)
+            for (int s = 0; s < 3; s++)
+                by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
+        dense_combine(fours, n, (const double(*)[3])by, rows[0], rows[1], rows[2], kind->weighted);
+        dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
     }
 }
 
-/* The derivative by the amplitudes from that by normal motions and, where it is given, by shear. */
-static void by_amplitudes(Kind *kind, const double (*normal)[WIDE], const double (*shear)[WIDE])
+/* Add to the turn's row of it what the sliders have around the centres of their patches. */
+static void turn_all(Kind *kind, const double (*tangent)[6])
+{
+    double *row = kind->by_shear[MODES + 2];
+    for (int j = 0; j < (int)data.n_patches; j++) {
+        const double *t = tangent[j], radius = data.patches[j][RADIUS];
+        const double weight = kind->area * data.patches[j][SHARE] * radius, *x = kind->patch[0][j], *y = kind->patch[1][j];
+        for (int k = 0; k < WIDE; k++)
+            row[k] += weight * (t[3] * x[k] + t[4] * y[k]);
+        row[MODES + 2] += weight * (t[3] * x[MODES + 2] + t[4] * y[MODES + 2] + radius * t[5]);
+    }
+}
+
+/* The derivative of the residual by the amplitudes, factored, and what acts beside it up to a size: from the slopes of
+ * patches; all of it or as if it were symmetric. */
+static void differentiate(Kind *kind, int size, bool all, const double (*slope)[3][2])
 {
     double(*a)[MODES] = kind->factors;
+    press_all(kind, size);
+    shear_all(kind, size, all, slope);
     for (int r = 0; r < MODES; r++) {
-        for (int k = 0; k <= r; k++)
-            a[k][r] = a[r][k] = normal[r][k] + (shear ? shear[r][k] : 0.0);
+        for (int k = 0; k <= r; k++) {
+            const double normal = kind->by_normal[r][k], shear = kind->by_shear[r][k];
+            a[r][k] = normal + shear;
+            a[k][r] = normal + (all ? kind->by_shear[k][r] : shear);
+        }
         a[r][r] += kind->bodies[r];
     }
+    dense_factor(kind->work.abreast.fours, a, kind->pivots);
 }
 
 /* Equilibrium */
@@ -158,61 +178,47 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
 }
 
-/* The derivative of the residual by what the memory says, factored; in a further motion where that after it is given. */
+/* The derivative by what the memory says; in a further motion where that after it is given. */
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
-    double(*a)[MODES] = kind->factors;
-    static const double units[3][3] = {{0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {-1.0, 0.0, 0.0}};
-    press_all(kind, MODES, kind->by_normal);
-    by_amplitudes(kind, (const double(*)[WIDE])kind->by_normal, NULL);
-    for (int j = 0; j < (int)data.n_patches; j++) {
-        const double weight = kind->area * data.patches[j][SHARE];
-        double rows[2][MODES] = {{0.0}};
+    static const double units[3][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {-1.0}};
+    double slope[MOST_PATCHES][3][2];
+    for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 3; c++) {
-            const Shear slope = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
-            for (int d = 0; d < 2; d++)
-                add_scaled(weight * slope.traction[d], kind->patch[c][j], rows[d]);
+            const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
+            memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
         }
-        for (int d = 0; d < 2; d++)
-            for (int k = 0; k < MODES; k++)
-                add_scaled(rows[d][k], kind->patch[d][j], a[k]);
-    }
-    dense_factor(kind->factors, kind->pivots);
+    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
 }
 
-/* The same at the last trial less how the normal force acts on friction, by differences; the points are taken as
- * they were before the way, where a way begins. */
-static void jacobian(Joint *joint, const double *inputs, const double *memory, bool begins)
+/* The same at the last trial, by differences. */
+static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    double tangent[MOST_PATCHES][3], deepest = 0.0;
+    double slope[MOST_PATCHES][3][2], deepest = 0.0;
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_tangents(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, tangent);
-    if (!begins)
-        press_all(kind, MODES, kind->by_normal);
-    shear_all(kind, MODES, (const double(*)[3])tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])(begins ? kind->begin.by_normal : kind->by_normal),
-                  (const double(*)[WIDE])kind->by_shear);
-    dense_factor(kind->factors, kind->pivots);
+    patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
+    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
-static void follow(Kind *kind, const double (*tangent)[3], Followed *followed)
+static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
-    press_all(kind, WIDE, followed->by_normal);
-    shear_all(kind, WIDE, tangent);
-    by_amplitudes(kind, (const double(*)[WIDE])followed->by_normal, (const double(*)[WIDE])kind->by_shear);
-    dense_factor(kind->factors, kind->pivots);
+    double slope[MOST_PATCHES][3][2];
+    for (int j = 0; j < (int)data.n_patches; j++)
+        slopes_of(tangent[j], slope[j]);
+    differentiate(kind, WIDE, false, (const double(*)[3][2])slope);
+    turn_all(kind, tangent);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
-        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : followed->by_normal[at];
+        const double *h = d < 2 || d == 5 ? kind->by_shear[at] : kind->by_normal[at];
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, z);
+        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, z);
         kind->whole[d] = h[at] + dense_dot(h, z);
     }
     followed->known = true;
@@ -247,7 +253,7 @@ static void deform(Kind *kind, const double *amplitude)
 static bool predict(Joint *joint, const double *inputs, const double *memory, double *rate, Text *why)
 {
     Kind *kind = &joint->kind;
-    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][3];
+    double key[FOLLOW_KEY], first[N_INPUTS], tangent[MOST_PATCHES][6];
     key_of(inputs, memory, key);
     place(inputs, memory, 0.0, first);
     if (kind->end.known && memcmp(key, kind->end.key, sizeof key) == 0) {
@@ -260,10 +266,10 @@ static bool predict(Joint *joint, const double *inputs, const double *memory, do
         for (int j = 0; j < (int)data.n_patches && (int)memory[AT_STATE] == UNKNOWN; j++) {
             const Point at = foundation_point(&kind->foundation[j], kind->patch_start[j], 0);
             const double stick = foundation_stick(&kind->foundation[j], &at);
-            tangent[j][0] = tangent[j][2] = stick;
-            tangent[j][1] = 0.0;
+            const double sticks[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
+            memcpy(tangent[j], sticks, sizeof sticks);
         }
-        follow(kind, (const double(*)[3])tangent, &kind->begin);
+        follow(kind, (const double(*)[6])tangent, &kind->begin);
         memcpy(kind->begin.key, key, sizeof key);
     }
     memset(rate, 0, MODES * sizeof *rate);
@@ -328,12 +334,8 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
-        const bool far = n >= NEWTON_STEPS / 2; /* tangents do not get there */
-        if (far || !(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
-            if (far)
-                exact(joint, at, way->memory, NULL);
-            else
-                jacobian(joint, at, way->memory, n == 0 && part == 1.0);
+        if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
+            jacobian(joint, at, way->memory);
             kept = 0;
         }
         const bool last = part == 1.0 && left < WHOLE_CHORD * before && left * left < before * least;
@@ -341,7 +343,7 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
             step[k] = -r[k];
-        dense_solve((const double(*)[MODES])kind->factors, kind->pivots, step);
+        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, step);
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
@@ -421,9 +423,9 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
     for (int d = 0; d < 3; d++)
         after[AT_APART + d] = inputs[motion_of(2 + d)];
     memcpy(after + AT_AMPLITUDE, trial, sizeof trial);
-    memset(after + AT_TANGENT, 0, 3 * MOST_PATCHES * sizeof *after);
-    memcpy(after + AT_TANGENT, kind->tangent, 3 * (size_t)data.n_patches * sizeof *after);
-    follow(kind, (const double(*)[3])kind->tangent, &kind->end);
+    memset(after + AT_TANGENT, 0, 6 * MOST_PATCHES * sizeof *after);
+    memcpy(after + AT_TANGENT, kind->tangent, 6 * (size_t)data.n_patches * sizeof *after);
+    follow(kind, (const double(*)[6])kind->tangent, &kind->end);
     key_of(inputs, after, kind->end.key);
     return true;
 }
@@ -498,7 +500,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int b = 0; b < (int)data.n_bolts; b++)
         add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
     exact(joint, inputs, memory, after);
-    dense_solve((const double(*)[MODES])kind->factors, kind->pivots, r);
+    dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
     whole_deform(r, kind, kind->opened_rate, kind->patch_opened_rate, kind->bent_rate);
 }
@@ -522,7 +524,9 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
             const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
             const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
             const double *t = kind->shears[j].tangent;
-            sum += data.patches[j][SHARE] * (t[0] * u * u + 2.0 * t[1] * u * v + t[2] * v * v);
+            const double w = d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0;
+            sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
+                                             2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
         }
         rates[d] = kind->area * sum;
     }
@@ -547,3 +551,5 @@ void whole_bolt_rates(const Joint *joint, const double *inputs, const double *se
         result[b] = left + seed[INPUT_MOMENT] * data.bolts[b][2] +
                     kind->bolt * stretched(kind, b, seed, kind->amplitude_rate);
 }
+
+END_OF_COLD

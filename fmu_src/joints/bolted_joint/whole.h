@@ -2,6 +2,8 @@
 #ifndef JOINTFMU_WHOLE_H
 #define JOINTFMU_WHOLE_H
 
+#include <string.h>
+
 #include "bolted_joint.h"
 #include "joint.h"
 
@@ -26,8 +28,14 @@ bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text
 bool joint_try(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
-                 double rate, const double shift[2]);
-/* By differences: tractions of the last trial over the shifts at its end, xx, xy, yy. */
-void patch_tangents(Joint *joint, const double *inputs, const double *memory, double step, double (*tangent)[3]);
+                 double rate, const double shift[3]);
+/* Slopes of a traction from its tangents xx, xy, yy. */
+static inline void slopes_of(const double tangent[3], double slope[3][2])
+{
+    const double rows[3][2] = {{tangent[0], tangent[1]}, {tangent[1], tangent[2]}};
+    memcpy(slope, rows, sizeof rows);
+}
+/* By differences: those of the last trial by shifts along x and y at its end and by coming apart. */
+void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2]);
 
 #endif

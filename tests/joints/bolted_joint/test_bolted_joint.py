@@ -162,7 +162,7 @@ def test_force_is_minus_the_gradient_of_the_potential(spring, load, s):
         assert f[axis] == pytest.approx(-slope, rel=0.0, abs=1e-7 * scale[axis])
 
 
-@settings(max_examples=30)
+@settings(max_examples=20)
 @given(load=loads, s=states)
 def test_stiffness_is_the_exact_derivative(spring, load, s):
     """All nine derivatives of the force: the outputs on the diagonal, symmetric beside it."""

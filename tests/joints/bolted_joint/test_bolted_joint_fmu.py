@@ -317,6 +317,7 @@ YELLOW = "#fde725"
 """The end of the colours."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.15, 0.0015])
 def test_loops_show_partial_slip_whatever_the_friction(mu: float) -> None:
     """The smallest keeps part of its stiffness, the largest stays below the friction and loses."""
@@ -354,6 +355,7 @@ def test_the_picture_shows_pressure_and_bolts_where_they_are() -> None:
     assert [text for text in told if text and text.isdigit()][:8] == [str(i + 1) for i in range(8)]
 
 
+@pytest.mark.slow
 def test_the_picture_of_points_without_an_outline() -> None:
     """One disc a point, of its area; no bolts, and the page says so."""
     file = default("bolted_joint")

@@ -16,7 +16,6 @@ from jointfmu_tools.joints.bolted_joint.new import computed
 from jointfmu_tools.report.course import Course
 
 from jointfmu.joints import KINDS
-from jointfmu.joints.bolted_joint import trials
 from jointfmu.joints.bolted_joint import whole as equilibrium
 from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.joints.bolted_joint.law import interface_alone
@@ -301,45 +300,35 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
     assert "--sides elastic beside --tapped" in line
 
 
-def test_where_tangents_stall_the_exact_derivative_goes_on(made, monkeypatch):
-    """Tangents of a fiftieth find no equilibrium: the same forces without them. A path far into slip and
-    opening on which the true ones stall is found without parts."""
+def test_a_path_far_into_slip_and_opening_is_found_without_parts(made, monkeypatch):
+    """By the derivative of the residual, which is that of its differences."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
     unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
-    names = ("f_x", "f_y", "f_z", "m_x", "m_y", "m_z")
+    newton, found, apart = equilibrium.Whole._newton, [], []
 
-    def gone(a, b, steps):
-        memory, forces = spring.at_rest(), []
-        for angle in np.linspace(0.0, 2.0 * np.pi, 25)[:steps]:
-            six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
-            out, memory = at(spring, *six, memory=memory, preload=15e3)
-            forces.append([out[name] for name in names])
-        return np.array(forces)
+    def watched(self, way, part, tight, amplitude):
+        place = way.place(part)
 
-    def tangent_only(self, way, tight, place, amplitude):
-        there = way.at(place, amplitude).stiffness
-        return self.slope(there, way.tangents(place, amplitude))[6:, 6:]
+        def residual(further):
+            return self.residual(way.at(place, amplitude + further), tight, place, amplitude + further)[0]
 
-    whole_type, trials_type = equilibrium.Whole, trials.Trials
-    a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit / 8.0
-    expected, tangents, newton = gone(a, b, 4), trials_type.tangents, whole_type._newton
-    with monkeypatch.context() as patch:
-        patch.setattr(trials_type, "tangents", lambda *args: 0.02 * tangents(*args))
-        np.testing.assert_allclose(gone(a, b, 4), expected, rtol=1e-9, atol=1e-5)
-        patch.setattr(whole_type, "_exact", tangent_only)
-        with pytest.raises(ValueError, match="find no equilibrium"):
-            gone(a, b, 4)
-    for _ in range(23):
-        a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
-    found = []
-
-    def watched(*args):
-        found.append(newton(*args))
+        if len(found) % 4 == 3:
+            motions = 1e-11 * np.eye(amplitude.size)
+            rises = np.stack([(residual(d) - residual(-d)) / 2e-11 for d in motions], axis=1)
+            exact = self._derivative(way.at(place, amplitude).stiffness, way.slopes(place, amplitude))
+            apart.append(np.max(np.abs(exact - rises)) / np.max(np.abs(rises - rises.T)))
+        found.append(newton(self, way, part, tight, amplitude))
         return found[-1]
 
-    monkeypatch.setattr(whole_type, "_newton", watched)
-    gone(a, b, 15)
+    monkeypatch.setattr(equilibrium.Whole, "_newton", watched)
+    for _ in range(24):
+        a, b = rng.uniform(-1.0, 1.0, (2, 6)) * unit
+    memory = spring.at_rest()
+    for angle in np.linspace(0.0, 2.0 * np.pi, 25)[:15]:
+        six = a * np.sin(angle) + b * (1.0 - np.cos(angle))
+        memory = at(spring, *six, memory=memory, preload=15e3)[1]
     assert len(found) == 15
+    assert max(apart) < 0.01
 
 
 def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):

@@ -259,6 +259,7 @@ def test_the_order_of_the_constants_is_the_references():
     assert {i + 1: v for i, v in enumerate(constants) if v} == {1: 3.0, 58: 3.0, 7: -3.0}
 
 
+@pytest.mark.slow
 def test_abaqus_is_read_by_abq2ccx(found, tmp_path):
     pytest.importorskip("abq2ccx")
     deck = tmp_path / "springs.inp"

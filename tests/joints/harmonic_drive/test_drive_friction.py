@@ -88,7 +88,7 @@ def test_work_of_a_straight_path_is_exact_while_the_limit_changes():
     """One step against very many, of which each is nearly a trapezium."""
     brake, rng = Friction(5.0 * SPRINGS), np.random.default_rng(4)
     memory = brake.after(brake.moved(MEMORY.rest(), 0.0, 0.0, (0.05, 0.08)), 0.0, (0.05, 0.08))
-    for _ in range(10):
+    for _ in range(5):
         before = memory
         phi, most = before[-4] + rng.normal(0.0, 0.02), rng.uniform(0.0, 0.1, 2)
         once = brake.moved(before, phi, 0.0, most)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ...quantity import Array
+from .contact import STICKS
 from .law import pressures
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class Compliances(NamedTuple):
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
         whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
         there = spring.curve.inverse(pressures(spring.joint, spring.patches, preload, moment))
-        stick = spring.foundation().stick(there)[:, None] * np.array([1.0, 0.0, 1.0])
+        stick = spring.foundation().stick(there)[:, None] * STICKS
         normal = spring.curve.derivatives(spring.tightened(preload, moment), 1)[1]
         H = whole.slope(normal, stick)
         motion = np.linalg.inv(whole.condensed(H))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.footprint.shape import FrictionPatches, PressureShape
 from ...mechanics.sliders import Foundation
 from ...quantity import Array, Number, where
 
@@ -44,6 +44,11 @@ def along(shape: PressureShape, rigid: Array) -> Array:
     return np.stack([rigid[0] - rigid[2] * y, rigid[1] + rigid[2] * x], axis=-1)
 
 
+def shifts(patches: FrictionPatches, rigid: Array) -> Array:
+    """The same of patches, and around their centres: (n, 3) [m]."""
+    return np.column_stack([along(patches, rigid), rigid[2] * patches.radius])
+
+
 def over_plane(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
     """Sum of a value (n) per area, and times x and y."""
     each = shape.share * value
@@ -61,38 +66,48 @@ def about(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
     return {f"{name}about_x": each @ y**2, f"{name}about_y": each @ x**2}
 
 
-def shear_sums(shape: PressureShape, traction: Array, tangent: Array) -> dict[str, Number]:
-    """Sums of a traction (n, 2) against the shift and its tangent (n, 3): xx, xy, yy."""
-    x, y = shape.position.T
-    (t_x, t_y), (xx, xy, yy) = traction.T, tangent.T
-    return {
-        "traction_x": shape.share @ t_x,
-        "traction_y": shape.share @ t_y,
-        "torsion": shape.share @ (x * t_y - y * t_x),
-        "tangent_x": shape.share @ xx,
-        "tangent_y": shape.share @ yy,
-        "tangent_z": shape.share @ (y**2 * xx - 2.0 * x * y * xy + x**2 * yy),
-    }
+_TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
+STICKS = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
+"""Tangent of sliders that stick, over their stiffness [1]."""
 
 
-def further_tangent(shape: PressureShape, stick: Array, tangent: Array, traction: Array) -> dict[str, Number]:
+def _motions(patches: FrictionPatches) -> list[Array]:
+    """`shifts` by a shift along x, one along y and a turn about the normal."""
+    return [shifts(patches, motion) for motion in np.eye(3)]
+
+
+def _along(tangent: Array, motion: Array) -> Array:
+    """Stiffness (n) of tangents (n, 6) against motions (n, 3)."""
+    (xx, xy, yy, xt, yt, tt), (u, v, w) = tangent.T, motion.T
+    return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
+
+
+def shear_sums(patches: FrictionPatches, traction: Array, tangent: Array) -> dict[str, Number]:
+    """Sums of a traction (n, 3) against the shift, see `together`, and its tangent (n, 6), see `Moved`."""
+    share, motions = patches.share, _motions(patches)
+    tractions = [share @ np.sum(traction * motion, axis=1) for motion in motions]
+    tangents = [share @ _along(tangent, motion) for motion in motions]
+    return dict(zip(_TRACTIONS + _TANGENTS, tractions + tangents, strict=True))
+
+
+def further_tangent(
+    patches: FrictionPatches, stick: Array, tangent: Array, traction: Array
+) -> dict[str, Number]:
     """Sums of the stiffness against a further shift along x, along y and a further turn.
 
     Each is that of the direction in which more slips on: sliders at their limits do where the traction of
     their patch goes along the motion, and stick elsewhere.
 
     stick    : (n) [Pa/m] of all sliders
-    tangent  : (n, 3) [Pa/m] with all sliders at their limits slipping on, xx, xy, yy
-    traction : (n, 2) [Pa] against the shift
+    tangent  : (n, 6) [Pa/m] with all sliders at their limits slipping on
+    traction : (n, 3) [Pa] against the shift
     """
-    less = stick[:, None] * np.array([1.0, 0.0, 1.0]) - tangent
-    torsion, one = along(shape, np.array([0.0, 0.0, 1.0])), np.ones_like(stick)
-    motions = (one, 0.0 * one), (0.0 * one, one), (torsion[:, 0], torsion[:, 1])
-    found = {}
-    for name, (u, v) in zip(("tangent_x", "tangent_y", "tangent_z"), motions, strict=True):
-        spent = shape.share * (less[:, 0] * u**2 + 2.0 * less[:, 1] * u * v + less[:, 2] * v**2)
-        with_it = np.where(traction[:, 0] * u + traction[:, 1] * v < 0.0, -spent, spent)
-        found[name] = shape.share @ (stick * (u**2 + v**2)) - 0.5 * (np.sum(spent) + abs(np.sum(with_it)))
+    less, found = stick[:, None] * STICKS - tangent, {}
+    for name, motion in zip(_TANGENTS, _motions(patches), strict=True):
+        spent = patches.share * _along(less, motion)
+        with_it = np.where(np.sum(traction * motion, axis=1) < 0.0, -spent, spent)
+        stuck = patches.share @ (stick * np.sum(motion**2, axis=1))
+        found[name] = stuck - 0.5 * (np.sum(spent) + abs(np.sum(with_it)))
     return found
 
 

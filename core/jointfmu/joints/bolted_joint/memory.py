@@ -26,10 +26,11 @@ def memory_of(patches: int) -> Layout:
     reference : (m) [m] approach of the patches when they first moved along the surface, or until they do
     lowest    : (m) [m] least approach since then, from where a contact began to open last if it has been open
     approach  : (m) [m] of the patches
-    force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all
+    force     : (m, 2, n) [Pa] of the sliders; at rest the first stands for all, and y of the second one for
+                their force around the centre of the patch
     apart     : (3) shift along z [m] and turns about x and y [rad]; this and the rest of elastic sides
     amplitude : (MODES) [m] of the modes
-    tangent   : (m, 3) [Pa/m] of the patches, xx, xy, yy
+    tangent   : (m, 6) [Pa/m] of the patches, see `Moved`
     """
     one = (patches,)
     return Layout(
@@ -43,12 +44,17 @@ def memory_of(patches: int) -> Layout:
             "force": (*one, 2, SLIDERS),
             "apart": (3,),
             "amplitude": (MODES,),
-            "tangent": (*one, 3),
+            "tangent": (*one, 6),
         }
     )
 
 
 def moved_on(before: Memory, rigid: Array) -> int:
     """How friction has moved after the way to a shift and turn, where it is no longer at rest."""
-    free = before["state"] == FREE or np.any(before["force"][:, 1, 0])
+    free = before["state"] == FREE or np.any(before["force"][:, 1, :2])
     return FREE if free or not np.array_equal(rigid[1:], before["rigid"][1:]) else ALONG
+
+
+def resting(force: Array) -> Array:
+    """Forces (m, 3) of all sliders of patches at rest, see `together`, from those in the memory (m, 2, n)."""
+    return np.column_stack([force[..., 0], force[:, 1, 1]])

@@ -11,7 +11,7 @@ from ...mechanics.curve import Curve, approach_curve
 from ...mechanics.footprint.bolts import PressureSource, pressure_shape
 from ...mechanics.footprint.friction import friction_patches
 from ...mechanics.footprint.patches import few_points
-from ...mechanics.footprint.shape import PATCHES, NodalField, PressureShape
+from ...mechanics.footprint.shape import PATCHES, FrictionPatches, NodalField, PressureShape
 from ...mechanics.jenkins import Moved
 from ...mechanics.memory import Layout
 from ...mechanics.sliders import Foundation, around, lowered, offsets
@@ -19,6 +19,7 @@ from ...quantity import Array, Number
 from .bodies import MODES, Modes, RigidBodies
 from .compliances import Compliances
 from .contact import (
+    STICKS,
     Place,
     elastic_shear,
     further_tangent,
@@ -26,9 +27,10 @@ from .contact import (
     normal_sums,
     over_plane,
     shear_sums,
+    shifts,
 )
 from .law import Bolted, interface_alone, pressures, shear_ratio, working_preload
-from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on
+from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on, resting
 from .outputs import STRETCHES, bolt_force, outputs
 from .trials import Trial, Trials, Way, told
 from .whole import Whole
@@ -45,10 +47,12 @@ def points(pattern: PressureSource) -> PressureShape:
 
 
 @lru_cache(maxsize=8)
-def patches(pattern: PressureSource) -> PressureShape:
-    """The points that carry its friction."""
+def patches(pattern: PressureSource, elastic: bool) -> FrictionPatches:
+    """The patches of its friction; of elastic sides they are points, as no mode tells how they turn."""
     stated = pattern.patches() if isinstance(pattern, NodalField) else None
-    return stated or friction_patches(pressure_shape(pattern), PATCHES)
+    if stated:
+        return stated.as_patches() if elastic else stated
+    return friction_patches(pressure_shape(pattern), PATCHES, circles=not elastic)
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ class BoltedJointSpring:
     joint: Bolted
     curve: Curve
     shape: PressureShape
-    patches: PressureShape
+    patches: FrictionPatches
     modes: Modes
 
     @classmethod
@@ -78,7 +82,7 @@ class BoltedJointSpring:
 
         Raises ValueError for bodies that were computed for another contact.
         """
-        shape, few = points(joint.pattern), patches(joint.pattern)
+        shape, few = points(joint.pattern), patches(joint.pattern, joint.elastic)
         bodies = joint.bodies if joint.elastic else RigidBodies()
         modes = Modes.of(bodies, shape.share.size, few.position)
         return cls(joint, approach_curve(joint), shape, few, modes)
@@ -87,13 +91,15 @@ class BoltedJointSpring:
     def of_nodes(cls, joint: Bolted, nodes: PressureShape | None = None) -> "BoltedJointSpring":
         """The interface alone, on all nodes of its pattern or on given ones."""
         shape, joint = pressure_shape(joint.pattern) if nodes is None else nodes, interface_alone(joint)
-        return cls(joint, approach_curve(joint), shape, shape, Modes.none(shape.share.size, shape.share.size))
+        modes = Modes.none(shape.share.size, shape.share.size)
+        return cls(joint, approach_curve(joint), shape, shape.as_patches(), modes)
 
     def on(self, nodes: PressureShape) -> "BoltedJointSpring":
         """The same interface alone on other nodes."""
         count = nodes.share.size
         modes = Modes.none(count, count)
-        return replace(self, joint=interface_alone(self.joint), shape=nodes, patches=nodes, modes=modes)
+        few = nodes.as_patches()
+        return replace(self, joint=interface_alone(self.joint), shape=nodes, patches=few, modes=modes)
 
     @cached_property
     def _foundations(self) -> Callable[[bytes, bytes], Foundation]:
@@ -192,10 +198,16 @@ class BoltedJointSpring:
         else:
             limit, rho = joint.mu * tight, shear_ratio(joint)
             *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *place.along(shape).T)
-            traction, tangent = np.stack(parts[:2], axis=-1), np.stack(parts[2:], axis=-1)
-            shear, after = shear_sums(shape, traction, tangent) | {"loss": 0.0}, memory
+            none = np.zeros_like(tight)
+            traction, tangent = (
+                np.stack([*own, none, *rest], axis=-1)
+                for own, rest in ((parts[:2], []), (parts[2:], [none, none]))
+            )
+            shear, after = shear_sums(shape.as_patches(), traction, tangent) | {"loss": 0.0}, memory
         plastic, elastic = self.works(at.derivatives[0])
-        size = np.hypot(*(place.along(self.patches) + self.shift(amplitude)).T)
+        shift = shifts(self.patches, place.six[[0, 1, 5]])
+        shift[:, :2] += self.shift(amplitude)
+        size = np.sqrt(np.sum(shift**2, axis=1))
         sums: dict[str, Number] = {
             **over_plane(shape, "tightened", tight),
             **normal_sums(shape, lifted, stiffer, at.derivatives),
@@ -225,7 +237,7 @@ class BoltedJointSpring:
         return np.stack([self.modes.patch[axis] @ amplitude for axis in range(2)], axis=-1)
 
     def way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
-        """How the patches move on a straight path to approaches (m) [m] by shifts (m, 2) [m]."""
+        """How the patches move on a straight path to approaches (m) [m] by `shifts` (m, 3) [m]."""
         first = approach if before["state"] == UNKNOWN else before["approach"]
         stick = self.foundation().stick(approach)
         moved = self._at_rest(before, first, approach, shift, stick) if before["state"] < ALONG else None
@@ -239,7 +251,7 @@ class BoltedJointSpring:
             lowest = np.where(opened, first, np.minimum(before["lowest"], first))
         foundation, force = self.foundation(reference, lowest), before["force"]
         if before["state"] < ALONG:
-            force = foundation.spread(force[..., 0], first)
+            force = foundation.spread(resting(force), first)
         return Way(state, reference, lowest, approach, foundation.moved(force, first, approach, shift), stick)
 
     def _friction(
@@ -263,8 +275,8 @@ class BoltedJointSpring:
                 "tangent": moved.tangent if elastic else 0.0,
             }
         )
-        further = further_tangent(patches, way.stick, moved.tangent, moved.traction)
-        return shear_sums(patches, moved.traction, moved.tangent) | further | {"loss": loss / area}, after
+        further = further_tangent(patches, way.stick, moved.tangent, way.traction)
+        return shear_sums(patches, way.traction, moved.tangent) | further | {"loss": loss / area}, after
 
     def _at_rest(
         self, before: Memory, first: Array, approach: Array, shift: Array, stick: Array
@@ -273,12 +285,12 @@ class BoltedJointSpring:
 
         Their force stands in the place of the first slider: so heights may follow the load.
         """
-        traction, rests = self.foundation().rested(before["force"][..., 0], first, approach, shift)
+        traction, rests = self.foundation().rested(resting(before["force"]), first, approach, shift)
         if not np.all(rests):
             return None
         force = np.zeros_like(before["force"])
-        force[..., 0] = traction
-        return Moved(force, np.zeros_like(stick), stick[:, None] * np.array([1.0, 0.0, 1.0]))
+        force[..., 0], force[:, 1, 1] = traction[:, :2], traction[:, 2]
+        return Moved(force, np.zeros_like(stick), stick[:, None] * STICKS)
 
     def _followed(self, trials: Trials, amplitude: Array) -> Array:
         """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning."""
@@ -286,7 +298,7 @@ class BoltedJointSpring:
         points, patches = trials.approaches(there, amplitude)
         tangent = before["tangent"]
         if before["state"] == UNKNOWN:
-            tangent = self.foundation().stick(patches)[:, None] * np.array([1.0, 0.0, 1.0])
+            tangent = self.foundation().stick(patches)[:, None] * STICKS
         H = whole.slope(self.curve.derivatives(points, 1)[1], tangent)
         motion = trials.end.six - there.six
         return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion))

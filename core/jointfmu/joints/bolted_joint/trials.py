@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...mechanics.jenkins import Moved
+from ...mechanics.sliders import together
 from ...quantity import Array
-from .contact import Place, along
-from .memory import Memory
+from .contact import Place, shifts
+from .memory import RESTING, Memory, resting
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
@@ -30,6 +31,11 @@ class Way:
     approach: Array
     moved: Moved
     stick: Array
+
+    @property
+    def traction(self) -> Array:
+        """(m, 3) [Pa] against the shift, see `together`."""
+        return resting(self.moved.force) if self.state == RESTING else together(self.moved.force)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +65,11 @@ class Trial:
     def traction(self) -> Array:
         """(m, 2) [Pa] against the shift."""
         assert self.way
-        return self.way.moved.traction
+        return self.way.traction[:, :2]
 
     @property
     def tangent(self) -> Array:
-        """(m, 3) [Pa/m] xx, xy, yy."""
+        """(m, 6) [Pa/m], see `Moved`."""
         assert self.way
         return self.way.moved.tangent
 
@@ -80,11 +86,6 @@ class Trials:
     end: Place
     before: Memory
     told: str
-
-    @property
-    def difference(self) -> float:
-        """Step [m] of differences that stand for derivatives."""
-        return DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
     def place(self, part: float) -> Place:
         """Where it is after a part [1] of the way."""
@@ -111,22 +112,23 @@ class Trials:
     def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
         spring, before = self.spring, self.before
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        bent = spring.shift(amplitude - before["amplitude"][: amplitude.size])
-        shift = along(spring.patches, rigid - before["rigid"]) + bent + further
+        shift = shifts(spring.patches, rigid - before["rigid"])
+        shift[:, :2] += spring.shift(amplitude - before["amplitude"][: amplitude.size]) + further
         return spring.way(before, approach, shift, rigid)
 
-    def tangents(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction by shifts along x and y and by coming apart.
+
+        By differences, at the end of the way.
+        """
         approach = self.approaches(place, amplitude)[1]
-        step = self.difference
+        step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
         def traction(further: Array) -> Array:
-            return self._way(place, amplitude, approach, further).moved.traction
+            return self._way(place, amplitude, approach - further[2], further[:2]).traction[:, :2]
 
-        here = traction(np.zeros(2))
-        along_x, along_y = ((traction(d) - here) / step for d in step * np.eye(2))
-        xy = 0.5 * (along_x[:, 1] + along_y[:, 0])
-        return np.stack([along_x[:, 0], xy, along_y[:, 1]], axis=1)
+        here = traction(np.zeros(3))
+        return np.stack([(traction(motion) - here) / step for motion in step * np.eye(3)], axis=-1)
 
 
 def told(preload: float, moment: float, place: Place) -> str:

@@ -5,10 +5,10 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
 
     r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
 
-at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the symmetric
-part H = G^T W G + S of the slope, W the tangents of points, patches and bolts, which Broyden's update carries
-on; where that stalls, with the exact derivative of r. The part of H that is left to the attachments where a
-follows is the stiffness of the whole.
+at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the derivative
+of r, which Broyden's update carries on; it is not symmetric, as the normal force acts on friction. What is
+left of H = G^T W G + S to the attachments where a follows is the stiffness of the whole, W the tangents of
+points, patches and bolts in a further motion.
 """
 
 from collections.abc import Sequence
@@ -18,10 +18,10 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from ...mechanics.footprint.shape import PressureShape
+from ...mechanics.footprint.shape import FrictionPatches, PressureShape
 from ...quantity import Array
 from .bodies import Modes
-from .contact import Place, along
+from .contact import Place, shifts
 
 CLOSE = 1e-13
 """Residual over the sum of all forces [1] at which the bodies are in equilibrium: round-off of the sums."""
@@ -54,7 +54,7 @@ class Forces(Protocol):
 
     @property
     def tangent(self) -> Array:
-        """(m, 3) [Pa/m] xx, xy, yy."""
+        """(m, 6) [Pa/m], see `Moved`."""
 
 
 T = TypeVar("T", bound=Forces, covariant=True)
@@ -67,25 +67,21 @@ class Trials(Protocol[T]):
     def told(self) -> str:
         """The place, as text."""
 
-    @property
-    def difference(self) -> float:
-        """Step [m] of differences that stand for derivatives."""
-
     def place(self, part: float) -> Place:
         """Where it is after a part [1] of the way."""
 
     def at(self, place: Place, amplitude: Array) -> T:
         """Forces there at amplitudes (k) [m]."""
 
-    def tangents(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 3) [Pa/m] xx, xy, yy of the traction over the shift at the end of the way."""
+    def slopes(self, place: Place, amplitude: Array) -> Array:
+        """Derivatives (m, 2, 3) [Pa/m] of the traction by shifts along x and y and by coming apart."""
 
 
 @dataclass(frozen=True)
 class Whole:
     """A contact between bodies that give way, and its bolts.
 
-    points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (2, m, 3) shift by s_x, s_y, theta_z
+    points  : (n, 3) opening by s_z, theta_x, theta_y; patches: (3, m, 3) `shifts` by s_x, s_y, theta_z
     seats   : (b, 3) stretch by s_z, theta_x, theta_y
     weight  : (n) [m2] area of the points, `patch` (m) of the patches
     bolt    : [N/m] stiffness of each bolt
@@ -101,14 +97,14 @@ class Whole:
 
     @classmethod
     def of(
-        cls, modes: Modes, shape: PressureShape, patches: PressureShape, area: float, bolt: float
+        cls, modes: Modes, shape: PressureShape, patches: FrictionPatches, area: float, bolt: float
     ) -> "Whole":
         """Of points and patches of a nominal area [m2]."""
         turns = np.eye(3)
         return cls(
             modes,
             _apart(shape.position),
-            np.stack([along(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
+            np.stack([shifts(patches, turn) for turn in turns], axis=-1).transpose(1, 0, 2),
             _apart(modes.bolts),
             area * shape.share,
             area * patches.share,
@@ -136,7 +132,7 @@ class Whole:
     def slope(self, stiffness: Array, tangent: Array) -> Array:
         """H (6 + k, 6 + k) [N/m] over s_x, s_y, s_z, theta_x, theta_y, theta_z and the amplitudes.
 
-        stiffness (n) [Pa/m] of the points, tangent (m, 3) [Pa/m] of the patches.
+        stiffness (n) [Pa/m] of the points, tangent (m, 6) [Pa/m] of the patches.
         """
         modes, normal, shear = self.modes, slice(2, 5), (0, 1, 5)
         size = 6 + len(modes.stiffness)
@@ -150,9 +146,11 @@ class Whole:
         points = motions(self.points, normal, modes.opening)
         seats = motions(self.seats, normal, modes.stretch)
         u, v = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(2))
-        xx, xy, yy = (self.patch * tangent.T)[:, :, None]
+        w = motions(self.patches[2], shear, 0.0 * modes.patch[0])
+        xx, xy, yy, xt, yt, tt = (self.patch * tangent.T)[:, :, None]
         H += points.T @ ((self.weight * stiffness)[:, None] * points) + self.bolt * seats.T @ seats
-        H += u.T @ (xx * u + xy * v) + v.T @ (xy * u + yy * v)
+        H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
+        H += w.T @ (xt * u + yt * v + tt * w)
         H[6:, 6:] += np.diag(modes.stiffness)
         return H
 
@@ -186,19 +184,17 @@ class Whole:
             rate = (found[0] - amplitude) / (part - done)
             amplitude, done, step = found[0], part, 2.0 * step
 
-    def _exact(self, trials: "Trials[T]", tight: Array, place: Place, amplitude: Array) -> Array:
-        """Derivative (k, k) [N/m] of the residual by the amplitudes, by central differences.
+    def _derivative(self, stiffness: Array, slopes: Array) -> Array:
+        """Of the residual by the amplitudes: (k, k) [N/m].
 
-        Beside the tangents it has how the normal force acts on friction: it is not symmetric.
+        stiffness (n) [Pa/m] of the points, slopes (m, 2, 3) [Pa/m] of the tractions.
         """
-
-        def there(further: Array) -> Array:
-            moved = amplitude + further
-            return self.residual(trials.at(place, moved), tight, place, moved)[0]
-
-        steps = trials.difference * np.eye(amplitude.size)
-        rises = [there(step) - there(-step) for step in steps]
-        return np.stack(rises, axis=1) / (2.0 * trials.difference)
+        modes = self.modes
+        J = np.diag(modes.stiffness) + self.bolt * modes.stretch.T @ modes.stretch
+        J += modes.opening.T @ ((self.weight * stiffness)[:, None] * modes.opening)
+        for axis in range(2):
+            J += modes.patch[axis].T @ np.einsum("m,mc,cmk->mk", self.patch, slopes[:, axis], modes.patch)
+        return np.asarray(J)
 
     def _newton(
         self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array
@@ -209,15 +205,12 @@ class Whole:
         r, least = self.residual(at, tight, place, amplitude)
         before, J = 0.0, np.eye(r.size)
         steps: list[Array] = []
-        for n in range(STEPS):
+        for _ in range(STEPS):
             left = float(np.max(np.abs(r)))
             if left <= close * least:
                 return amplitude, at
-            far = n >= STEPS // 2  # tangents do not get there
-            if far:
-                J, steps = self._exact(trials, tight, place, amplitude), []
-            elif not left < CHORD * before:
-                J, steps = self.slope(at.stiffness, trials.tangents(place, amplitude))[6:, 6:], []
+            if not left < CHORD * before:
+                J, steps = self._derivative(at.stiffness, trials.slopes(place, amplitude)), []
             step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
             steps.append(step)
             size, falls, begin = 1.0, float(r @ step), amplitude

@@ -3,28 +3,31 @@
 Under loads that stay, a node whose approach is delta carries p(delta) - p(delta - v) against a shift, v in
 units of mu/kappa (Jaeger 1995, Ciavarella 1998). A turn about the normal has the distance from its pole as a
 factor, which is no polynomial, and a tilt moves the pressure about: as many nodes with other shares as there
-is room for keep few of these sums. The patches may leave the nodes: their places and pressures are fitted as
-well, to the friction of rigid motions of the tilted contact under laws p ~ delta^N. What `few_points` keeps
-to round-off they keep, too. The fit is one of rounded numbers (`reproducible`), so that it ends in one place
-on every processor. benchmarks/patch_reduction.py prints how far friction is from that of all nodes.
+is room for keep few of these sums. So each patch stands for the nodes around it, at the centre of their
+friction, with its sliders on a circle of nearly their radius of gyration: near the pole of a turn, where its
+parts pull all ways, a patch has little force and a torque. Its place, share and pressures are then fitted to
+the friction of rigid motions of the tilted contact under laws p ~ delta^N, and to gross slip about poles that
+are pressed. What `few_points` keeps to round-off patches keep, too. The fit is one of rounded numbers
+(`reproducible`), so that it ends in one place on every processor. benchmarks/patch_reduction.py prints how
+far friction is from that of all nodes.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...quantity import Array
 from .elimination import changes, solved
 from .patches import balanced, few_points, largest_moment
-from .reproducible import cleared, length, over, powers, product, root, rounded, to_power
-from .shape import PressureShape
+from .reproducible import cleared, length, over, powers, product, root, rounded, to_digits, to_power
+from .shape import FrictionPatches, PressureShape
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
 """Powers N of p ~ delta^N [1], of two: 1.5 of Hertz, 7 of the default law, 12 of rough surfaces."""
-CASES = 240
-"""States of the joint and motions from rest whose friction is fitted."""
+CASES, POLES = 240, 200
+"""States of the joint and motions from rest whose friction is fitted, and more in gross slip about a pole."""
 UNTILTED = 0.4
-"""Part of them without displacement and tilt [1]."""
+"""Part of the former without displacement and tilt [1]."""
 APART, TILTED = 0.1, 0.2
 """Largest displacement and tilt at the edge [1], over the approach of the node that is pressed most."""
 MOST_MOMENT = 2.5
@@ -49,34 +52,80 @@ DIFFERENCE = 1e-6
 """Change of a place or pressure over its size [1] by which derivatives are found."""
 AT_ONCE = 2000
 """Nodes whose friction is summed up at once [1]."""
+BESIDE, FAR = 0.06, 1e3
+"""How far these poles are beside a pressed node, over the radius of gyration [1]; length of their motion."""
+TILTED_POLES = 8
+"""One of so many is that of a tilted contact, the others are of one without moment."""
+POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
+"""Weights of the forces about them, of the torques, and of shifts alone, beside those of other cases [1]."""
+ON_CIRCLE = 4
+"""Places on the circle of a patch that stand for its sliders."""
+LESS_SPREAD = 0.9
+"""Radius of this circle over that of gyration of the friction that a patch stands for [1]: a disc pulls about
+a pole inside it as a smaller ring does."""
+AT_REST, ROUNDS = 0.1, 30
+"""Pressure over the mean one [1] that counts beside a node's own where nodes are divided among the patches,
+and how often they are."""
 TINY = float(np.finfo(float).tiny)
 _RATIOS = powers(1.0 / 1.0969815577985598, 7)
 """An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
+_CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
+"""These places on a circle of radius 1."""
 
 
-def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> PressureShape:
+def friction_patches(
+    shape: PressureShape, count: int, begin: PressureShape | None = None, circles: bool = True
+) -> FrictionPatches:
     """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
 
-    begin : some points that stand for many nodes, of which the first patches are taken
+    begin   : some points that stand for many nodes, of which the first patches are taken
+    circles : whether sliders stand on circles; else patches are points, fitted without poles of gross slip
 
     Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
 
     Raises ValueError if count is too small to keep the sums.
     """
     if shape.share.size <= count:
-        return shape
+        return shape.as_patches()
     rough = rounded(shape)
     gyration = float(np.sqrt(np.add.reduce(rough.share * np.add.reduce(rough.position**2, axis=1))))
     highest, steep = float(np.max(rough.equal)), max(float(np.max(np.abs(rough.tilt))), TINY)
-    unit = np.array([1.0, gyration, gyration, highest, steep])[:, None]
+    unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
+    few = few_points(rough if begin is None else rounded(begin), count)
+    first = _divided(rough, few.position) if circles else few.as_patches()
     nodes, there, points = (
-        np.stack([each.share, *each.position.T, each.equal, each.tilt]) / unit
-        for each in (rough, shape, few_points(rough if begin is None else rounded(begin), count))
+        np.stack([each.share, *each.position.T, each.equal, each.tilt, each.radius]) / unit
+        for each in (rough.as_patches(), shape.as_patches(), first)
     )
-    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
+    aim = _Aim.of(nodes, POLES if circles else 0, MOST_MOMENT * largest_moment(rough) * steep / highest)
     moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
-    share, x, y, equal, tilt = unit * moved
-    return cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
+    share, x, y, equal, tilt, radius = unit * moved
+    few = cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
+    return replace(few.as_patches(), radius=radius)
+
+
+def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
+    """Nodes divided among patches that begin at places (m, 2), each to the nearest one.
+
+    A patch then takes the centre of their friction, again and again (Lloyd's method).
+    """
+    share, (x, y) = shape.share, shape.position.T
+    weight, count = share * (shape.equal + AT_REST), len(places)
+
+    def sums(values: Array) -> Array:
+        return np.asarray(np.bincount(nearest, values, count))
+
+    for _ in range(ROUNDS):
+        square = (x - places[:, :1]) ** 2 + (y - places[:, 1:]) ** 2
+        nearest = np.argmin(square, axis=0)
+        whole = np.maximum(sums(weight), TINY)
+        places = np.column_stack([sums(weight * x) / whole, sums(weight * y) / whole])
+    away = (x - places[nearest, 0]) ** 2 + (y - places[nearest, 1]) ** 2
+    area = np.maximum(sums(share), TINY)
+    radius = LESS_SPREAD * np.sqrt(sums(weight * away) / whole)
+    return FrictionPatches(
+        area, places, sums(share * shape.equal) / area, sums(share * shape.tilt) / area, radius
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,17 +149,21 @@ class _Motions:
     way: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
-        """Even over what a contact with nodes (5, n) up to |x|, |y| (2) can do: shifts, turns about its
-        centre, and twice as many about places where it is pressed."""
-        number = np.arange(1, CASES + 1)
+    def of(cls, nodes: Array, poles: int, largest_moment: float, reach: Array) -> "_Motions":
+        """Even over what a contact with nodes (6, n) up to |x|, |y| (2) can do: shifts, turns about its
+        centre, and twice as many about places where it is pressed; and gross slip about so many poles."""
+        number = np.arange(1, CASES + poles + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
-        moves, kind = number > UNTILTED * CASES, np.minimum(number % 4, 2)
+        gross = number > CASES
+        moves = np.where(gross, number % TILTED_POLES == 0, number > UNTILTED * CASES)
+        moment = np.where(gross & ~moves, 0.0, moment)
+        kind = np.where(gross, 2, np.minimum(number % 4, 2))
         along = 2.0 * np.abs(angle) - 1.0  # on a square that stands on its corner
         across = np.sign(angle) * (1.0 - np.abs(along))
-        force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones(CASES)
-        _, x, y, _, _ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
+        force, nothing, one = np.add.accumulate(nodes[0] * nodes[3]), 0.0 * along, np.ones_like(along)
+        _, x, y, *_ = nodes[:, np.searchsorted(force, 0.5 * (1.0 + place) * force[-1])]
+        x, y = x + gross * BESIDE * angle, y + gross * BESIDE * (2.0 * unit[:, 6] - 1.0)
         shift_or_turn = ((along, nothing, y), (across, nothing, -x), (nothing, one, one))
         motion = np.stack([np.choose(kind, each) for each in shift_or_turn])
         motion /= np.sqrt(np.add.reduce(motion * motion, axis=0))
@@ -123,30 +176,36 @@ class _Motions:
             TILTED / reach[1] * about_x * moves,
             TILTED / reach[0] * about_y * moves,
             motion,
-            way * (1.0 - root(np.full((CASES, 1), STUCK), power[:, None])[:, 0]),
+            np.where(gross, FAR, way * (1.0 - root(np.full((number.size, 1), STUCK), power[:, None])[:, 0])),
         )
         return cls(*(each[..., None] for each in columns))
 
     def friction(self, points: Array) -> tuple[Array, Array]:
-        """Of points (5, n), per share: force along x and y, moment and loss of a loop (4 m, n), and the force
+        """Of points (6, n), per share: force along x and y, moment and loss of a loop (4 m, n), and the force
         (m, n) in gross slip."""
-        _, x, y, equal, tilt = points
+        _, x, y, equal, tilt, radius = points
         start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
-        u, v = self.along[0] - self.along[2] * y, self.along[1] + self.along[2] * x
-        size = np.sqrt(u * u + v * v)
-        way = self.way * size
         now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
-        then = np.maximum(now - way, 0.0)
-        most, rest = to_power(now, self.power), to_power(then, self.power)
-        force, work = most - rest, most * way - (now * most - then * rest) / (self.power + 1.0)
-        part = force / np.maximum(size, TINY)
-        each = (part * u, part * v, part * (x * v - y * u), 8.0 * (work - 0.5 * force * way))
-        return np.concatenate(each), most * size
+        most, whole, turned = to_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
+        places = _CIRCLE if np.any(radius) else _CIRCLE[:1]
+        for along, across in places:
+            there_x, there_y = x + along * radius, y + across * radius
+            u, v = self.along[0] - self.along[2] * there_y, self.along[1] + self.along[2] * there_x
+            size = np.sqrt(u * u + v * v)
+            way = self.way * size
+            then = np.maximum(now - way, 0.0)
+            rest = to_power(then, self.power)
+            force, work = most - rest, most * way - (now * most - then * rest) / (self.power + 1.0)
+            part = force / np.maximum(size, TINY)
+            each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)
+            whole += np.stack(each) / len(places)
+            turned += most * size / len(places)
+        return whole.reshape(-1, now.shape[1]), turned
 
 
 @dataclass(frozen=True, slots=True)
 class _Aim:
-    """What the sums over points (5, n) of share, x, y, equal and tilt should be.
+    """What the sums over points (6, n) of share, x, y, equal, tilt and radius should be.
 
     reach : (2) largest |x| and |y| [1]
     scale : (m) of the sums of friction [1]
@@ -163,20 +222,28 @@ class _Aim:
     sums: Array
 
     @classmethod
-    def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
-        """Those over nodes (5, n)."""
+    def of(cls, nodes: Array, poles: int, largest_moment: float) -> "_Aim":
+        """Those over nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
-        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
-        friction, gross = np.zeros(4 * CASES), np.zeros(CASES)
+        motions, share = _Motions.of(nodes, poles, largest_moment, reach), nodes[0]
+        friction, gross = np.zeros(4 * (CASES + poles)), np.zeros(CASES + poles)
         for first in range(0, share.size, AT_ONCE):
             some = nodes[:, first : first + AT_ONCE]
             each, most = motions.friction(some)
             friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
-        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * CASES :]]), TINY)
+        scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
+        weight = np.where((motions.along[2, :, 0] == 0.0) & (poles > 0), SHIFT_WEIGHT, 1.0)
+        weight[CASES:] = POLE_WEIGHT
+        torque, loss = (
+            np.where(weight == POLE_WEIGHT, TORQUE_WEIGHT, weight),
+            np.minimum(weight, SHIFT_WEIGHT),
+        )
+        scale *= np.concatenate([weight, weight, torque, loss])
         exact = _exact(nodes, reach)
         held, size = over(exact, share), over(np.abs(exact), share)
         hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0
-        return cls(motions, reach, scale, hold, held, np.concatenate([scale * friction, hold * held]))
+        sums = np.concatenate([scale * friction, hold * held])
+        return cls(motions, reach, scale, hold, held, sums)
 
     def values(self, points: Array) -> Array:
         """(m + 12, n) whose sums with the shares should be `sums`."""
@@ -185,21 +252,24 @@ class _Aim:
 
 
 def _balanced(points: Array, reach: Array, sums: Array) -> Array:
-    """Points (5, n) with the exact sums (12), by small changes of their shares, equal and tilt."""
-    share, x, y, equal, tilt = points
+    """Points (6, n) with the exact sums (12), by small changes of their shares, equal and tilt."""
+    share, x, y, equal, tilt, radius = points
     place = _exact(points, reach)[:6]
     share = share + changes(share, place, sums[:6] - over(place, share))
     force, place = share * equal, place[:3]
     equal = equal + changes(force, place, sums[6:9] - over(place, force)) / share
     force = share * equal
     tilt = tilt + changes(force, place, sums[9:] - over(place, share * tilt)) / share
-    return np.stack([share, x, y, equal, tilt])
+    return np.stack([share, x, y, equal, tilt, radius])
 
 
 def _exact(points: Array, reach: Array) -> Array:
-    """(12, n) the functions of points (5, n) whose sums are exact."""
-    _, x, y, equal, tilt = points
-    return balanced(x / reach[0], y / reach[1], equal, tilt)
+    """(12, n) the functions of points (6, n) whose sums are exact."""
+    _, x, y, equal, tilt, radius = points
+    each = balanced(x / reach[0], y / reach[1], equal, tilt)
+    for place, over_reach in zip((3, 5), radius / reach[:, None], strict=True):  # x^2 and y^2
+        each[place] += 0.5 * over_reach * over_reach
+    return each
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,8 +289,8 @@ class _Around:
 
     @classmethod
     def of(cls, points: Array, aim: _Aim) -> "_Around":
-        """At points (5, n)."""
-        share, *_, equal, _ = points
+        """At points (6, n), whose radii stay."""
+        share, *_, equal, _, _ = points
         values, one = aim.values(points), np.ones_like(share)
         size = np.stack([share, *np.outer(aim.reach, one), equal, equal])
         slopes = [values * share]
@@ -232,16 +302,16 @@ class _Around:
         return cls(miss, size, product(slope, slope), over(slope, miss))
 
     def step(self, damping: float) -> Array:
-        """Change (5, n) of the points."""
+        """Change (6, n) of the points."""
         own = np.diag(self.square)
         diagonal = damping * (own + LEAST_DIAGONAL * np.max(own))
         parts = solved(self.square + np.diag(diagonal), -self.gradient)
         parts = np.clip(parts, -LARGEST_STEP, LARGEST_STEP).reshape(self.size.shape)
-        return np.asarray(self.size * parts)
+        return np.concatenate([self.size * parts, np.zeros_like(self.size[:1])])
 
 
 def _moved(points: Array, aim: _Aim) -> Array:
-    """Points (5, n) after STEPS steps of Levenberg and Marquardt's method."""
+    """Points (6, n) after STEPS steps of Levenberg and Marquardt's method."""
     here, damping = _Around.of(points, aim), FIRST_DAMPING
     for _ in range(STEPS):
         trial = _balanced(points + here.step(damping), aim.reach, aim.held)

@@ -1,6 +1,6 @@
 """What a bolted contact's pressure looks like, and the shape that comes as numbers: a nodal field."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -34,6 +34,10 @@ class PressureShape:
         """Some of the nodes, with their shares."""
         return PressureShape(self.share[nodes], self.position[nodes], self.equal[nodes], self.tilt[nodes])
 
+    def as_patches(self) -> "FrictionPatches":
+        """Each node as a patch of friction without a size of its own."""
+        return FrictionPatches(self.share, self.position, self.equal, self.tilt, np.zeros_like(self.share))
+
     def merged(self, moment: bool = True) -> "MergedShape":
         """Nodes that have the same pressure under every preload and moment as one.
 
@@ -45,6 +49,16 @@ class PressureShape:
         share = np.asarray(np.bincount(group.ravel(), self.share), dtype=np.float64)
         x2, y2 = (np.bincount(group.ravel(), self.share * x**2) / share for x in self.position.T)
         return MergedShape(share, self.equal[first], tilt[first], x2, y2)
+
+
+@dataclass(frozen=True, slots=True)
+class FrictionPatches(PressureShape):
+    """Patches that carry the friction of a contact, each for the nodes around it.
+
+    radius : (n) [m] of the circle around a patch on which its sliders stand
+    """
+
+    radius: Array
 
 
 def growing(share: Array, y: Array, equal: Array) -> Array:
@@ -96,10 +110,12 @@ PATCHES = 22
 """Most points that carry the friction of a joint [1], each with sliders."""
 
 
-def as_lists(shape: PressureShape, prefix: str = "") -> dict[str, tuple[float, ...]]:
-    """What a field has of its points, or with PATCH of its patches."""
-    rows = shape.share, *shape.position.T, shape.equal, shape.tilt
-    return {prefix + name: tuple(row.tolist()) for name, row in zip(_POINTS, rows, strict=True)}
+def as_lists(shape: PressureShape) -> dict[str, tuple[float, ...]]:
+    """What a field has of its points, or of its patches."""
+    rows = dict(zip(_POINTS, (shape.share, *shape.position.T, shape.equal, shape.tilt), strict=True))
+    if isinstance(shape, FrictionPatches):
+        rows = {PATCH + name: row for name, row in (rows | {"radius": shape.radius}).items()}
+    return {name: tuple(row.tolist()) for name, row in rows.items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +139,9 @@ class NodalField:
     patch_y: tuple[float, ...] = series("m", "places of the patches across the bolt rows", optional=True)
     patch_equal: tuple[float, ...] = series("1", "`equal` of the patches", ge=0.0, optional=True)
     patch_tilt: tuple[float, ...] = series("1", "`tilt` of the patches", optional=True)
+    patch_radius: tuple[float, ...] = series(
+        "m", "radii of the circles around the patches on which their sliders stand", ge=0.0, optional=True
+    )
     bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
     bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
     bolt_x2: float = quantity(
@@ -145,7 +164,7 @@ class NodalField:
     def _check_points(self, prefix: str) -> None:
         """Raise ValueError if the points, or the patches, do not balance."""
         count = len(getattr(self, f"{prefix}share"))
-        for name in _POINTS:
+        for name in (*_POINTS, "radius") if prefix and self.patch_radius else _POINTS:
             if (given := len(getattr(self, prefix + name))) != count:
                 raise ValueError(
                     f"{prefix}{name} has {given} numbers, expected as many as {prefix}share has: {count}"
@@ -176,9 +195,12 @@ class NodalField:
         """The points as arrays."""
         return self._points("")
 
-    def patches(self) -> PressureShape | None:
+    def patches(self) -> FrictionPatches | None:
         """Those of its friction, where the field has some of all its nodes."""
-        return self._points(PATCH) if self.patch_share else None
+        if not self.patch_share:
+            return None
+        patches = self._points(PATCH).as_patches()
+        return replace(patches, radius=np.array(self.patch_radius)) if self.patch_radius else patches
 
     def _points(self, prefix: str) -> PressureShape:
         share, x, y, equal, tilt = (np.array(getattr(self, prefix + name)) for name in _POINTS)

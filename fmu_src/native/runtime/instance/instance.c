@@ -4,6 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cold.h"
+
+COLD
+
 static const char *const categories_known[] = {"logStatusError", "logStatusWarning", "logEvents"};
 enum { N_CATEGORIES = sizeof categories_known / sizeof *categories_known };
 
@@ -227,3 +231,5 @@ Status instance_set_time(Instance *m, const char *function, double time)
     m->dirty |= MOVES;
     return OK;
 }
+
+END_OF_COLD

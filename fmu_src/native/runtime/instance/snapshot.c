@@ -1,7 +1,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cold.h"
 #include "instance.h"
+
+COLD
 
 /* A state in the hands of the host, and its bytes: little endian, the same on every platform.
  *
@@ -265,3 +268,5 @@ Status state_read(Instance *m, const char *function, const void *bytes, size_t s
     pass(&from, read);
     return fits(m, function, read) ? hand_over(m, function, read, saved) : ERROR;
 }
+
+END_OF_COLD

@@ -4,6 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cold.h"
+
+COLD
+
 static void add(Text *text, const char *piece, size_t n)
 {
     const size_t room = sizeof text->line - 1 - text->length;
@@ -97,3 +101,5 @@ void text_quantity(Text *text, const char *name, double value, int digits, const
     text_number(text, value, digits);
     text_print(text, unit[0] ? " %s" : "", unit);
 }
+
+END_OF_COLD

@@ -171,12 +171,13 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 
 /* In a plane */
 
-static inline void stick_plane_all(int n, const double *restrict K, const double *restrict limit,
-                                   const double *restrict q_x, const double *restrict q_y, double u, double v,
-                                   double *restrict x, double *restrict y, double *restrict reaches)
+WITHIN void stick_each(int n, const double *restrict K, const double *restrict limit, const double *restrict q_x,
+                       const double *restrict q_y, const double *restrict e_x, const double *restrict e_y,
+                       const double *restrict shift, double *restrict x, double *restrict y, double *restrict reaches)
 {
+    const double u = shift[0], v = shift[1], w = shift[2];
     for (int k = 0; k < n; k++) {
-        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u, v, limit[k]};
+        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u + w * e_x[k], v + w * e_y[k], limit[k]};
         double b[3];
         stick_plane(a, NULL, b);
         x[k] = b[0];
@@ -184,19 +185,27 @@ static inline void stick_plane_all(int n, const double *restrict K, const double
         reaches[k] = b[2];
     }
 }
+COMPILED_TWICE(stick_each,
+               (int n, const double *K, const double *limit, const double *q_x, const double *q_y, const double *e_x,
+                const double *e_y, const double *shift, double *x, double *y, double *reaches),
+               (n, K, limit, q_x, q_y, e_x, e_y, shift, x, y, reaches))
 
-int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2])
+int sliders_stick(bool fours, int n, const Sliders *s, const double shift[3], double *const moved[2], double force[3])
 {
-    double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0};
-    stick_plane_all(n, s->K, s->after, s->force[0], s->force[1], shift[0], shift[1], moved[0], moved[1], reaches);
+    double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0}, t[2] = {0.0};
+    const double *e_x = s->turning[0], *e_y = s->turning[1];
+    (fours ? stick_each_fours : stick_each_any)(n, s->K, s->after, s->force[0], s->force[1], e_x, e_y, shift, moved[0],
+                                                moved[1], reaches);
     const int first = first_at_limit(reaches, n);
     for (int k = 0; k < first; k += 2)
         for (int l = 0; l < 2; l++) {
             x[l] += moved[0][k + l];
             y[l] += moved[1][k + l];
+            t[l] += moved[0][k + l] * e_x[k + l] + moved[1][k + l] * e_y[k + l];
         }
     force[0] = x[0] + x[1];
     force[1] = y[0] + y[1];
+    force[2] = t[0] + t[1];
     return first;
 }
 

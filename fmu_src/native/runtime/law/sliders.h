@@ -12,13 +12,14 @@ enum { MOST_SLIDERS = 48 }; /* of one call; an even number each */
 /* Sliders before a straight path: springs K and 1/K (0 without), limits at both ends of it, forces. */
 typedef struct {
     const double *K, *per_K, *before, *after;
-    const double *force[2]; /* in a plane; along one direction the first */
+    const double *force[2];   /* in a plane; along one direction the first */
+    const double *turning[2]; /* in a plane: shifts in a turn about the centre, over its way */
 } Sliders;
 
-/* What they give together: forces, tangents xx, xy, yy of a further motion, heat. Along one direction the
- * tangents are along and, as yy, across it. */
+/* What they give together: forces along x, y and around the centre, tangents xx, xy, yy, xt, yt, tt of a further
+ * motion, t around the centre; heat. Along one direction the tangents are along and, as yy, across it. */
 typedef struct {
-    double force[2], tangent[3], loss;
+    double force[3], tangent[6], loss;
 } SliderSum;
 
 /* Along one direction, a multiple of four sliders; `before` and `after` are one array where the limits stay. */
@@ -33,9 +34,11 @@ double sliders_heat(int n, const Sliders *s, double shift);
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
                        SliderSum *rate);
 
-/* In a plane the forces of those that stick, up to the first at its limit, which is returned, and their sum; beyond
- * it those that they would have. */
-int sliders_stick(int n, const Sliders *s, const double shift[2], double *const moved[2], double force[2]);
+/* In a plane, by a shift along x, y and around the centre: the forces of those that stick, up to the first at its
+ * limit, which is returned, and their sum; beyond it those that they would have; on a processor with
+ * vectors_of_four or any other. */
+int sliders_stick(bool fours, int n, const Sliders *s, const double shift[3], double *const moved[2],
+                  double force[3]);
 
 /* Sliders that may slip, side by side whosever they are: arguments and results of `slide_plane`. */
 enum { ABREAST = 64, N_SLIDER = 11, SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };

@@ -63,8 +63,10 @@ class Plates:
         return Assembly(file.name, sides[0], sides[1], bolts)
 
 
-def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
+def with_computed_field(file: ParameterFile, plates: Plates, elastic: bool) -> ParameterFile:
     """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts.
+
+    elastic : whether its sides are going to be
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -74,7 +76,7 @@ def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
 
         step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
-    return with_solution(file, solution, plates.tension)
+    return with_solution(file, solution, plates.tension, elastic=elastic)
 
 
 @dataclass(frozen=True, slots=True)

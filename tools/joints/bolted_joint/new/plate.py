@@ -64,11 +64,7 @@ def joint(given: Given) -> NewJoint:
     hole, hole_source = _hole(given, thread)
     moduli = (sheet.value("side1.E"), sheet.value("side2.E"))
     for name, value in (("field", "computed"), ("sides", "elastic"), ("attached", given["attached"])):
-        if not (given["tapped"] and value and given[name] == value):
-            continue
-        if name == "field":
-            raise ValueError(f"--{name} {value} beside --tapped: expected a head or nut on both sides for it")
-        if given["thickness"] is None:
+        if given["tapped"] and given["thickness"] is None and value and given[name] == value:
             raise ValueError(f"--{name} {value} beside --tapped: expected --thickness of both plates for it")
     one = clamped(given, thread, (length, width), at, hole, moduli)
     plate = BoltedPlate(
@@ -101,7 +97,7 @@ def joint(given: Given) -> NewJoint:
         layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
     plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
     if given["field"] == "computed":
-        file = with_computed_field(file, plates)
+        file = with_computed_field(file, plates, given["sides"] != "rigid")
     facts = _facts(file, one, heights, preload)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])

@@ -1,0 +1,99 @@
+"""Few patches whose friction works on the modes of elastic sides as the whole contact does."""
+
+import numpy as np
+import pytest
+from jointfmu_tools.fem.patch_work import PatchWork, Shears, Surface, into_slip, moved, work
+
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.parameters import default
+
+RADIUS, COUNT, PATCHES = 0.02, 24, 10
+LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
+
+
+def rigid(place):
+    x, y = place.T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
+
+
+@pytest.fixture(scope="module")
+def disc():
+    """An evenly pressed disc of many points, whose middle lags behind by two modes, and patches of it."""
+    law = BoltedJointSpring.of(default("bolted_joint").values).foundation()
+    line = RADIUS * (np.arange(COUNT) + 0.5) / COUNT * 2.0 - RADIUS
+    place = np.stack([each.ravel() for each in np.meshgrid(line, line)], axis=1)
+    place = place[np.hypot(*place.T) < RADIUS]
+    lag, nothing = 1.0 - np.sum(place**2, axis=1) / RADIUS**2, np.zeros(len(place))
+    rows = np.concatenate([np.stack([-lag, nothing], axis=1), np.stack([nothing, -lag], axis=1)])
+    approach = float(law.curve.inverse(5e6))
+    area = np.full(len(place), 1e-6)
+    points = Surface(area, np.full(len(place), approach), rigid(place))
+    number = np.arange(PATCHES) + 0.5
+    far, angle = RADIUS * np.sqrt(number / PATCHES), np.pi * (3.0 - np.sqrt(5.0)) * number
+    seed = np.stack([far * np.cos(angle), far * np.sin(angle)], axis=1)
+    cell = np.argmin(np.hypot(*(place[:, None] - seed).transpose(2, 0, 1)), axis=1)
+    means = np.stack([cell == i for i in range(PATCHES)]) / np.bincount(cell)[:, None]
+    few = Surface(1e-6 * np.bincount(cell), np.full(PATCHES, approach), rigid(means @ place))
+    both = np.concatenate([means @ rows[: len(place)], means @ rows[len(place) :]])
+    motion = np.zeros((21, 6))
+    reach = law.friction / law.ratio * approach
+    for i, (axis, arm) in enumerate(((0, 1.0), (1, 1.0), (5, RADIUS))):
+        motion[7 * i : 7 * i + 7, axis] = 0.3 * reach / arm * LEVELS
+    amplitude = 0.7 * motion[:, :2]
+    slip = into_slip(motion)
+    shears = Shears((slip @ motion)[:, (0, 1, 5)], slip @ amplitude)
+    return law, points, rows, few, both, shears
+
+
+def of(law, shears, surface, rows):
+    every, at = moved(law, shears, surface, rows)
+    return work(at, surface.area, every)
+
+
+def test_ways_are_single_and_paired_motions(disc):
+    shears = disc[-1]
+    moving = np.count_nonzero(shears.motion, axis=1)
+    assert len(moving) == 63
+    assert (np.sum(moving == 1), np.sum(moving == 2)) == (21, 42)
+
+
+def test_patches_lose_and_resist_as_all_points(disc):
+    """At their means they lose too little in partial slip; fitted, hardly anything."""
+    law, points, rows, few, means, shears = disc
+    aim = of(law, shears, points, rows)
+    fitted = PatchWork(law, shears, few, aim).fitted(means)
+    before, after = (of(law, shears, few, each) for each in (means, fitted))
+    partial = np.arange(1, 7)  # along x
+    assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
+    np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
+    size = np.linalg.norm(aim.forces[:7, :2], axis=1)
+    missed = [np.max(np.linalg.norm((w.forces - aim.forces)[:7, :2], axis=1) / size) for w in (before, after)]
+    assert missed[1] < max(0.5 * missed[0], 0.01)
+
+
+def test_what_is_held_is_exact(disc):
+    """Forces of linear ways without slip, with rows hardly changed."""
+    law, points, rows, few, means, _ = disc
+    linear = Shears(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
+    aim = of(law, linear, points, rows).stuck
+    working = PatchWork(law, linear, few, of(law, linear, points, rows))
+    held = working.held(means, linear, aim)
+    before, found = (of(law, linear, few, rows).stuck for rows in (means, held))
+    missed = [np.max(np.abs(each - aim)[:2]) / np.max(np.abs(aim)) for each in (before, found)]
+    assert missed[0] > 0.01
+    assert missed[1] < 1e-6
+    assert np.max(np.abs(held - means)) < 0.5
+
+
+def test_slopes_are_those_of_differences(disc):
+    law, points, rows, few, means, shears = disc
+    working = PatchWork(law, shears, few, of(law, shears, points, rows))
+    slope, still, step = working._slopes(means), np.zeros_like(means), 1e-6
+    for index in ((0, 0), (5, 1)):
+        there = [means.copy(), means.copy()]
+        there[0][index] -= step
+        there[1][index] += step
+        low, high = (working._missed(each, still)[: len(slope)] for each in there)
+        column = slope[:, np.ravel_multi_index(index, means.shape)]
+        np.testing.assert_allclose((high - low) / (2 * step), column, atol=2e-4 * np.abs(column).max())

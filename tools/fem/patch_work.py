@@ -1,0 +1,233 @@
+"""What modes of the bodies do at few patches, so that friction works on them as on the whole contact.
+
+The shift of elastic sides is uneven within a patch: it rises towards the edge of a pressed disc, where slip
+begins. At the mean of its place a patch slips too late and loses too little, by a fifth in partial slip. So
+what each mode does at each patch is fitted, from the mean of its place on: on ways of the joint into slip,
+at the pressure of tightening, friction has the forces on motions and modes, and loses as much in a cycle, as
+at all points of the finite elements. That is a cubature of the work of friction; it costs the joint nothing.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from jointfmu.mechanics.sliders import Foundation
+from jointfmu.quantity import Array
+
+PART = np.sqrt(0.5)
+"""Part of each of two motions that are taken together [1]."""
+STAY = 0.1
+"""Weight of staying where the patches are beside the forces [1]."""
+STEPS, LITTLE = 8, 1e-2
+"""Of Levenberg and Marquardt's method [1], and the gain of one, as part of what is missed, that ends it."""
+FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 1e-3, 0.2, 5.0, 1e6
+"""Damping over the diagonal of the equations [1], its factors after a step that is better and one that is
+not, and where it ends."""
+NEWTON = 4
+"""Of Newton's method for what is held [1]."""
+TINY = 1e-15
+"""Shift [m] that counts as one, and other least numbers."""
+LEAST = 0.03
+"""Motion of patches by a mode, over that by the one that moves them most [1], from which changes count."""
+
+
+def into_slip(motion: Array) -> Array:
+    """Ways into slip (w, s) as sums of states (s) that moved by (s, 6) [m, rad]: those along x, along y and
+    about z alone, as many each, and of these two at once."""
+    alone = np.flatnonzero(~np.any(motion[:, 2:5], axis=1))
+    alone = alone[np.count_nonzero(motion[alone], axis=1) == 1]
+    one = np.eye(len(motion))
+    axes = [one[alone[motion[alone][:, axis] != 0.0]] for axis in (0, 1, 5)]
+    pairs = [(axes[i], axes[j], sign) for i, j in ((0, 1), (0, 2), (1, 2)) for sign in (1.0, -1.0)]
+    return np.concatenate([*axes, *(PART * (a + sign * b) for a, b, sign in pairs)])
+
+
+@dataclass(frozen=True)
+class Shears:
+    """Ways of the joint into slip: motion (s, 3) [m, rad] of side 2 along x, y and about z, amplitudes (s, k)
+    [m] of the modes."""
+
+    motion: Array
+    amplitude: Array
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Points or patches (n) that carry friction.
+
+    area     : (n) [m2]
+    approach : (n) [m] at tightening
+    rigid    : (2 n, 3) shift along x, then along y, by motions along x, y and about z without deformation
+    """
+
+    area: Array
+    approach: Array
+    rigid: Array
+
+
+@dataclass(frozen=True)
+class Work:
+    """Of friction on ways (s).
+
+    forces : (s, 3 + k) [N, N.m] on motions and modes; stuck: the same if nothing slipped
+    loss   : (s) [J] of a cycle as wide
+    """
+
+    forces: Array
+    stuck: Array
+    loss: Array
+
+    @cached_property
+    def scale(self) -> tuple[Array, Array, Array]:
+        """What counts as one of each: all of a way's forces on motions, of those on modes, its loss."""
+        return _size(self.forces), _size(self.stuck), np.maximum(self.loss, TINY * np.max(self.loss))
+
+
+def _size(forces: Array) -> Array:
+    """(s, 3 + k), alike for both directions, for the moment, and for all modes."""
+    along, turn, modes = (np.linalg.norm(f, axis=1) for f in (forces[:, :2], forces[:, 2:3], forces[:, 3:]))
+    arm = np.max(turn) / np.max(along)
+    along = np.hypot(along, turn / arm)
+    modes = np.maximum(modes, LEAST * np.max(modes / along) * along)
+    return np.stack([along, along, arm * along, *[modes] * (forces.shape[1] - 3)], axis=1)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Law of the contact from rest, at shifts (s, n): secant and tangent [Pa/m] of the traction, stiffness
+    [Pa/m] without slip, loss [J/m2] of a cycle and its derivative [Pa] in the shift; size [m], u, v [m]."""
+
+    u: Array
+    v: Array
+    size: Array
+    secant: Array
+    tangent: Array
+    stick: Array
+    loss: Array
+    rate: Array
+
+    @classmethod
+    def of(cls, law: Foundation, approach: Array, shift: Array) -> "Friction":
+        """Under approaches (n) [m] and shifts (s, 2 n) [m]."""
+        u, v = np.split(shift, 2, axis=1)
+        size = np.maximum(np.hypot(u, v), TINY)
+        stick, tangent = (
+            law.ratio * law.curve.derivatives(x, 1)[1]
+            for x in (approach, approach - law.ratio / law.friction * size)
+        )
+        stick = np.broadcast_to(stick, size.shape)
+        force = np.minimum(law.backbone(approach, size), stick * size)
+        rate = 4.0 * (force - tangent * size)
+        return cls(u, v, size, force / size, tangent, stick, law.loop(approach, size)[0], rate)
+
+
+@dataclass(frozen=True)
+class PatchWork:
+    """What all points (q) do on ways of the joint, and patches (m) that are to do the same.
+
+    law     : of the interface
+    shears  : the ways
+    patches : that carry the friction
+    aim     : work of all points
+    """
+
+    law: Foundation
+    shears: Shears
+    patches: Surface
+    aim: Work
+
+    def moved(self, rows: Array) -> tuple[Array, Friction]:
+        """Shift (2 m, 3 + k) of the patches by motions and modes, those by modes (2 m, k) given; friction."""
+        return moved(self.law, self.shears, self.patches, rows)
+
+    def fitted(self, rows: Array) -> Array:
+        """Rows (2 m, k) near given ones, by Levenberg and Marquardt's method."""
+        typical = np.sqrt(np.mean(rows**2, axis=0))
+        still = STAY * np.sqrt(len(self.aim.loss) / rows.size) / np.maximum(typical, LEAST * typical.max())
+        begin, damping = rows, FIRST_DAMPING
+        missed = self._missed(rows, still * (rows - begin))
+        for _ in range(STEPS):
+            slope = np.concatenate([self._slopes(rows), np.diag(np.broadcast_to(still, rows.shape).ravel())])
+            square, gradient, before = slope.T @ slope, slope.T @ missed, missed @ missed
+            while damping < MOST_DAMPING:
+                step = np.linalg.solve(square + damping * np.diag(np.diag(square)), -gradient)
+                there = rows + step.reshape(rows.shape)
+                trial = self._missed(there, still * (there - begin))
+                if trial @ trial < before:
+                    break
+                damping *= MORE
+            else:
+                return rows
+            rows, missed, damping = there, trial, LESS * damping
+            if before - missed @ missed < LITTLE * before:
+                break
+        return rows
+
+    def held(self, rows: Array, linear: Shears, aim: Array) -> Array:
+        """Rows (2 m, k) as near as can be with which the patches have the forces (w, 3 + k) of linear ways on
+        motions and modes while nothing slips: the tightened joint stays as stiff as its finite elements."""
+        typical, size = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), TINY), _size(aim)
+        weight = np.broadcast_to(typical, rows.shape).ravel()
+        for _ in range(NEWTON):
+            every, at = moved(self.law, linear, self.patches, rows)
+            missed = ((work(at, self.patches.area, every).stuck - aim) / size).ravel()
+            slope = _by_rows(self.patches.area * at.stick, at, every, linear.amplitude)
+            slope = (slope / size.reshape((*size.shape, 1, 1, 1))).reshape(missed.size, -1)
+            step = weight * np.linalg.lstsq(slope * weight, -missed, rcond=1e-8)[0]
+            rows = rows + step.reshape(rows.shape)
+        return rows
+
+    def _missed(self, rows: Array, change: Array) -> Array:
+        """What the patches miss of forces and loss, and their change."""
+        every, at = self.moved(rows)
+        found, aim = work(at, self.patches.area, every), self.aim
+        pairs = ((found.forces, aim.forces), (found.stuck, aim.stuck), (found.loss, aim.loss))
+        parts = [((a - b) / size).ravel() for (a, b), size in zip(pairs, aim.scale, strict=True)]
+        return np.concatenate([*parts, change.ravel()])
+
+    def _slopes(self, rows: Array) -> Array:
+        """Derivatives of what is missed of forces and loss by the rows."""
+        all_rows, at = self.moved(rows)
+        area, amplitude = self.patches.area, self.shears.amplitude
+        count, modes = area.size, rows.shape[1]
+        shape = (len(amplitude), 3 + modes, 2, count, modes)
+        forces, stuck = np.zeros(shape), _by_rows(area * at.stick, at, all_rows, amplitude)
+        loss = np.zeros((shape[0], *shape[2:]))
+        unit, halves = (at.u / at.size, at.v / at.size), np.split(all_rows, 2)
+        own = np.arange(modes)
+        for i, (shift, along) in enumerate(zip((at.u, at.v), unit, strict=True)):
+            for j in range(2):
+                slope = area * ((i == j) * at.secant + (at.tangent - at.secant) * along * unit[j])
+                forces[:, :, i] += np.einsum("sm,mh,sk->shmk", slope, halves[j], amplitude, optimize=True)
+            forces[:, 3 + own, i, :, own] += area * at.secant * shift
+            loss[:, i] = (area * at.rate * along)[:, :, None] * amplitude[:, None]
+        parts = zip((forces, stuck, loss), self.aim.scale, strict=True)
+        return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
+
+
+def _by_rows(stick: Array, at: Friction, every: Array, amplitude: Array) -> Array:
+    """Derivatives (w, 3 + k, 2, m, k) of forces without slip, of stiffnesses (w, m) [N/m], by the rows."""
+    modes = amplitude.shape[1]
+    own, halves = np.arange(modes), np.split(every, 2)
+    out = np.zeros((len(amplitude), 3 + modes, 2, stick.shape[1], modes))
+    for i, shift in enumerate((at.u, at.v)):
+        out[:, :, i] = np.einsum("sm,mh,sk->shmk", stick, halves[i], amplitude, optimize=True)
+        out[:, 3 + own, i, :, own] += stick * shift
+    return out
+
+
+def moved(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> tuple[Array, Friction]:
+    """Shift (2 n, 3 + k) of a surface by motions and modes, and its friction on ways of the joint."""
+    every = np.concatenate([surface.rigid, rows], axis=1)
+    amount = np.concatenate([shears.motion, shears.amplitude], axis=1)
+    return every, Friction.of(law, surface.approach, amount @ every.T)
+
+
+def work(at: Friction, area: Array, every: Array) -> Work:
+    """Of the friction of areas (n) [m2] which motions and modes shift by (2 n, 3 + k)."""
+    forces, stuck = (
+        np.concatenate([area * slope * shift for shift in (at.u, at.v)], axis=1) @ every
+        for slope in (at.secant, at.stick)
+    )
+    return Work(forces, stuck, at.loss @ area)
