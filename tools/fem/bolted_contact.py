@@ -141,6 +141,8 @@ def with_solution(
     tilted = solution.field if moment else solution.under(preload, tilting).field if tilting else None
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
-    second = {"tilted": tilted, "moment": tilting or None}
-    file, _ = with_field(file, equal, preload, source, bolts=bolts, elastic=elastic, **second)
+    second = tilting or None
+    file, _ = with_field(
+        file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts, elastic=elastic
+    )
     return replace(file, name=f"{file.name}, computed field")

@@ -8,7 +8,7 @@
 enum { LANES = 4 };
 
 typedef struct {
-    double x[LANES], xx[LANES], yy[LANES], loss[LANES];
+    double x[LANES], t[LANES], xx[LANES], yy[LANES], xt[LANES], yt[LANES], tt[LANES], loss[LANES];
 } Lanes;
 
 static inline double sum_of(const double *lane)
@@ -19,7 +19,9 @@ static inline double sum_of(const double *lane)
 static inline SliderSum total(const Lanes *s)
 {
     return (SliderSum){
-        .force = {sum_of(s->x)}, .tangent = {sum_of(s->xx), 0.0, sum_of(s->yy)}, .loss = sum_of(s->loss)};
+        .force = {sum_of(s->x), 0.0, sum_of(s->t)},
+        .tangent = {sum_of(s->xx), 0.0, sum_of(s->yy), sum_of(s->xt), sum_of(s->yt), sum_of(s->tt)},
+        .loss = sum_of(s->loss)};
 }
 
 /* The first pair of which one is at its limit or beyond. */
@@ -140,12 +142,19 @@ int sliders_sticking(int n, const Sliders *s, double shift, double *moved, Slide
     const int first = first_at_limit(each.reaches, n);
     slide_all(first, n, s->K, s->per_K, s->after, s->force[0], shift, moved, &each);
     for (int k = 0; k < n; k += 2)
-        for (int l = 0; l < 2; l++)
+        for (int l = 0; l < 2; l++) {
             lanes.x[l] += moved[k + l];
+            lanes.t[l] += moved[k + l] * s->turning[0][k + l];
+        }
     for (int k = first; k < n; k += 2)
         for (int l = 0; l < 2; l++) {
-            lanes.xx[l] += each.reaches[k + l] > 0.0 ? 0.0 : s->K[k + l];
-            lanes.yy[l] += s->K[k + l];
+            const double xx = each.reaches[k + l] > 0.0 ? 0.0 : s->K[k + l], yy = s->K[k + l];
+            const double x_t = xx * s->turning[0][k + l], y_t = yy * s->turning[1][k + l];
+            lanes.xx[l] += xx;
+            lanes.yy[l] += yy;
+            lanes.xt[l] += x_t;
+            lanes.yt[l] += y_t;
+            lanes.tt[l] += x_t * s->turning[0][k + l] + y_t * s->turning[1][k + l];
             lanes.loss[l] += each.loss[k + l];
         }
     *sum = total(&lanes);

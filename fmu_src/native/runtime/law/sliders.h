@@ -24,7 +24,8 @@ typedef struct {
 
 /* Along one direction, a multiple of four sliders; `before` and `after` are one array where the limits stay. */
 void sliders_line(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
-/* The same with limits that stay, where most stick: the tangents are those from a slider on that is returned. */
+/* The same in a plane with limits that stay, with nothing along y and around the centre and where most stick: the
+ * tangents are those from a slider on that is returned. */
 int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
 /* Force along one direction with limits that stay, and its tangent; a multiple of four sliders. */
 double sliders_force(int n, const Sliders *s, double shift, double *tangent);
