@@ -145,6 +145,7 @@ def main() -> None:
             cells = [f"{max(f for f, _ in found):.2%}", *(f"{a:.1%}" for a in areas)]
             print("| " + " | ".join([name, f"{first:g}", *cells]) + " |", flush=True)
     print(f"{spring.patches.share.size} patches, {spring.foundation().sliders} sliders each\n")
+    print_counts()
     print_swings()
 
 

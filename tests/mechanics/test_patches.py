@@ -191,7 +191,7 @@ def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(name, most):
     ],
 )
 def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
-    """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 2 %.
+    """22 patches with the FMU's sliders: forces within 1 % of gross slip, areas of loops within 3 %.
 
     A turn about a pole under a bolt has less friction, and 3 % of it.
     """
@@ -203,4 +203,4 @@ def test_friction_of_few_patches_is_that_of_all_nodes(spring, plate, motion):
     force, loss = patch_reduction.friction(spring, shape, True, largest, motion)
     few, lost = patch_reduction.friction(spring, moved(plate), False, largest, motion)
     np.testing.assert_allclose(few, force, rtol=0.0, atol=part * np.max(np.abs(force)))
-    np.testing.assert_allclose(lost, loss, rtol=0.02)
+    np.testing.assert_allclose(lost, loss, rtol=0.03)

@@ -101,7 +101,14 @@ def friction_patches(
     moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
     share, x, y, equal, tilt, radius = unit * moved
     few = cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
-    return replace(few.as_patches(), radius=radius)
+    return replace(few.as_patches(), radius=radius * _opposite(share * equal * radius))
+
+
+def _opposite(force: Array) -> Array:
+    """1 or -1 (m): every second patch in the order of forces (m) has its circle turned by half, so that what
+    one's sliders miss, who slip at different shifts, another's make good."""
+    rank = np.argsort(np.argsort(-to_digits(force), kind="stable"), kind="stable")
+    return np.where(rank % 2 == 0, 1.0, -1.0)
 
 
 def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
@@ -122,7 +129,9 @@ def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
         places = np.column_stack([sums(weight * x) / whole, sums(weight * y) / whole])
     away = (x - places[nearest, 0]) ** 2 + (y - places[nearest, 1]) ** 2
     area = np.maximum(sums(share), TINY)
-    radius = LESS_SPREAD * np.sqrt(sums(weight * away) / whole)
+    xx, xy, yy = (float(np.add.reduce(share * each)) for each in (x * x, x * y, y * y))
+    thin = max(0.5 * (xx + yy - float(np.sqrt((xx - yy) ** 2 + 4.0 * xy * xy))), 0.0)  # 0 of nodes on a line
+    radius = np.minimum(LESS_SPREAD * np.sqrt(sums(weight * away) / whole), np.sqrt(thin))
     return FrictionPatches(
         area, places, sums(share * shape.equal) / area, sums(share * shape.tilt) / area, radius
     )
@@ -232,7 +241,9 @@ class _Aim:
             each, most = motions.friction(some)
             friction, gross = friction + over(each, some[0]), gross + over(most, some[0])
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
-        weight = np.where((motions.along[2, :, 0] == 0.0) & (poles > 0), SHIFT_WEIGHT, 1.0)
+        shift_x, shift_y, turn = motions.along[:, :, 0]
+        centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
+        weight = np.where(centred & (poles > 0), SHIFT_WEIGHT, 1.0)
         weight[CASES:] = POLE_WEIGHT
         torque, loss = (
             np.where(weight == POLE_WEIGHT, TORQUE_WEIGHT, weight),

@@ -55,7 +55,7 @@ class PressureShape:
 class FrictionPatches(PressureShape):
     """Patches that carry the friction of a contact, each for the nodes around it.
 
-    radius : (n) [m] of the circle around a patch on which its sliders stand
+    radius : (n) [m] of the circle around a patch on which its sliders stand, below 0 where they are opposite
     """
 
     radius: Array
@@ -140,7 +140,9 @@ class NodalField:
     patch_equal: tuple[float, ...] = series("1", "`equal` of the patches", ge=0.0, optional=True)
     patch_tilt: tuple[float, ...] = series("1", "`tilt` of the patches", optional=True)
     patch_radius: tuple[float, ...] = series(
-        "m", "radii of the circles around the patches on which their sliders stand", ge=0.0, optional=True
+        "m",
+        "radii of the circles around the patches on which their sliders stand, below 0 where opposite",
+        optional=True,
     )
     bolt_x: float = quantity("m", "mean of the bolts' places along the rows, from the centroid", default=0.0)
     bolt_y: float = quantity("m", "mean of the bolts' places across the rows, from the centroid", default=0.0)
