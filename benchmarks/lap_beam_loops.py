@@ -94,7 +94,7 @@ class Joint:
         pressure, normal = self.sliders.curve.derivatives(after, 1)
         first = self.sliders.curve.derivatives(self.beam.approach, 0)[0]
         tangent = np.zeros((len(moved), 3, 3))
-        tangent[:, 0, 0], tangent[:, 0, 1], tangent[:, 1, 1] = sliders.tangent.T
+        tangent[:, 0, 0], tangent[:, 0, 1], tangent[:, 1, 1] = sliders.tangent.T[:3]
         tangent[:, 1, 0], tangent[:, 2, 2] = tangent[:, 0, 1], normal
         nudge = 1e-4 * self.sliders.height.std() / self.sliders.height.size
         coupled = self.sliders.moved(state.force, before, after + nudge, shift).traction

@@ -267,17 +267,18 @@ static inline void add_further(Further *sum, const double *patch, double stick, 
                                const double *traction)
 {
     const double px = patch[PLACE_X], py = patch[PLACE_Y];
-    const double t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0] + patch[RADIUS] * traction[2]};
+    const double t[3] = {traction[0], traction[1], px * traction[1] - py * traction[0]};
     const double all[6] = {stick, 0.0, stick, 0.0, 0.0, stick};
-    double sticks[3], spent[3], less[6];
+    double sticks[3], spent[3], centred[3], less[6];
     for (int d = 0; d < 6; d++)
         less[d] = all[d] - tangent[d];
     for_patch(patch, all, sticks);
     for_patch(patch, less, spent);
+    for_motions(patch, less, centred); /* around its centre as many slip on either way */
     for (int d = 0; d < 3; d++) {
         sum->stick[d] += sticks[d];
         sum->spent[d] += spent[d];
-        sum->along[d] += t[d] < 0.0 ? -spent[d] : spent[d];
+        sum->along[d] += t[d] < 0.0 ? -centred[d] : centred[d];
     }
 }
 

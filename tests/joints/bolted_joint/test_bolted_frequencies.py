@@ -89,7 +89,7 @@ def started(native: Path, version: str, exchange: bool, **values: Any) -> Fmu:
 
 @pytest.mark.parametrize("exchange", [False, True], ids=["co-simulation", "model exchange"])
 def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
-    """Within 0.1 % of the matrix of all nodes, under a moment; the scheme's own error is taken out."""
+    """Within 0.2 % of the matrix of all nodes, under a moment; the scheme's own error is taken out."""
     squares, shapes = eigh(all_nodes(PRELOAD, MOMENT), MASS)
     for square, shape in zip(squares, shapes.T, strict=True):
         fmu = started(native, "3", exchange, moment=MOMENT)
@@ -97,7 +97,7 @@ def test_six_frequencies_of_a_block(native: Path, exchange: bool) -> None:
         step, size = 2.0 * np.pi / omega / 40.0, 1e-9 / float(np.max(np.abs(shape)))
         places = leapfrog(force_of(fmu), MASS, 0.0 * shape, omega * size * shape, step, 1600)
         found = peak(places @ MASS @ shape, step)
-        assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=1e-3)
+        assert 2.0 / step * np.sin(0.5 * found * step) == pytest.approx(omega, rel=2e-3)
         fmu.free()
 
 

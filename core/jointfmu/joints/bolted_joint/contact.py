@@ -104,8 +104,9 @@ def further_tangent(
     """
     less, found = stick[:, None] * STICKS - tangent, {}
     for name, motion in zip(_TANGENTS, _motions(patches), strict=True):
-        spent = patches.share * _along(less, motion)
-        with_it = np.where(np.sum(traction * motion, axis=1) < 0.0, -spent, spent)
+        spent, centred = patches.share * _along(less, motion), motion * [1.0, 1.0, 0.0]
+        with_it = patches.share * _along(less, centred)  # around its centre as many slip on either way
+        with_it = np.where(np.sum(traction * centred, axis=1) < 0.0, -with_it, with_it)
         stuck = patches.share @ (stick * np.sum(motion**2, axis=1))
         found[name] = stuck - 0.5 * (np.sum(spent) + abs(np.sum(with_it)))
     return found
