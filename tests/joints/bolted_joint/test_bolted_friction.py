@@ -363,7 +363,7 @@ def test_tilt_turns_back_and_moment_alone_does_not_turn(spring):
 @pytest.mark.parametrize("degrees", [10.0, 90.0])
 @pytest.mark.parametrize("memory", [True, False])
 def test_a_turned_frame_gives_turned_forces(degrees, memory):
-    """Without memory to round-off; sliders stand on circles that do not turn: 1 % of a bolt's
+    """Without memory to round-off; sliders stand on circles that do not turn: 2 % of a bolt's
     force, 6 % of the heat of the first slip."""
     spring = BoltedJointSpring.of(replace(JOINT, memory=memory))
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
@@ -378,7 +378,7 @@ def test_a_turned_frame_gives_turned_forces(degrees, memory):
     loads = {"preload": 9e3, "moment": 1000.0}
     for one, other in zip(walk(spring, path, **loads), walk(turned, path @ both.T, **loads), strict=True):
         scale = 9e3 * np.array([1, 1, 1, 0.1, 0.1, 0.1])
-        np.testing.assert_allclose((both @ six(one) - six(other)) / scale, 0.0, atol=0.01 if memory else 1e-9)
+        np.testing.assert_allclose((both @ six(one) - six(other)) / scale, 0.0, atol=0.02 if memory else 1e-9)
         assert other["E_loss"] == pytest.approx(one["E_loss"], rel=0.06, abs=1e-15)
 
 
