@@ -27,8 +27,8 @@ LAST = {"robot_joint": "link.phi", "bolted_column": "column.s", "six_axis_robot"
 DRIVE = ("link.phi", "link.w", "drive.tau", "drive.E_loss")
 
 
-TURNED = 0.032
-"""The bolted column has turned 6 us before, within the last half step [s]."""
+TURNED = 0.029
+"""The bolted column has turned within the last step [s]."""
 
 
 def made(name, out):
