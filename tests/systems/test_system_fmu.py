@@ -74,7 +74,7 @@ def test_any_step_is_as_right_as_model_exchange(tmp_path, name):
     references = Related(files["2"]).experiments()[0].references
     expected = exchange(files["2"], [output], stop, 1e-9, stop / 20_000)
     due = np.interp(references.time, expected["time"], expected[output])
-    assert np.abs(references.columns[output] - due).max() < 1e-4 * np.abs(due).max()  # of the memory's steps
+    assert np.abs(references.columns[output] - due).max() < 2e-4 * np.abs(due).max()  # of the memory's steps
     if name == "bolted_column":  # the spring is as stiff as at rest where its motion has turned
         found = run(files["2"], ["column.v", "joint.K_xx"], 1e-3, TURNED, fmi_type="CoSimulation")
         assert found["column.v"][-1] < 0.0 < found["column.v"][-2]
