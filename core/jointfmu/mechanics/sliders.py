@@ -12,14 +12,14 @@ approach; they differ by the spread of the springs' limits, which the loss of a 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..quantity import Array, Number, where
 from .curve import Curve
-from .footprint.reproducible import to_digits
+from .footprint.reproducible import ranks, to_digits
 from .jenkins import Moved, Slid, Vector, compliance, slide
 
 SMALL = 1e-3
@@ -48,8 +48,7 @@ def offsets(load: Array) -> Array:
     Multiples of the golden section in the order of the loads, equal ones in that of their places: what
     neighbours in it miss cancels.
     """
-    rank = np.argsort(np.argsort(-to_digits(load), kind="stable"), kind="stable")
-    return np.asarray((rank * GOLDEN + 0.5) % 1.0)
+    return np.asarray((ranks(load) * GOLDEN + 0.5) % 1.0)
 
 
 def around(curve: Curve, reference: ArrayLike, offset: ArrayLike) -> Array:
@@ -89,6 +88,7 @@ def lowered(height: Array, lowest: ArrayLike) -> Array:
     return np.concatenate([height[..., :1], np.where(next_above, given, height[..., 1:])], axis=-1)
 
 
+@cache
 def turning(sliders: int) -> Array:
     """Shifts (2, n) [1] of sliders in a turn about the centre of their patch, over its radius and the turn.
 
@@ -98,7 +98,9 @@ def turning(sliders: int) -> Array:
     angle = np.pi * (GOLDEN * np.arange(sliders // 2) % 1.0)
     unit = to_digits(np.stack([-np.sin(angle), np.cos(angle)]))
     unit /= np.sqrt(unit[0] * unit[0] + unit[1] * unit[1])
-    return np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
+    both = np.asarray(np.stack([unit, -unit], axis=-1).reshape(2, -1))
+    both.flags.writeable = False
+    return both
 
 
 def together(each: Array) -> Array:

@@ -82,12 +82,16 @@ def _along(tangent: Array, motion: Array) -> Array:
     return np.asarray(xx * u**2 + yy * v**2 + tt * w**2 + 2.0 * (xy * u * v + xt * u * w + yt * v * w))
 
 
-def shear_sums(patches: FrictionPatches, traction: Array, tangent: Array) -> dict[str, Number]:
-    """Sums of a traction (n, 3) against the shift, see `together`, and its tangent (n, 6), see `Moved`."""
-    share, motions = patches.share, _motions(patches)
-    tractions = [share @ np.sum(traction * motion, axis=1) for motion in motions]
-    tangents = [share @ _along(tangent, motion) for motion in motions]
-    return dict(zip(_TRACTIONS + _TANGENTS, tractions + tangents, strict=True))
+def traction_sums(patches: FrictionPatches, traction: Array) -> dict[str, Number]:
+    """Sums of a traction (n, 3) against the shift, see `together`."""
+    sums = [patches.share @ np.sum(traction * motion, axis=1) for motion in _motions(patches)]
+    return dict(zip(_TRACTIONS, sums, strict=True))
+
+
+def tangent_sums(patches: FrictionPatches, tangent: Array) -> dict[str, Number]:
+    """Sums of the tangent (n, 6) of a traction, see `Moved`."""
+    sums = [patches.share @ _along(tangent, motion) for motion in _motions(patches)]
+    return dict(zip(_TANGENTS, sums, strict=True))
 
 
 def further_tangent(

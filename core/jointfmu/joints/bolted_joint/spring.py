@@ -26,8 +26,9 @@ from .contact import (
     loop_sums,
     normal_sums,
     over_plane,
-    shear_sums,
     shifts,
+    tangent_sums,
+    traction_sums,
 )
 from .law import Bolted, interface_alone, pressures, shear_ratio, working_preload
 from .memory import ALONG, FREE, RESTING, UNKNOWN, Memory, memory_of, moved_on, resting
@@ -198,15 +199,14 @@ class BoltedJointSpring:
         else:
             limit, rho = joint.mu * tight, shear_ratio(joint)
             *parts, lifted, stiffer = elastic_shear(limit, rho, at.derivatives, *place.along(shape).T)
-            none = np.zeros_like(tight)
+            none, nodes = np.zeros_like(tight), shape.as_patches()
             traction, tangent = (
-                np.stack([*own, none, *rest], axis=-1)
-                for own, rest in ((parts[:2], []), (parts[2:], [none, none]))
+                np.stack(each, axis=-1) for each in ([*parts[:2], none], [*parts[2:], none, none, none])
             )
-            shear, after = shear_sums(shape.as_patches(), traction, tangent) | {"loss": 0.0}, memory
+            shear, after = traction_sums(nodes, traction) | tangent_sums(nodes, tangent), memory
+            shear["loss"] = 0.0
         plastic, elastic = self.works(at.derivatives[0])
-        shift = shifts(self.patches, place.six[[0, 1, 5]])
-        shift[:, :2] += self.shift(amplitude)
+        shift = self.shift(place.six[[0, 1, 5]], amplitude)
         size = np.sqrt(np.sum(shift**2, axis=1))
         sums: dict[str, Number] = {
             **over_plane(shape, "tightened", tight),
@@ -232,9 +232,12 @@ class BoltedJointSpring:
         joint = self.joint
         return Whole.of(self.modes, self.shape, self.patches, joint.A_0, joint.bolt_stiffness)
 
-    def shift(self, amplitude: Array) -> Array:
-        """Shift (m, 2) [m] of the patches by amplitudes (k) [m] of the modes."""
-        return np.stack([self.modes.patch[axis] @ amplitude for axis in range(2)], axis=-1)
+    def shift(self, rigid: Array, amplitude: Array) -> Array:
+        """`shifts` (m, 3) [m] of the patches by a rigid motion (3) and amplitudes (k) [m] of the modes."""
+        shift = shifts(self.patches, rigid)
+        for axis in range(2):
+            shift[:, axis] += self.modes.patch[axis] @ amplitude
+        return shift
 
     def way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
         """How the patches move on a straight path to approaches (m) [m] by `shifts` (m, 3) [m]."""
@@ -276,7 +279,7 @@ class BoltedJointSpring:
             }
         )
         further = further_tangent(patches, way.stick, moved.tangent, way.traction)
-        return shear_sums(patches, way.traction, moved.tangent) | further | {"loss": loss / area}, after
+        return traction_sums(patches, way.traction) | further | {"loss": loss / area}, after
 
     def _at_rest(
         self, before: Memory, first: Array, approach: Array, shift: Array, stick: Array

@@ -8,7 +8,7 @@ import numpy as np
 from ...mechanics.jenkins import Moved
 from ...mechanics.sliders import together
 from ...quantity import Array
-from .contact import Place, shifts
+from .contact import Place
 from .memory import RESTING, Memory, resting
 
 if TYPE_CHECKING:
@@ -112,8 +112,8 @@ class Trials:
     def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
         spring, before = self.spring, self.before
         rigid = np.array([*place.shift[:2], place.turn[2]])
-        shift = shifts(spring.patches, rigid - before["rigid"])
-        shift[:, :2] += spring.shift(amplitude - before["amplitude"][: amplitude.size]) + further
+        shift = spring.shift(rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
+        shift[:, :2] += further
         return spring.way(before, approach, shift, rigid)
 
     def slopes(self, place: Place, amplitude: Array) -> Array:

@@ -19,7 +19,7 @@ import numpy as np
 from ...quantity import Array
 from .elimination import changes, solved
 from .patches import balanced, few_points, largest_moment
-from .reproducible import cleared, length, over, powers, product, root, rounded, to_digits, to_power
+from .reproducible import cleared, length, over, powers, product, ranks, root, rounded, to_digits, to_power
 from .shape import FrictionPatches, PressureShape
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
@@ -107,8 +107,7 @@ def friction_patches(
 def _opposite(force: Array) -> Array:
     """1 or -1 (m): every second patch in the order of forces (m) has its circle turned by half, so that what
     one's sliders miss, who slip at different shifts, another's make good."""
-    rank = np.argsort(np.argsort(-to_digits(force), kind="stable"), kind="stable")
-    return np.where(rank % 2 == 0, 1.0, -1.0)
+    return np.where(ranks(force) % 2 == 0, 1.0, -1.0)
 
 
 def _divided(shape: PressureShape, places: Array) -> FrictionPatches:
@@ -243,13 +242,9 @@ class _Aim:
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
         shift_x, shift_y, turn = motions.along[:, :, 0]
         centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
-        weight = np.where(centred & (poles > 0), SHIFT_WEIGHT, 1.0)
-        weight[CASES:] = POLE_WEIGHT
-        torque, loss = (
-            np.where(weight == POLE_WEIGHT, TORQUE_WEIGHT, weight),
-            np.minimum(weight, SHIFT_WEIGHT),
-        )
-        scale *= np.concatenate([weight, weight, torque, loss])
+        weight = np.tile(np.where(centred & (poles > 0), SHIFT_WEIGHT, 1.0), (4, 1))
+        weight[:, CASES:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT])[:, None]
+        scale *= weight.ravel()
         exact = _exact(nodes, reach)
         held, size = over(exact, share), over(np.abs(exact), share)
         hold = np.divide(HOLDS, size, out=np.zeros_like(size), where=size > HOLDS * TINY)  # none of what is 0

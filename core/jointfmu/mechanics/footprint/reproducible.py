@@ -7,6 +7,7 @@ searches take rounded numbers, combine them by the functions of this module, and
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...quantity import Array
 from .shape import PressureShape
@@ -37,6 +38,11 @@ def to_digits(values: Array, digits: int = DIGITS) -> Array:
     """Values rounded to binary digits of the largest one."""
     exponent = np.frexp(np.max(np.abs(values)))[1]
     return np.asarray(np.ldexp(_steps(np.ldexp(values, -exponent), digits), exponent))
+
+
+def ranks(values: Array) -> NDArray[np.intp]:
+    """Ranks (n) of values, the largest first; of equal ones in the order of their places."""
+    return np.argsort(np.argsort(-to_digits(values), kind="stable"), kind="stable")
 
 
 def _steps(values: Array, digits: int) -> Array:
