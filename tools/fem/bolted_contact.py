@@ -128,12 +128,11 @@ TILT = 1.0 / 3.0
 
 
 def with_solution(
-    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0, elastic: bool = False
+    file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
 ) -> ParameterFile:
     """The joint with the field at a preload [N] per bolt, and what a moment adds from a second one.
 
     solution : at that preload and moment [N.m]; what is missing is solved from there
-    elastic  : whether the joint's sides are going to be
     """
     joint = solution.joint
     tilting = moment or TILT * joint.assembly.most_moment(preload)
@@ -142,7 +141,5 @@ def with_solution(
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
     second = tilting or None
-    file, _ = with_field(
-        file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts, elastic=elastic
-    )
+    file, _ = with_field(file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts)
     return replace(file, name=f"{file.name}, computed field")

@@ -12,7 +12,7 @@ friction (`patch_work`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,8 @@ from scipy.spatial import cKDTree
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.joints.bolted_joint.spring import patches as patches_of
+from jointfmu.mechanics.footprint.friction import CIRCLE
+from jointfmu.mechanics.footprint.shape import FrictionPatches
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
@@ -198,7 +199,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
 
     Raises RuntimeError if a body can move freely.
     """
-    joint, spring = linear.joint, replace(spring, patches=patches_of(spring.joint.pattern, elastic=True))
+    joint = linear.joint
     cells = Cells.of(joint, spring, normal)
     at = joint.interface
     bolts = joint.bolts - at.centroid
@@ -231,7 +232,6 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     every = np.concatenate([_turns(at.centred), np.concatenate(traces[:2])], axis=1)
     shift = np.concatenate([shears.motion, shears.amplitude], axis=1) @ every.T
     aim = work(Friction.of(law, closed, shift), at.area, every)
-    some = Surface(weight * patches.share, few, _turns(patches.position))
     means = cell_means(joint, patches.position, normal)
     both = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
@@ -241,13 +241,15 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         np.concatenate(traces[:2]),
         np.tile(ratio * area, 2),
     )
-    working = PatchWork(law, shears, some, aim)
+    turned = _turned(joint, patches, normal, traces)
+    working = PatchWork(law, shears, *_on_circles(patches, weight, few, turned), aim)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
     sticks = Friction.of(law, closed, np.concatenate([unit.motion, unit.amplitude], axis=1) @ every.T)
     both = working.held(working.fitted(both), unit, work(sticks, at.area, every).stuck)
     pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
     moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
+    moved["patch_around"] = patches.radius[:, None] * turned
     most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
     rounded: dict[str, Any] = {
         name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
@@ -273,6 +275,37 @@ def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
     planes = _planes(points)
     plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
     return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
+
+
+def _turned(joint: WholeJoint, patches: FrictionPatches, normal: Array, traces: list[Array]) -> Array:
+    """Turns (m, k) [1/m] of the patches about their centres by modes that shift the contact by traces (q, k).
+
+    Of each the mean over its cell, by the stiffness (q) there and the square of the distance.
+    """
+    place = joint.interface.centred
+    means = cell_means(joint, patches.position, normal)
+    cell = cKDTree(patches.position).query(place)[1]
+    x, y = (place - (means @ place)[cell]).T
+    lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
+    some = square > 0.0
+    return np.asarray(np.where(some, 1.0 / np.where(some, square, 1.0), 0.0)[:, None] * (means @ lever))
+
+
+def _on_circles(
+    patches: FrictionPatches, area: float, approach: Array, turned: Array
+) -> tuple[Surface, Array]:
+    """Places of the sliders of patches on a nominal area [m2] at approaches (m) [m], and what they shift by
+    turns (m, k)."""
+    places = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
+    away = places[:, None] * patches.radius[:, None]
+    count, (x, y) = len(places), away.reshape(-1, 2).T[:, :, None]
+    each = np.tile(turned, (count, 1))
+    there = Surface(
+        np.tile(area * patches.share / count, count),
+        np.tile(approach, count),
+        _turns((patches.position + away).reshape(-1, 2)),
+    )
+    return there, np.concatenate([-y * each, x * each])
 
 
 def _listed(values: Array) -> tuple[float, ...]:

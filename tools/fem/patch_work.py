@@ -126,20 +126,25 @@ class Friction:
 class PatchWork:
     """What all points (q) do on ways of the joint, and patches (m) that are to do the same.
 
-    law     : of the interface
-    shears  : the ways
-    patches : that carry the friction
-    aim     : work of all points
+    law    : of the interface
+    shears : the ways
+    places : that carry the friction, several of each patch: all first ones, all second ones ...
+    turned : (2 c m, k) what these c m places shift as modes turn the patches
+    aim    : work of all points
     """
 
     law: Foundation
     shears: Shears
-    patches: Surface
+    places: Surface
+    turned: Array
     aim: Work
 
-    def moved(self, rows: Array) -> tuple[Array, Friction]:
-        """Shift (2 m, 3 + k) of the patches by motions and modes, those by modes (2 m, k) given; friction."""
-        return moved(self.law, self.shears, self.patches, rows)
+    def moved(self, shears: Shears, rows: Array) -> tuple[Array, Friction]:
+        """Shift (2 c m, 3 + k) of the places by motions and modes, those of the patches by modes (2 m, k)
+        given; friction on ways of the joint."""
+        times = len(self.turned) // len(rows)
+        by_modes = np.concatenate([np.tile(half, (times, 1)) for half in np.split(rows, 2)]) + self.turned
+        return moved(self.law, shears, self.places, by_modes)
 
     def fitted(self, rows: Array) -> Array:
         """Rows (2 m, k) near given ones, by Levenberg and Marquardt's method."""
@@ -170,9 +175,9 @@ class PatchWork:
         typical, size = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), TINY), _size(aim)
         weight = np.broadcast_to(typical, rows.shape).ravel()
         for _ in range(NEWTON):
-            every, at = moved(self.law, linear, self.patches, rows)
-            missed = ((work(at, self.patches.area, every).stuck - aim) / size).ravel()
-            slope = _by_rows(self.patches.area * at.stick, at, every, linear.amplitude)
+            every, at = self.moved(linear, rows)
+            missed = ((work(at, self.places.area, every).stuck - aim) / size).ravel()
+            slope = _of_patches(_by_rows(self.places.area * at.stick, at, every, linear.amplitude), rows)
             slope = (slope / size.reshape((*size.shape, 1, 1, 1))).reshape(missed.size, -1)
             step = weight * np.linalg.lstsq(slope * weight, -missed, rcond=1e-8)[0]
             rows = rows + step.reshape(rows.shape)
@@ -180,16 +185,16 @@ class PatchWork:
 
     def _missed(self, rows: Array, change: Array) -> Array:
         """What the patches miss of forces and loss, and their change."""
-        every, at = self.moved(rows)
-        found, aim = work(at, self.patches.area, every), self.aim
+        every, at = self.moved(self.shears, rows)
+        found, aim = work(at, self.places.area, every), self.aim
         pairs = ((found.forces, aim.forces), (found.stuck, aim.stuck), (found.loss, aim.loss))
         parts = [((a - b) / size).ravel() for (a, b), size in zip(pairs, aim.scale, strict=True)]
         return np.concatenate([*parts, change.ravel()])
 
     def _slopes(self, rows: Array) -> Array:
         """Derivatives of what is missed of forces and loss by the rows."""
-        all_rows, at = self.moved(rows)
-        area, amplitude = self.patches.area, self.shears.amplitude
+        all_rows, at = self.moved(self.shears, rows)
+        area, amplitude = self.places.area, self.shears.amplitude
         count, modes = area.size, rows.shape[1]
         shape = (len(amplitude), 3 + modes, 2, count, modes)
         forces, stuck = np.zeros(shape), _by_rows(area * at.stick, at, all_rows, amplitude)
@@ -202,8 +207,13 @@ class PatchWork:
                 forces[:, :, i] += np.einsum("sm,mh,sk->shmk", slope, halves[j], amplitude, optimize=True)
             forces[:, 3 + own, i, :, own] += area * at.secant * shift
             loss[:, i] = (area * at.rate * along)[:, :, None] * amplitude[:, None]
-        parts = zip((forces, stuck, loss), self.aim.scale, strict=True)
+        parts = zip((_of_patches(each, rows) for each in (forces, stuck, loss)), self.aim.scale, strict=True)
         return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
+
+
+def _of_patches(slopes: Array, rows: Array) -> Array:
+    """Derivatives (..., 2, m, k) by rows (2 m, k) of patches, from those (..., 2, c m, k) by their places."""
+    return np.asarray(slopes.reshape(*slopes.shape[:-2], -1, len(rows) // 2, rows.shape[1]).sum(axis=-3))
 
 
 def _by_rows(stick: Array, at: Friction, every: Array, amplitude: Array) -> Array:

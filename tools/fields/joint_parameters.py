@@ -41,7 +41,6 @@ def with_field(
     moment: float | None = None,
     bolts: Array | None = None,
     tolerance: float = FORCE_ERROR,
-    elastic: bool = False,
 ) -> tuple[ParameterFile, Reduction]:
     """A joint with the pressure of a field instead of a pattern of bolts, and its contact area.
 
@@ -57,7 +56,6 @@ def with_field(
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
     bolts   : (n, 2) [m] places of the bolts, for what their stiffness adds to rotations; None: nothing
     tolerance : [1] by which a field's force may differ from that of the bolts, to which it is scaled
-    elastic : whether the joint's sides are going to be, whose patches of friction are points
 
     Raises ValueError if the joint's pressure cannot be a field, if a field's force differs from that of the
     bolts by more than the tolerance, if the two fields do not fit each other, or if the pressures' own moment
@@ -69,7 +67,7 @@ def with_field(
     shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     begin = reduction.shape if shape.share.size > MOST else None
-    patches = friction_patches(shape, PATCHES, begin, circles=not elastic)
+    patches = friction_patches(shape, PATCHES, begin)
     lists = as_lists(reduction.shape) | as_lists(patches)
     given: dict[str, object] = {f"field.{name}": values for name, values in lists.items()}
     given["A_0"] = float(np.sum(field.area))

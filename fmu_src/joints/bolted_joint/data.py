@@ -37,7 +37,7 @@ def _one_mode(bolts: int) -> dict[str, object]:
 
 
 def _tables(joint: Bolted) -> Mapping[str, DataTable]:
-    patches = spring.patches(joint.pattern, joint.elastic)
+    patches = spring.patches(joint.pattern)
     return {
         "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
         "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
@@ -54,13 +54,13 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     """
     modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
     if joint.elastic:
-        places = spring.patches(joint.pattern, joint.elastic).position
+        places = spring.patches(joint.pattern).position
         modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
         lever = modes.lever
         most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
-    x, y, z = modes.patch
-    moved = {"opening": modes.opening, "patch_x": x, "patch_y": y, "patch_z": z, "stretch": modes.stretch}
-    room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
+    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch, strict=True))
+    moved = {"opening": modes.opening, **patch, "patch_z": modes.apart, "stretch": modes.stretch}
+    room = dict(zip(moved, (most[1], *(most[2],) * 4, most[3]), strict=True))
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),

@@ -83,7 +83,6 @@ def _run_import(args: argparse.Namespace) -> Answer:
         moment=args.moment,
         bolts=at,
         tolerance=FORCE_ERROR if args.force_tolerance is None else args.force_tolerance,
-        elastic=plates is not None,
     )
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     if plates:

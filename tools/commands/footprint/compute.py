@@ -168,7 +168,7 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
     from ...fem.bolted_contact import with_solution
 
-    made = with_solution(file, solution, args.preload, args.moment or 0.0, bool(args.attached))
+    made = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return made
     preload = args.preload + made.values.embedding

@@ -104,7 +104,7 @@ def plan(joint: Bolted, preload: float, moment: float) -> str:
     for lower, upper in layout.outline:
         (x1, y2), (x2, y1) = at(lower), at(upper)
         sheet.put("rect", x=x1, y=y1, width=x2 - x1, height=y2 - y1, fill="none", stroke=INK)
-    friction = patches(joint.pattern, joint.elastic)
+    friction = patches(joint.pattern)
     for place in friction.position[np.asarray(pressures(joint, friction, preload, moment)) > 0.0]:
         x, y = at(place)
         for dx, dy in ((3.0, 0.0), (0.0, 3.0)):

@@ -48,12 +48,10 @@ def points(pattern: PressureSource) -> PressureShape:
 
 
 @lru_cache(maxsize=8)
-def patches(pattern: PressureSource, elastic: bool) -> FrictionPatches:
-    """The patches of its friction; of elastic sides they are points, as no mode tells how they turn."""
+def patches(pattern: PressureSource) -> FrictionPatches:
+    """The patches of its friction."""
     stated = pattern.patches() if isinstance(pattern, NodalField) else None
-    if stated:
-        return stated.as_patches() if elastic else stated
-    return friction_patches(pressure_shape(pattern), PATCHES, circles=not elastic)
+    return stated or friction_patches(pressure_shape(pattern), PATCHES)
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ class BoltedJointSpring:
 
         Raises ValueError for bodies that were computed for another contact.
         """
-        shape, few = points(joint.pattern), patches(joint.pattern, joint.elastic)
+        shape, few = points(joint.pattern), patches(joint.pattern)
         bodies = joint.bodies if joint.elastic else RigidBodies()
         modes = Modes.of(bodies, shape.share.size, few.position)
         return cls(joint, approach_curve(joint), shape, few, modes)
@@ -234,10 +232,7 @@ class BoltedJointSpring:
 
     def shift(self, rigid: Array, amplitude: Array) -> Array:
         """`shifts` (m, 3) [m] of the patches by a rigid motion (3) and amplitudes (k) [m] of the modes."""
-        shift = shifts(self.patches, rigid)
-        for axis in range(2):
-            shift[:, axis] += self.modes.patch[axis] @ amplitude
-        return shift
+        return np.asarray(shifts(self.patches, rigid) + (self.modes.patch @ amplitude).T)
 
     def way(self, before: Memory, approach: Array, shift: Array, rigid: Array) -> "Way":
         """How the patches move on a straight path to approaches (m) [m] by `shifts` (m, 3) [m]."""

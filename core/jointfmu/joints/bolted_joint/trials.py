@@ -63,9 +63,9 @@ class Trial:
 
     @property
     def traction(self) -> Array:
-        """(m, 2) [Pa] against the shift."""
+        """(m, 3) [Pa] against the shift, see `together`."""
         assert self.way
-        return self.way.traction[:, :2]
+        return self.way.traction
 
     @property
     def tangent(self) -> Array:
@@ -100,7 +100,7 @@ class Trials:
         spring, (points, patches) = self.spring, self.starts
         return (
             points - (place.apart(spring.shape) + spring.modes.opening @ amplitude),
-            patches - (place.apart(spring.patches) + spring.modes.patch[2] @ amplitude),
+            patches - (place.apart(spring.patches) + spring.modes.apart @ amplitude),
         )
 
     def at(self, place: Place, amplitude: Array) -> Trial:
@@ -117,9 +117,10 @@ class Trials:
         return spring.way(before, approach, shift, rigid)
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 2, 3) [Pa/m] of the traction by shifts along x and y and by coming apart.
+        """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
+        coming apart.
 
-        By differences, at the end of the way.
+        By differences, at the end of the way; around the centres alone it is nearly the mean of those along.
         """
         approach = self.approaches(place, amplitude)[1]
         step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
@@ -127,8 +128,11 @@ class Trials:
         def traction(further: Array) -> Array:
             return self._way(place, amplitude, approach - further[2], further[:2]).traction[:, :2]
 
-        here = traction(np.zeros(3))
-        return np.stack([(traction(motion) - here) / step for motion in step * np.eye(3)], axis=-1)
+        here, slopes = traction(np.zeros(3)), np.zeros((len(approach), 3, 4))
+        for to, motion in zip((0, 1, 3), step * np.eye(3), strict=True):
+            slopes[:, :2, to] = (traction(motion) - here) / step
+        slopes[:, 2, 2] = 0.5 * (slopes[:, 0, 0] + slopes[:, 1, 1])
+        return slopes
 
 
 def told(preload: float, moment: float, place: Place) -> str:

@@ -50,7 +50,7 @@ class Forces(Protocol):
 
     @property
     def traction(self) -> Array:
-        """(m, 2) [Pa] against the shift."""
+        """(m, 3) [Pa] against the shift, along x, y and around the centres."""
 
     @property
     def tangent(self) -> Array:
@@ -74,7 +74,8 @@ class Trials(Protocol[T]):
         """Forces there at amplitudes (k) [m]."""
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
-        """Derivatives (m, 2, 3) [Pa/m] of the traction by shifts along x and y and by coming apart."""
+        """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
+        coming apart."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ class Whole:
         bolts = self.bolt * (rigid + own)
         r = modes.stiffness * amplitude + modes.stretch.T @ bolts
         r = r - modes.opening.T @ (self.weight * (at.pressure - tight))
-        for axis in range(2):
+        for axis in range(3):
             r = r + modes.patch[axis].T @ (self.patch * at.traction[:, axis])
         sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
         apart = np.max(np.abs(self.points @ _normal(place)))
@@ -145,8 +146,7 @@ class Whole:
 
         points = motions(self.points, normal, modes.opening)
         seats = motions(self.seats, normal, modes.stretch)
-        u, v = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(2))
-        w = motions(self.patches[2], shear, 0.0 * modes.patch[0])
+        u, v, w = (motions(self.patches[axis], shear, modes.patch[axis]) for axis in range(3))
         xx, xy, yy, xt, yt, tt = (self.patch * tangent.T)[:, :, None]
         H += points.T @ ((self.weight * stiffness)[:, None] * points) + self.bolt * seats.T @ seats
         H += u.T @ (xx * u + xy * v + xt * w) + v.T @ (xy * u + yy * v + yt * w)
@@ -187,13 +187,14 @@ class Whole:
     def _derivative(self, stiffness: Array, slopes: Array) -> Array:
         """Of the residual by the amplitudes: (k, k) [N/m].
 
-        stiffness (n) [Pa/m] of the points, slopes (m, 2, 3) [Pa/m] of the tractions.
+        stiffness (n) [Pa/m] of the points, slopes (m, 3, 4) [Pa/m] of the tractions.
         """
         modes = self.modes
         J = np.diag(modes.stiffness) + self.bolt * modes.stretch.T @ modes.stretch
         J += modes.opening.T @ ((self.weight * stiffness)[:, None] * modes.opening)
-        for axis in range(2):
-            J += modes.patch[axis].T @ np.einsum("m,mc,cmk->mk", self.patch, slopes[:, axis], modes.patch)
+        every = np.concatenate([modes.patch, modes.apart[None]])
+        for axis in range(3):
+            J += modes.patch[axis].T @ np.einsum("m,mc,cmk->mk", self.patch, slopes[:, axis], every)
         return np.asarray(J)
 
     def _newton(

@@ -59,7 +59,7 @@ TILTED_POLES = 8
 POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT = 12.0, 5.0, 4.0
 """Weights of the forces about them, of the torques, and of shifts alone, beside those of other cases [1]."""
 ON_CIRCLE = 4
-"""Places on the circle of a patch that stand for its sliders."""
+"""How many places on the circle of a patch stand for its sliders."""
 LESS_SPREAD = 0.9
 """Radius of this circle over that of gyration of the friction that a patch stands for [1]: a disc pulls about
 a pole inside it as a smaller ring does."""
@@ -69,17 +69,14 @@ and how often they are."""
 TINY = float(np.finfo(float).tiny)
 _RATIOS = powers(1.0 / 1.0969815577985598, 7)
 """An even sequence in seven dimensions: powers of the root of x^8 = x + 1."""
-_CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
+CIRCLE = to_digits(np.exp(2j * np.pi * (np.arange(ON_CIRCLE) + 0.25) / ON_CIRCLE).view(float)).reshape(-1, 2)
 """These places on a circle of radius 1."""
 
 
-def friction_patches(
-    shape: PressureShape, count: int, begin: PressureShape | None = None, circles: bool = True
-) -> FrictionPatches:
+def friction_patches(shape: PressureShape, count: int, begin: PressureShape | None = None) -> FrictionPatches:
     """Patches for the friction, at most `count`, or the shape itself where it has no more nodes.
 
-    begin   : some points that stand for many nodes, of which the first patches are taken
-    circles : whether sliders stand on circles; else patches are points, fitted without poles of gross slip
+    begin : some points that stand for many nodes, of which the first patches are taken
 
     Kept to round-off: the sums of share, equal and tilt, their first moments, the second moments of share.
 
@@ -92,12 +89,12 @@ def friction_patches(
     highest, steep = float(np.max(rough.equal)), max(float(np.max(np.abs(rough.tilt))), TINY)
     unit = np.array([1.0, gyration, gyration, highest, steep, gyration])[:, None]
     few = few_points(rough if begin is None else rounded(begin), count)
-    first = _divided(rough, few.position) if circles else few.as_patches()
+    first = _divided(rough, few.position)
     nodes, there, points = (
         np.stack([each.share, *each.position.T, each.equal, each.tilt, each.radius]) / unit
         for each in (rough.as_patches(), shape.as_patches(), first)
     )
-    aim = _Aim.of(nodes, POLES if circles else 0, MOST_MOMENT * largest_moment(rough) * steep / highest)
+    aim = _Aim.of(nodes, MOST_MOMENT * largest_moment(rough) * steep / highest)
     moved = _balanced(_moved(points, aim), aim.reach, over(_exact(there, aim.reach), there[0]))
     share, x, y, equal, tilt, radius = unit * moved
     few = cleared(PressureShape(share, np.column_stack([x, y]), equal, tilt))
@@ -157,10 +154,10 @@ class _Motions:
     way: Array
 
     @classmethod
-    def of(cls, nodes: Array, poles: int, largest_moment: float, reach: Array) -> "_Motions":
+    def of(cls, nodes: Array, largest_moment: float, reach: Array) -> "_Motions":
         """Even over what a contact with nodes (6, n) up to |x|, |y| (2) can do: shifts, turns about its
-        centre, and twice as many about places where it is pressed; and gross slip about so many poles."""
-        number = np.arange(1, CASES + poles + 1)
+        centre, and twice as many about places where it is pressed; and gross slip about POLES more."""
+        number = np.arange(1, CASES + POLES + 1)
         unit = (0.5 + number[:, None] * _RATIOS) % 1.0
         moment, apart, about_x, about_y, place, angle = 2.0 * unit[:, :6].T - 1.0
         gross = number > CASES
@@ -195,7 +192,7 @@ class _Motions:
         start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
         now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
         most, whole, turned = to_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
-        places = _CIRCLE if np.any(radius) else _CIRCLE[:1]
+        places = CIRCLE if np.any(radius) else CIRCLE[:1]
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
             u, v = self.along[0] - self.along[2] * there_y, self.along[1] + self.along[2] * there_x
@@ -230,11 +227,11 @@ class _Aim:
     sums: Array
 
     @classmethod
-    def of(cls, nodes: Array, poles: int, largest_moment: float) -> "_Aim":
+    def of(cls, nodes: Array, largest_moment: float) -> "_Aim":
         """Those over nodes (6, n)."""
         reach = np.maximum(np.max(np.abs(nodes[1:3]), axis=1), TINY)
-        motions, share = _Motions.of(nodes, poles, largest_moment, reach), nodes[0]
-        friction, gross = np.zeros(4 * (CASES + poles)), np.zeros(CASES + poles)
+        motions, share = _Motions.of(nodes, largest_moment, reach), nodes[0]
+        friction, gross = np.zeros(4 * (CASES + POLES)), np.zeros(CASES + POLES)
         for first in range(0, share.size, AT_ONCE):
             some = nodes[:, first : first + AT_ONCE]
             each, most = motions.friction(some)
@@ -242,7 +239,7 @@ class _Aim:
         scale = 1.0 / np.maximum(np.concatenate([gross, gross, gross, friction[3 * gross.size :]]), TINY)
         shift_x, shift_y, turn = motions.along[:, :, 0]
         centred = (turn == 0.0) | ((shift_x == 0.0) & (shift_y == 0.0))
-        weight = np.tile(np.where(centred & (poles > 0), SHIFT_WEIGHT, 1.0), (4, 1))
+        weight = np.tile(np.where(centred, SHIFT_WEIGHT, 1.0), (4, 1))
         weight[:, CASES:] = np.array([POLE_WEIGHT, POLE_WEIGHT, TORQUE_WEIGHT, SHIFT_WEIGHT])[:, None]
         scale *= weight.ravel()
         exact = _exact(nodes, reach)

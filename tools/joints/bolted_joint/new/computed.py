@@ -63,10 +63,8 @@ class Plates:
         return Assembly(file.name, sides[0], sides[1], bolts)
 
 
-def with_computed_field(file: ParameterFile, plates: Plates, elastic: bool) -> ParameterFile:
+def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
     """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts.
-
-    elastic : whether its sides are going to be
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -76,7 +74,7 @@ def with_computed_field(file: ParameterFile, plates: Plates, elastic: bool) -> P
 
         step("contact of the plates by finite elements")
         solution = BoltedContact.of(plates.assembly(file)).solve(approach_curve(file.values), plates.tension)
-    return with_solution(file, solution, plates.tension, elastic=elastic)
+    return with_solution(file, solution, plates.tension)
 
 
 @dataclass(frozen=True, slots=True)

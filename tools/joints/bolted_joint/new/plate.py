@@ -97,7 +97,7 @@ def joint(given: Given) -> NewJoint:
         layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
     plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
     if given["field"] == "computed":
-        file = with_computed_field(file, plates, given["sides"] != "rigid")
+        file = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
