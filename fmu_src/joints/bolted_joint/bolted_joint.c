@@ -479,7 +479,7 @@ static inline PatchPath path_of(const Joint *joint, int j, const double *inputs,
     return (PatchPath){.force = {force, force + SLIDERS},
                        .from = &joint->kind.from[j],
                        .to = &joint->kind.to[j],
-                       .shift = {u, v, turn * patch[RADIUS]},
+                       .shift = {u, v, turn * patch[RADIUS] + (bent[2] - before[2])},
                        .straight = joint->kind.moved < FREE};
 }
 
@@ -537,7 +537,8 @@ static void add_loops(const Joint *joint, const double *inputs, double *x)
         const Point *at = &joint->kind.to[j];
         const double u = along_x(data.patches[j], inputs) + joint->kind.bent[j][0];
         const double v = along_y(data.patches[j], inputs) + joint->kind.bent[j][1];
-        const double w = inputs[THETA + 2] * data.patches[j][RADIUS], size = sqrt(u * u + v * v + w * w);
+        const double w = inputs[THETA + 2] * data.patches[j][RADIUS] + joint->kind.bent[j][2];
+        const double size = sqrt(u * u + v * v + w * w);
         const double reach = size * per_reach;
         double y[2];
         if (is_short(at, reach)) {
@@ -564,7 +565,7 @@ static void add_loop_rate(const Joint *joint, int j, const double *inputs, const
     const double *patch = data.patches[j], *bent = joint->kind.bent[j];
     const Point *at = &joint->kind.to[j];
     const double u = along_x(patch, inputs) + bent[0], v = along_y(patch, inputs) + bent[1];
-    const double w = inputs[THETA + 2] * patch[RADIUS], size = sqrt(u * u + v * v + w * w);
+    const double w = inputs[THETA + 2] * patch[RADIUS] + bent[2], size = sqrt(u * u + v * v + w * w);
     if (size == 0.0)
         return;
     const double mu = joint->kind.mu, ratio = joint->kind.ratio, reach = mu / ratio;
@@ -902,7 +903,7 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
     return shear;
 }
 
-void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2])
+void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope)
 {
     Kind *kind = &joint->kind;
     double *const moved[2] = {kind->tried[0], kind->tried[1]};
@@ -912,13 +913,13 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
             slopes_of(kind->tangent[j], slope[j]);
         return;
     }
-    for (int d = 0; d < 3; d++) {
+    for (int d = 0; d < 4; d++) {
         kind->work.forces = true;
         for (int j = 0; j < n_patches(); j++) {
             const Foundation *f = &kind->foundation[j];
             PatchPath path = path_of(joint, j, inputs, memory);
             Point apart;
-            if (d < 2) {
+            if (d < 3) {
                 path.shift[d] += step;
             } else {
                 apart = foundation_point(f, path.to->approach - step, path.to->full);
@@ -928,7 +929,7 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
         }
         foundations_end(&kind->work);
         for (int j = 0; j < n_patches(); j++)
-            for (int t = 0; t < 2; t++)
+            for (int t = 0; t < 3; t++)
                 slope[j][d][t] = (shears[j].traction[t] - kind->traction[j][t]) / step;
     }
 }
@@ -943,7 +944,8 @@ static void patch_rates(Joint *joint, const double *inputs, const double *memory
         const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) -
                             (apart_at(patch, seed) + kind->patch_opened_rate[j]);
         const double shift[3] = {along_x(patch, seed) + kind->bent_rate[j][0],
-                                 along_y(patch, seed) + kind->bent_rate[j][1], patch[RADIUS] * seed[THETA + 2]};
+                                 along_y(patch, seed) + kind->bent_rate[j][1],
+                                 patch[RADIUS] * seed[THETA + 2] + kind->bent_rate[j][2]};
         const double loop[4] = {rate, shift[0], shift[1], shift[2]};
         add_loop_rate(joint, j, inputs, loop, dx);
         if (!remembers(joint))

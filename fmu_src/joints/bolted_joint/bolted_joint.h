@@ -43,17 +43,17 @@ typedef struct {
     double spread[MOST_PATCHES][2][SLIDERS]; /* forces before it of sliders that were at rest */
     Work work;
 
-    /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y and apart)
+    /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y, around their centres and apart)
      * and bolts. */
-    double bolt, bodies[MODES], opening[MOST_OPENING][WIDE], patch[3][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
+    double bolt, bodies[MODES], opening[MOST_OPENING][WIDE], patch[4][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
-    double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][2];
-    double bent_before[MOST_PATCHES][2];
+    double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][3];
+    double bent_before[MOST_PATCHES][3];
     double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][6]; /* pressures, and the tangents of a further motion */
     Followed begin, end; /* at the memory before the last evaluation, and after it */
     double whole[6];     /* the stiffness of the whole after it */
     /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
-    double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][2];
+    double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][3];
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside

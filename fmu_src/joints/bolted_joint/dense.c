@@ -94,22 +94,22 @@ void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE],
     (fours ? weigh_fours : weigh_any)(n, by, row, result);
 }
 
-WITHIN void combine(int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                    const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
+WITHIN void combine(int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                    const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE])
 {
     for (int i = 0; i < n; i++)
         for (int k = 0; k < WIDE; k++)
-            result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * z[i][k];
+            result[i][k] = by[i][0] * x[i][k] + by[i][1] * y[i][k] + by[i][2] * t[i][k] + by[i][3] * z[i][k];
 }
 COMPILED_TWICE(combine,
-               (int n, const double (*by)[3], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
-                const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
-               (n, by, x, y, z, result))
+               (int n, const double (*by)[4], const double (*restrict x)[WIDE], const double (*restrict y)[WIDE],
+                const double (*restrict t)[WIDE], const double (*restrict z)[WIDE], double (*restrict result)[WIDE]),
+               (n, by, x, y, t, z, result))
 
-void dense_combine(bool fours, int n, const double (*by)[3], const double (*x)[WIDE], const double (*y)[WIDE],
-                   const double (*z)[WIDE], double (*result)[WIDE])
+void dense_combine(bool fours, int n, const double (*by)[4], const double (*const rows[4])[WIDE],
+                   double (*result)[WIDE])
 {
-    (fours ? combine_fours : combine_any)(n, by, x, y, z, result);
+    (fours ? combine_fours : combine_any)(n, by, rows[0], rows[1], rows[2], rows[3], result);
 }
 
 /* Sums go in lanes, which a processor adds side by side. */

@@ -24,10 +24,10 @@ static inline double dense_dot(const double *a, const double *b)
 void dense_factor(bool fours, double (*a)[MODES], int *pivots);
 /* Solve with them, in place of the right side. */
 void dense_solve(bool fours, const double (*factors)[MODES], const int *pivots, double *x);
-/* n rows with their weights, and the sums of those of three sets. */
+/* n rows with their weights, and the sums of those of four sets. */
 void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE]);
-void dense_combine(bool fours, int n, const double (*by)[3], const double (*x)[WIDE], const double (*y)[WIDE],
-                   const double (*z)[WIDE], double (*result)[WIDE]);
+void dense_combine(bool fours, int n, const double (*by)[4], const double (*const rows[4])[WIDE],
+                   double (*result)[WIDE]);
 /* Add the products of n weighted rows with rows to h up to a size, all or the lower half. */
 void dense_products(bool fours, int n, const double (*restrict weighted)[WIDE], const double (*restrict rows)[WIDE],
                     int size, bool all, double (*restrict h)[WIDE]);

@@ -263,17 +263,19 @@ static inline double changing(const Run *run, int k, const double (*found)[ABREA
     return loss;
 }
 
-/* Of forces alone, without that around the centre. */
+/* Of forces alone. */
 static inline void end_forces(const Run *run, const double (*found)[ABREAST])
 {
-    double x[2] = {0.0}, y[2] = {0.0};
+    double sum[3][2] = {{0.0}};
     for (int k = 0; k < run->n; k += 2)
         for (int l = 0; l < 2; l++) {
-            x[l] += found[SLID_FORCE][run->at + k + l];
-            y[l] += found[SLID_FORCE + 1][run->at + k + l];
+            const double x = found[SLID_FORCE][run->at + k + l], y = found[SLID_FORCE + 1][run->at + k + l];
+            sum[0][l] += x;
+            sum[1][l] += y;
+            sum[2][l] += x * run->turning[0][k + l] + y * run->turning[1][k + l];
         }
-    run->shear->traction[0] += x[0] + x[1];
-    run->shear->traction[1] += y[0] + y[1];
+    for (int d = 0; d < 3; d++)
+        run->shear->traction[d] += sum[d][0] + sum[d][1];
 }
 
 static inline void end_run(const Run *run, double (*found)[ABREAST])

@@ -39,7 +39,8 @@ void whole_begin(Kind *kind)
         const double x = data.patches[j][PLACE_X], y = data.patches[j][PLACE_Y];
         lay_row(data.patch_x[j], 1.0, 0.0, -y, kind->patch[0][j]);
         lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
-        lay_row(data.patch_z[j], 1.0, y, -x, kind->patch[2][j]);
+        lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], kind->patch[2][j]);
+        lay_row(data.patch_z[j], 1.0, y, -x, kind->patch[3][j]);
     }
     for (int b = 0; b < (int)data.n_bolts; b++)
         lay_row(data.stretch[b], 1.0, data.bolts[b][1], -data.bolts[b][0], kind->stretch[b]);
@@ -51,17 +52,17 @@ static inline void add_scaled(double by, const double *restrict row, double *res
         sum[k] += by * row[k];
 }
 
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2])
+void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[3])
 {
     if (!ELASTIC)
         return;
     const bool fours = kind->work.abreast.fours;
     const int patches = (int)data.n_patch_x;
-    for (int d = 0; d < 2; d++)
-        dense_dots(fours, patches, kind->patch[d], amplitude, 2, &bent[0][d]);
+    for (int d = 0; d < 3; d++)
+        dense_dots(fours, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
     if (opened) {
         dense_dots(fours, (int)data.n_opening, kind->opening, amplitude, 1, opened);
-        dense_dots(fours, patches, kind->patch[2], amplitude, 1, patch_opened);
+        dense_dots(fours, patches, kind->patch[3], amplitude, 1, patch_opened);
     }
 }
 
@@ -80,41 +81,28 @@ static void press_all(Kind *kind, int size)
     }
 }
 
-/* The same by shear in `by_shear`, of patches with their slopes by shifts along x and y and by coming apart; all of
- * the matrix or its lower half. */
-static void shear_all(Kind *kind, int size, bool all, const double (*slope)[3][2])
+/* The same by shear in `by_shear`, of patches with their slopes; all of the matrix or its lower half. */
+static void shear_all(Kind *kind, int size, bool all, const Slopes *slope)
 {
     const bool fours = kind->work.abreast.fours;
     const int n = (int)data.n_patches;
-    const double(*const rows[3])[WIDE] = {(const double(*)[WIDE])kind->patch[0], (const double(*)[WIDE])kind->patch[1],
-                                          (const double(*)[WIDE])kind->patch[2]};
-    double by[MOST_PATCHES][3];
+    const double(*rows[4])[WIDE];
+    double by[MOST_PATCHES][4];
+    for (int s = 0; s < 4; s++)
+        rows[s] = (const double(*)[WIDE])kind->patch[s];
     memset(kind->by_shear, 0, sizeof kind->by_shear);
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
-            for (int s = 0; s < 3; s++)
+            for (int s = 0; s < 4; s++)
                 by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
-        dense_combine(fours, n, (const double(*)[3])by, rows[0], rows[1], rows[2], kind->weighted);
+        dense_combine(fours, n, (const double(*)[4])by, rows, kind->weighted);
         dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
-    }
-}
-
-/* Add to the turn's row of it what the sliders have around the centres of their patches. */
-static void turn_all(Kind *kind, const double (*tangent)[6])
-{
-    double *row = kind->by_shear[MODES + 2];
-    for (int j = 0; j < (int)data.n_patches; j++) {
-        const double *t = tangent[j], radius = data.patches[j][RADIUS];
-        const double weight = kind->area * data.patches[j][SHARE] * radius, *x = kind->patch[0][j], *y = kind->patch[1][j];
-        for (int k = 0; k < WIDE; k++)
-            row[k] += weight * (t[3] * x[k] + t[4] * y[k]);
-        row[MODES + 2] += weight * (t[3] * x[MODES + 2] + t[4] * y[MODES + 2] + radius * t[5]);
     }
 }
 
 /* The derivative of the residual by the amplitudes, factored, and what acts beside it up to a size: from the slopes of
  * patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, const double (*slope)[3][2])
+static void differentiate(Kind *kind, int size, bool all, const Slopes *slope)
 {
     double(*a)[MODES] = kind->factors;
     press_all(kind, size);
@@ -148,7 +136,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     const Kind *kind = &joint->kind;
     const bool fours = kind->work.abreast.fours;
     double forces = 0.0, stiffness = 0.0, apart = 0.0;
-    double normal[MOST_OPENING], shear[2][MOST_PATCHES], bolts[MOST_STRETCH];
+    double normal[MOST_OPENING], shear[3][MOST_PATCHES], bolts[MOST_STRETCH];
     for (int k = 0; k < MODES; k++)
         r[k] = kind->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
@@ -162,7 +150,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
     }
     for (int j = 0; j < (int)data.n_patches; j++) {
         const double weight = kind->area * data.patches[j][SHARE];
-        for (int d = 0; d < 2; d++) {
+        for (int d = 0; d < 3; d++) {
             shear[d][j] = weight * kind->traction[j][d];
             forces += fabs(shear[d][j]);
         }
@@ -172,7 +160,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
         forces += fabs(bolts[b]);
     }
     dense_add_rows(fours, (int)data.n_nodes, normal, (const double(*)[WIDE])kind->opening, r);
-    for (int d = 0; d < 2; d++)
+    for (int d = 0; d < 3; d++)
         dense_add_rows(fours, (int)data.n_patches, shear[d], (const double(*)[WIDE])kind->patch[d], r);
     dense_add_rows(fours, (int)data.n_bolts, bolts, (const double(*)[WIDE])kind->stretch, r);
     return WHOLE_CLOSE * (forces + stiffness * apart * WHOLE_CANCELS);
@@ -182,35 +170,35 @@ static double residual(const Joint *joint, const double *inputs, const double *a
 static void exact(Joint *joint, const double *inputs, const double *memory, const double *after)
 {
     Kind *kind = &joint->kind;
-    static const double units[3][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {-1.0}};
-    double slope[MOST_PATCHES][3][2];
+    static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
+    Slopes slope[MOST_PATCHES];
     for (int j = 0; j < (int)data.n_patches; j++)
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 4; c++) {
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
             memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
         }
-    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
+    differentiate(kind, MODES, true, (const Slopes *)slope);
 }
 
 /* The same at the last trial, by differences. */
 static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    double slope[MOST_PATCHES][3][2], deepest = 0.0;
+    Slopes slope[MOST_PATCHES];
+    double deepest = 0.0;
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
     patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
-    differentiate(kind, MODES, true, (const double(*)[3][2])slope);
+    differentiate(kind, MODES, true, (const Slopes *)slope);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
 static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
-    double slope[MOST_PATCHES][3][2];
+    Slopes slope[MOST_PATCHES];
     for (int j = 0; j < (int)data.n_patches; j++)
         slopes_of(tangent[j], slope[j]);
-    differentiate(kind, WIDE, false, (const double(*)[3][2])slope);
-    turn_all(kind, tangent);
+    differentiate(kind, WIDE, false, (const Slopes *)slope);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
@@ -495,7 +483,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int i = 0; i < (int)data.n_nodes; i++)
         add_scaled(kind->area * data.nodes[i][SHARE] * kind->pressing[i], kind->opening[i], r);
     for (int j = 0; j < (int)data.n_patches; j++)
-        for (int d = 0; d < 2; d++)
+        for (int d = 0; d < 3; d++)
             add_scaled(-kind->area * data.patches[j][SHARE] * kind->shears[j].traction[d], kind->patch[d][j], r);
     for (int b = 0; b < (int)data.n_bolts; b++)
         add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
@@ -524,7 +512,7 @@ void whole_sum_rates(const Joint *joint, const double *inputs, const double *see
             const double across[MOTIONS] = {0.0, 1.0, 0.0, 0.0, 0.0, data.patches[j][PLACE_X]};
             const double u = along[d] + dense_dot(kind->patch[0][j], z), v = across[d] + dense_dot(kind->patch[1][j], z);
             const double *t = kind->shears[j].tangent;
-            const double w = d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0;
+            const double w = (d == MOTIONS - 1 ? data.patches[j][RADIUS] : 0.0) + dense_dot(kind->patch[2][j], z);
             sum += data.patches[j][SHARE] * (t[0] * u * u + t[2] * v * v + t[5] * w * w +
                                              2.0 * (t[1] * u * v + t[3] * u * w + t[4] * v * w));
         }

@@ -10,7 +10,7 @@
 /* The modes as numbers, once for a parameter set. */
 void whole_begin(Kind *kind);
 /* What amplitudes (n_modes) move: openings of points and patches, shifts of the patches. */
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[2]);
+void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[3]);
 /* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
 bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 /* Sums that elastic sides change, and the forces of the bolts. */
@@ -29,13 +29,15 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
                  double rate, const double shift[3]);
-/* Slopes of a traction from its tangents xx, xy, yy. */
-static inline void slopes_of(const double tangent[3], double slope[3][2])
+/* Derivatives of a patch's traction by shifts along x, y and around its centre, and by coming apart. */
+typedef double Slopes[4][3];
+/* From its tangents xx, xy, yy, xt, yt, tt. */
+static inline void slopes_of(const double t[6], Slopes slope)
 {
-    const double rows[3][2] = {{tangent[0], tangent[1]}, {tangent[1], tangent[2]}};
+    const Slopes rows = {{t[0], t[1], t[3]}, {t[1], t[2], t[4]}, {t[3], t[4], t[5]}};
     memcpy(slope, rows, sizeof rows);
 }
-/* By differences: those of the last trial by shifts along x and y at its end and by coming apart. */
-void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, double (*slope)[3][2]);
+/* Those of the last trial at its end, by differences: as `Trials.slopes` of the package. */
+void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope);
 
 #endif

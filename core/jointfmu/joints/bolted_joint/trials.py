@@ -106,33 +106,30 @@ class Trials:
     def at(self, place: Place, amplitude: Array) -> Trial:
         """At a place with amplitudes (k) [m]."""
         points, patches = self.approaches(place, amplitude)
-        way = self._way(place, amplitude, patches, np.zeros(2)) if self.spring.joint.memory else None
+        way = self._way(place, amplitude, patches, np.zeros(3)) if self.spring.joint.memory else None
         return Trial(self.spring.curve.derivatives(points, 3), patches, way)
 
     def _way(self, place: Place, amplitude: Array, approach: Array, further: Array) -> Way:
         spring, before = self.spring, self.before
         rigid = np.array([*place.shift[:2], place.turn[2]])
         shift = spring.shift(rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
-        shift[:, :2] += further
+        shift += further
         return spring.way(before, approach, shift, rigid)
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
         """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
         coming apart.
 
-        By differences, at the end of the way; around the centres alone it is nearly the mean of those along.
+        By differences, at the end of the way.
         """
         approach = self.approaches(place, amplitude)[1]
         step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))
 
         def traction(further: Array) -> Array:
-            return self._way(place, amplitude, approach - further[2], further[:2]).traction[:, :2]
+            return self._way(place, amplitude, approach - further[3], further[:3]).traction
 
-        here, slopes = traction(np.zeros(3)), np.zeros((len(approach), 3, 4))
-        for to, motion in zip((0, 1, 3), step * np.eye(3), strict=True):
-            slopes[:, :2, to] = (traction(motion) - here) / step
-        slopes[:, 2, 2] = 0.5 * (slopes[:, 0, 0] + slopes[:, 1, 1])
-        return slopes
+        here = traction(np.zeros(4))
+        return np.stack([(traction(motion) - here) / step for motion in step * np.eye(4)], axis=-1)
 
 
 def told(preload: float, moment: float, place: Place) -> str:

@@ -63,7 +63,7 @@ ON_CIRCLE = 4
 LESS_SPREAD = 0.9
 """Radius of this circle over that of gyration of the friction that a patch stands for [1]: a disc pulls about
 a pole inside it as a smaller ring does."""
-AT_REST, ROUNDS = 0.1, 30
+AT_REST, ROUNDS = 0.1, 5
 """Pressure over the mean one [1] that counts beside a node's own where nodes are divided among the patches,
 and how often they are."""
 TINY = float(np.finfo(float).tiny)
