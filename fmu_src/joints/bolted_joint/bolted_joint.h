@@ -18,6 +18,7 @@ enum { FOLLOW_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
 typedef struct {
     bool known;
     double key[FOLLOW_KEY], follow[6][MODES];
+    Factors factors; /* of the derivative by the amplitudes */
 } Followed;
 
 typedef struct {
@@ -57,13 +58,12 @@ typedef struct {
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
-     * the modes, derivatives by amplitudes with their factors, forces of a patch that is tried, steps since the last
-     * derivative. */
+     * the modes, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
     double by[MOST_OPENING + MOST_STRETCH];
     double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
-    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], factors[MODES][MODES], tried[2][SLIDERS];
+    double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], tried[2][SLIDERS];
+    Factors factors;
     double steps[NEWTON_STEPS][MODES], squares[NEWTON_STEPS];
-    int pivots[MODES];
 } Kind;
 
 #endif

@@ -41,9 +41,9 @@ WITHIN void factor(double (*a)[MODES], int *pivots)
 }
 COMPILED_TWICE(factor, (double (*a)[MODES], int *pivots), (a, pivots))
 
-void dense_factor(bool fours, double (*a)[MODES], int *pivots)
+void dense_factor(bool fours, Factors *factors)
 {
-    (fours ? factor_fours : factor_any)(a, pivots);
+    (fours ? factor_fours : factor_any)(factors->a, factors->pivots);
 }
 
 /* Four columns at a time: the rows beside their own four side by side. */
@@ -75,9 +75,9 @@ WITHIN void solve(const double (*a)[MODES], const int *pivots, double *x)
 }
 COMPILED_TWICE(solve, (const double (*a)[MODES], const int *pivots, double *x), (a, pivots, x))
 
-void dense_solve(bool fours, const double (*a)[MODES], const int *pivots, double *x)
+void dense_solve(bool fours, const Factors *factors, double *x)
 {
-    (fours ? solve_fours : solve_any)(a, pivots, x);
+    (fours ? solve_fours : solve_any)((const double(*)[MODES])factors->a, factors->pivots, x);
 }
 
 WITHIN void weigh(int n, const double *by, const double (*restrict row)[WIDE], double (*restrict result)[WIDE])

@@ -20,10 +20,14 @@ static inline double dense_dot(const double *a, const double *b)
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 /* The following on a processor with vectors_of_four or any other. */
-/* Factors in place of a matrix, whose columns are the rows of the array, with partial pivoting. */
-void dense_factor(bool fours, double (*a)[MODES], int *pivots);
+/* Factors in place of a matrix `a`, whose columns are the rows of the array, with partial pivoting. */
+typedef struct {
+    double a[MODES][MODES];
+    int pivots[MODES];
+} Factors;
+void dense_factor(bool fours, Factors *factors);
 /* Solve with them, in place of the right side. */
-void dense_solve(bool fours, const double (*factors)[MODES], const int *pivots, double *x);
+void dense_solve(bool fours, const Factors *factors, double *x);
 /* n rows with their weights, and the sums of those of four sets. */
 void dense_weigh(bool fours, int n, const double *by, const double (*row)[WIDE], double (*result)[WIDE]);
 void dense_combine(bool fours, int n, const double (*by)[4], const double (*const rows[4])[WIDE],

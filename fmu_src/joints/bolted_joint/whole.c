@@ -100,11 +100,11 @@ static void shear_all(Kind *kind, int size, bool all, const Slopes *slope)
     }
 }
 
-/* The derivative of the residual by the amplitudes, factored, and what acts beside it up to a size: from the slopes of
+/* Factors of the derivative of the residual by the amplitudes, and what acts beside it up to a size: from the slopes of
  * patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, const Slopes *slope)
+static void differentiate(Kind *kind, int size, bool all, const Slopes *slope, Factors *factors)
 {
-    double(*a)[MODES] = kind->factors;
+    double(*a)[MODES] = factors->a;
     press_all(kind, size);
     shear_all(kind, size, all, slope);
     for (int r = 0; r < MODES; r++) {
@@ -115,7 +115,7 @@ static void differentiate(Kind *kind, int size, bool all, const Slopes *slope)
         }
         a[r][r] += kind->bodies[r];
     }
-    dense_factor(kind->work.abreast.fours, a, kind->pivots);
+    dense_factor(kind->work.abreast.fours, factors);
 }
 
 /* Equilibrium */
@@ -177,7 +177,7 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
             memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
         }
-    differentiate(kind, MODES, true, (const Slopes *)slope);
+    differentiate(kind, MODES, true, (const Slopes *)slope, &kind->factors);
 }
 
 /* The same at the last trial, by differences. */
@@ -189,7 +189,7 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory)
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
     patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
-    differentiate(kind, MODES, true, (const Slopes *)slope);
+    differentiate(kind, MODES, true, (const Slopes *)slope, &kind->factors);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
@@ -198,7 +198,7 @@ static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
     Slopes slope[MOST_PATCHES];
     for (int j = 0; j < (int)data.n_patches; j++)
         slopes_of(tangent[j], slope[j]);
-    differentiate(kind, WIDE, false, (const Slopes *)slope);
+    differentiate(kind, WIDE, false, (const Slopes *)slope, &followed->factors);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];
@@ -206,7 +206,7 @@ static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
         double *z = followed->follow[d];
         for (int k = 0; k < MODES; k++)
             z[k] = -h[k];
-        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, z);
+        dense_solve(kind->work.abreast.fours, &followed->factors, z);
         kind->whole[d] = h[at] + dense_dot(h, z);
     }
     followed->known = true;
@@ -317,21 +317,23 @@ static Newton newton(Joint *joint, Way *way, double part, double *amplitude, dou
     if (!try_at(joint, way, at, amplitude, false, why))
         return REFUSED;
     least = residual(joint, at, amplitude, r);
-    double before = 0.0;
+    const Factors *with = &kind->begin.factors; /* of the derivative: at first that at the beginning of the way */
+    double before = INFINITY;
     for (int n = 0, kept = 0; n < NEWTON_STEPS; n++) {
         const double left = largest(r);
         if (left <= close * least)
             return FOUND;
         if (!(left < WHOLE_CHORD * before)) { /* else the last derivative is still good */
             jacobian(joint, at, way->memory);
+            with = &kind->factors;
             kept = 0;
         }
-        const bool last = part == 1.0 && left < WHOLE_CHORD * before && left * left < before * least;
+        const bool last = part == 1.0 && n > 0 && left < WHOLE_CHORD * before && left * left < before * least;
         before = left;
         double begin[MODES], size = 1.0, *step = kind->steps[kept];
         for (int k = 0; k < MODES; k++)
             step[k] = -r[k];
-        dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, step);
+        dense_solve(kind->work.abreast.fours, with, step);
         broyden(kind, kept++);
         memcpy(begin, amplitude, sizeof begin);
         const double falls = dense_dot(r, step);
@@ -488,7 +490,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     for (int b = 0; b < (int)data.n_bolts; b++)
         add_scaled(-kind->bolt * seat(b, seed), kind->stretch[b], r);
     exact(joint, inputs, memory, after);
-    dense_solve(kind->work.abreast.fours, (const double(*)[MODES])kind->factors, kind->pivots, r);
+    dense_solve(kind->work.abreast.fours, &kind->factors, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
     whole_deform(r, kind, kind->opened_rate, kind->patch_opened_rate, kind->bent_rate);
 }

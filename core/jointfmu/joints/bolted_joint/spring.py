@@ -188,7 +188,7 @@ class BoltedJointSpring:
         amplitude = np.zeros(0)
         if joint.elastic:
             begin = before["amplitude"][: len(self.modes.stiffness)]
-            amplitude, at = self.whole.solve(trials, tight, begin, self._followed(trials, begin))
+            amplitude, at = self.whole.solve(trials, tight, begin, *self._followed(trials, begin))
         else:
             at = trials.at(place, amplitude)
         if at.way is not None:
@@ -290,8 +290,9 @@ class BoltedJointSpring:
         force[..., 0], force[:, 1, 1] = traction[:, :2], traction[:, 2]
         return Moved(force, np.zeros_like(stick), stick[:, None] * STICKS)
 
-    def _followed(self, trials: Trials, amplitude: Array) -> Array:
-        """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning."""
+    def _followed(self, trials: Trials, amplitude: Array) -> tuple[Array, Array]:
+        """Amplitudes (k) [m] that follow the motion from `amplitude` in the tangent of its beginning, and the
+        derivative (k, k) [N/m] of the residual by them there."""
         whole, before, there = self.whole, trials.before, trials.place(0.0)
         points, patches = trials.approaches(there, amplitude)
         tangent = before["tangent"]
@@ -299,7 +300,7 @@ class BoltedJointSpring:
             tangent = self.foundation().stick(patches)[:, None] * STICKS
         H = whole.slope(self.curve.derivatives(points, 1)[1], tangent)
         motion = trials.end.six - there.six
-        return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion))
+        return np.asarray(amplitude - np.linalg.solve(H[6:, 6:], H[6:, :6] @ motion)), H[6:, 6:]
 
     def _whole_sums(
         self, at: "Trial", place: Place, amplitude: Array, loop_energy: Number

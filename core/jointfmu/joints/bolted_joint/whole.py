@@ -5,10 +5,10 @@ patches shift by G_q q + G_a a, and so do the seats of the bolts. Equilibrium is
 
     r(a) = S a + G_a^T f = 0,    f = -(p - p_tightened) A share, t A share, k_b e
 
-at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the derivative
-of r, which Broyden's update carries on; it is not symmetric, as the normal force acts on friction. What is
-left of H = G^T W G + S to the attachments where a follows is the stiffness of the whole, W the tangents of
-points, patches and bolts in a further motion.
+at points, patches and bolts, S the stiffness of the modes. It is found by Newton's method with the
+derivative of r, at first that at the beginning of the way, which Broyden's update carries on; it is not
+symmetric, as the normal force acts on friction. What is left of H = G^T W G + S to the attachments where a
+follows is the stiffness of the whole, W the tangents of points, patches and bolts in a further motion.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ ROUGH = 1e7
 """How much more is enough on the way [1]."""
 STEPS, PARTS = 16, 6
 """Most steps of Newton's method [1], and most parts of each that are tried."""
-CHORD = 0.1
+CHORD = 0.03
 """Part of the residual that a step leaves [1] below which the next one takes the derivative on."""
 LEAST_PART = 1e-4
 """Least part of a motion that is gone at once [1]."""
@@ -158,10 +158,13 @@ class Whole:
         """Stiffness (6, 6) of the whole, where the amplitudes follow."""
         return np.asarray(H[:6, :6] - H[:6, 6:] @ np.linalg.solve(H[6:, 6:], H[6:, :6]))
 
-    def solve(self, trials: "Trials[T]", tight: Array, start: Array, first: Array) -> tuple[Array, T]:
+    def solve(
+        self, trials: "Trials[T]", tight: Array, start: Array, first: Array, J: Array
+    ) -> tuple[Array, T]:
         """Amplitudes (k) [m] in equilibrium at the end of a motion, and the trial there.
 
         start, first : amplitudes (k) [m] at its beginning, and at its end in the tangent of the beginning
+        J            : (k, k) [N/m] derivative of the residual at the beginning, by the tangents
 
         Where Newton's method does not come to the end at once, it goes there part by part.
 
@@ -170,7 +173,7 @@ class Whole:
         done, step, amplitude, rate = 0.0, 1.0, start, first - start
         while True:
             part = min(done + step, 1.0)
-            found = self._newton(trials, part, tight, amplitude + (part - done) * rate)
+            found = self._newton(trials, part, tight, amplitude + (part - done) * rate, J)
             if isinstance(found, float):
                 step *= 0.5
                 if step < LEAST_PART:
@@ -198,13 +201,14 @@ class Whole:
         return np.asarray(J)
 
     def _newton(
-        self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array
+        self, trials: "Trials[T]", part: float, tight: Array, amplitude: Array, J: Array
     ) -> tuple[Array, T] | float:
-        """Equilibrium at a part [1] of the motion, from amplitudes (k) [m], or the residual [N] left."""
+        """Equilibrium at a part [1] of the motion, from amplitudes (k) [m] and a derivative J (k, k), or
+        the residual [N] left."""
         place, close = trials.place(part), 1.0 if part == 1.0 else ROUGH
         at = trials.at(place, amplitude)
         r, least = self.residual(at, tight, place, amplitude)
-        before, J = 0.0, np.eye(r.size)
+        before = np.inf
         steps: list[Array] = []
         for _ in range(STEPS):
             left = float(np.max(np.abs(r)))
