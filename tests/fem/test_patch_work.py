@@ -62,7 +62,7 @@ def test_patches_lose_and_resist_as_all_points(disc):
     """At their means they lose too little in partial slip; fitted, hardly anything."""
     law, points, rows, few, means, shears = disc
     aim = of(law, shears, points, rows)
-    fitted = PatchWork(law, shears, few, aim).fitted(means)
+    fitted = PatchWork(law, shears, few, 0.0 * means, aim).fitted(means)
     before, after = (of(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
     assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
@@ -77,7 +77,7 @@ def test_what_is_held_is_exact(disc):
     law, points, rows, few, means, _ = disc
     linear = Shears(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
     aim = of(law, linear, points, rows).stuck
-    working = PatchWork(law, linear, few, of(law, linear, points, rows))
+    working = PatchWork(law, linear, few, 0.0 * means, of(law, linear, points, rows))
     held = working.held(means, linear, aim)
     before, found = (of(law, linear, few, rows).stuck for rows in (means, held))
     missed = [np.max(np.abs(each - aim)[:2]) / np.max(np.abs(aim)) for each in (before, found)]
@@ -88,7 +88,7 @@ def test_what_is_held_is_exact(disc):
 
 def test_slopes_are_those_of_differences(disc):
     law, points, rows, few, means, shears = disc
-    working = PatchWork(law, shears, few, of(law, shears, points, rows))
+    working = PatchWork(law, shears, few, 0.0 * means, of(law, shears, points, rows))
     slope, still, step = working._slopes(means), np.zeros_like(means), 1e-6
     for index in ((0, 0), (5, 1)):
         there = [means.copy(), means.copy()]
