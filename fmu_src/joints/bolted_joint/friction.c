@@ -321,8 +321,8 @@ static inline void add_pair(Abreast *all, const PlaneSliders *s, int first)
 }
 
 /* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
-static void move_steady(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2], Work *work,
-                        Shear *shear)
+static void move_steady(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
+                        Work *work, Shear *shear)
 {
     const bool fours = work->abreast.fours;
     SliderSum sum = {.loss = 0.0};

@@ -70,8 +70,8 @@ enum { ABREAST = 64 };
 typedef struct {
     bool fours; /* the processor has vectors_of_four */
     int n;
-    double force[2][ABREAST], shift[2][ABREAST], keeps[ABREAST], carries[ABREAST], K[ABREAST], per_K[ABREAST], before[ABREAST],
-        after[ABREAST], slid[N_SLID][ABREAST];
+    double force[2][ABREAST], shift[2][ABREAST], keeps[ABREAST], carries[ABREAST], K[ABREAST], per_K[ABREAST];
+    double before[ABREAST], after[ABREAST], slid[N_SLID][ABREAST];
 } Abreast;
 
 /* Pairs that may slip, of all patches. */

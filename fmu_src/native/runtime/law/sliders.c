@@ -144,7 +144,8 @@ static inline void slide_all(int first, int n, const PlaneSliders *s, double *re
 {
     const PlaneSliders own = *s;
     for (int k = first; k < n; k++) {
-        const double x[] = {own.force[0][k], limit_at(own.after[k], own.K[k], own.to), own.K[k], own.per_K[k], own.shift[0]};
+        const double limit = limit_at(own.after[k], own.K[k], own.to);
+        const double x[] = {own.force[0][k], limit, own.K[k], own.per_K[k], own.shift[0]};
         double y[N_LINE];
         slide_steady(x, NULL, y);
         moved[k] = y[L_FORCE];
@@ -179,7 +180,7 @@ int sliders_sticking(int n, const PlaneSliders *s, double *moved, SliderSum *sum
     return first;
 }
 
-/* Loops four at a time, two pairs, as operations that follow one another take long; rows overlap in place alone. */
+/* Four at a time, two pairs, as operations that follow one another take long; no row overlaps another. */
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers do not let it */
 #define ALL_FOUR _Pragma("clang loop vectorize(assume_safety) vectorize_width(4)")
@@ -193,7 +194,8 @@ WITHIN void stick_each(int n, const PlaneSliders *s, double *const moved[2], dou
     double *const x = moved[0], *const y = moved[1];
     ALL_FOUR
     for (int k = 0; k < n; k++) {
-        const double a[] = {own.force[0][k], own.force[1][k], own.keeps[k], own.carries[k], shift_of(own.turning, k, own.shift, 0), shift_of(own.turning, k, own.shift, 1),
+        const double u = shift_of(own.turning, k, own.shift, 0), v = shift_of(own.turning, k, own.shift, 1);
+        const double a[] = {own.force[0][k], own.force[1][k], own.keeps[k], own.carries[k], u, v,
                             limit_at(own.after[k], own.K[k], own.to)};
         double b[3];
         stick_plane(a, NULL, b);
@@ -284,7 +286,8 @@ void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double
 
 WITHIN void sum_each(int first, int end, const PlaneSliders *s, double *const *slid, Lanes *restrict lanes)
 {
-    const double *e_x = s->turning[0], *e_y = s->turning[1], *const all[] = {slid[0], slid[1], slid[2], slid[3], slid[4], slid[5]};
+    const double *const all[] = {slid[0], slid[1], slid[2], slid[3], slid[4], slid[5]};
+    const double *const e_x = s->turning[0], *const e_y = s->turning[1];
     for (int i = first; i < end; i += LANES) {
         ALL_FOUR
         for (int l = 0; l < LANES; l++) {

@@ -15,9 +15,9 @@ typedef struct {
     const double *K, *per_K, *before, *after, *force;
 } Sliders;
 
-/* The same in a plane. Limits are at least 0 and grow by K from what stands there, `from` before and `to` after; a
- * force keeps a part; a shift along x, y and around the centre is multiplied by `carries`, and around it by `turning`,
- * each slider's way in a turn over that of the shift. */
+/* The same in a plane, by a shift along x, y and around the centre. Each limit is what stands there and K `from`, or
+ * `to`, but not below 0; a force keeps a part and gains `carries` times the slider's shift, which is as far around the
+ * centre as `turning` says. */
 typedef struct {
     const double *force[2], *turning[2], *keeps, *carries, *K, *per_K, *before, *after;
     double from, to, shift[3];
@@ -60,7 +60,7 @@ int sliders_sticking(int n, const PlaneSliders *s, double *moved, SliderSum *sum
 int sliders_stick(bool fours, int n, const PlaneSliders *s, double *const moved[2], double force[3]);
 
 /* Results of sliders that may slip, one row each: forces, tangents xx, xy, yy of a further motion, heat, slip. */
-enum { SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };
+enum { SLID_FORCE, SLID_LOSS = 5, SLID_SLIP, N_SLID };
 
 /* Sliders from `first` to `end` that may slip, a multiple of four; of forces alone the other rows stay as they are. */
 void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], bool forces);
