@@ -1,6 +1,6 @@
 """The rule of one slider as functions for C, which `law/sliders.c` calls in its loops."""
 
-from jointfmu.mechanics.jenkins import direction, reaches, slide, slide_in_plane, trial
+from jointfmu.mechanics.jenkins import reaches, slide, trial
 from jointfmu.quantity import where
 
 from .graph import Graph, symbols
@@ -39,16 +39,9 @@ def _plane(g: Graph) -> None:
     g.add(
         "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
     )
-    tried = symbols("t", 2)
-    e_x, e_y, size = direction(shift)
-    given = [*force, *tried, *shift, carries, *ends]
-    way = "limits before and after, stiffness, compliance"
-    known = f"force, trial force, shift, gain, {way}"
-    slid = slide_in_plane(force, tried, [e_x, e_y], carries * size, *ends)
-    results = "force, tangent xx, xy, yy, loss, slip"
-    y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add("slide_plane", f"{known} -> {results}", given, y)
-    g.add("return_plane", f"{known} -> force", given, slid.force)
     slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
+    doc = f"{doc}, limits before and after, stiffness, compliance"
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add_seed("slide_plane", f"{doc}, {way}", [*x, *ends], y, fixed=2)
+    g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", [*x, *ends], y)
+    g.add("return_plane", f"{doc} -> force", [*x, *ends], slid.force)
+    g.add_seed("slide_plane", doc, [*x, *ends], y, fixed=2)

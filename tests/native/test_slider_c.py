@@ -1,7 +1,7 @@
 """One slider in C against Python: the generated rule and the loops around it, compiled without an FMU."""
 
 from collections.abc import Iterator
-from ctypes import CDLL, POINTER, Structure, byref, c_bool, c_double, c_int
+from ctypes import CDLL, POINTER, Structure, byref, c_double, c_int
 from pathlib import Path
 
 import casadi as ca
@@ -15,7 +15,7 @@ from jointfmu_fmu_src.native.code.generate import RUNTIME
 from jointfmu_fmu_src.native.compiled import compiler
 
 from jointfmu.mechanics.jenkins import Sliders, beyond, reaches, slide, trial
-from jointfmu.mechanics.sliders import turning
+from jointfmu.mechanics.sliders import together, turning
 
 pytestmark = pytest.mark.slow
 
@@ -27,25 +27,31 @@ AVX = " avx " in Path("/proc/cpuinfo").read_text(encoding="utf-8")
 """Whether this processor has vectors of four."""
 
 
-ROWS = ("K", "per_K", "before", "after", "force_x", "force_y", "turning_x", "turning_y")
+LINE = ("K", "per_K", "before", "after", "force")
+PLANE = ("force_x", "force_y", "turning_x", "turning_y", "keeps", "carries", "K", "per_K", "before", "after")
 
 
 class CSliders(Structure):
     """`Sliders` of sliders.h."""
 
-    _fields_ = [(name, POINTER_TO) for name in ROWS]
+    _fields_ = [(name, POINTER_TO) for name in LINE]
+
+
+class PlaneSliders(Structure):
+    """The same name there."""
+
+    _fields_ = [
+        *((name, POINTER_TO) for name in PLANE),
+        ("from", c_double),
+        ("to", c_double),
+        ("shift", c_double * 3),
+    ]
 
 
 class Sum(Structure):
     """`SliderSum`."""
 
     _fields_ = [("force", c_double * 3), ("tangent", c_double * 6), ("loss", c_double)]
-
-
-class Abreast(Structure):
-    """The same name in sliders.h."""
-
-    _fields_ = [("fours", c_bool), ("n", c_int), ("given", c_double * 64 * 11), ("found", c_double * 64 * 7)]
 
 
 @pytest.fixture(scope="module")
@@ -95,16 +101,18 @@ def moves(plane: bool) -> Iterator[tuple[np.ndarray, ...]]:
         yield K, before, after, size * np.array([np.cos(angle), np.sin(angle) * plane]), shift
 
 
-def in_c(
-    K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndarray
-) -> tuple[CSliders, np.ndarray]:
-    """The struct, and what has to stay alive as long as it."""
+def rows_of(K: np.ndarray, before: np.ndarray, after: np.ndarray, force: np.ndarray) -> dict[str, np.ndarray]:
+    """What C gets of sliders whose stiffness stays."""
+    x, y = force
     per_K = np.divide(1.0, K, out=np.zeros_like(K), where=K > 0.0)
-    kept = np.stack([K, per_K, before, after, *force, *turning(SLIDERS)])
-    rows = [pointer(row) for row in kept]
-    if after is before:
-        rows[3] = rows[2]
-    return CSliders(*rows), kept
+    e_x, e_y = np.ascontiguousarray(turning(SLIDERS))
+    rows = {"K": K, "per_K": per_K, "before": before, "after": after, "force": x, "force_x": x, "force_y": y}
+    return rows | {"turning_x": e_x, "turning_y": e_y, "keeps": np.ones_like(K), "carries": K}
+
+
+def in_c(rows: dict[str, np.ndarray]) -> CSliders:
+    """The struct; the rows have to stay alive as long as it."""
+    return CSliders(*(pointer(rows[name]) for name in LINE))
 
 
 def close(found: object, expected: object, size: float) -> None:
@@ -115,7 +123,8 @@ def test_along_one_direction(library: CDLL) -> None:
     """Forces, sums, tangent and rates of a limit that changes, slope of the heat of one that stays."""
     moved, slipped = np.empty(SLIDERS), 0
     for K, before, after, force, (u, *_) in moves(plane=False):
-        s, kept = in_c(K, before, after, force)
+        rows = rows_of(K, before, after, force)
+        s = in_c(rows)
         total, rate = Sum(), Sum()
         library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
         expected = Sliders(K).along(force[0], u, before, after)
@@ -134,7 +143,6 @@ def test_along_one_direction(library: CDLL) -> None:
             library.sliders_line_rate(SLIDERS, byref(s), c_double(u), c_double(1.0), ones, byref(rate))
             rises = float(np.sum(np.sign(tried[slips])))
             assert rate.force[0] == pytest.approx(float(expected.tangent) + rises, abs=ROUND_OFF * SLIDERS)
-        assert kept.size
     assert 0.2 * MOVES < slipped < 0.8 * MOVES
 
 
@@ -143,27 +151,26 @@ def of_each(shift: np.ndarray) -> np.ndarray:
     return np.asarray(shift[:2, None] + shift[2] * turning(SLIDERS))
 
 
-def in_plane(library: CDLL, s: CSliders, kept: np.ndarray, shift: np.ndarray) -> np.ndarray:
+def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> np.ndarray:
     """Force, tangent, loss and slip (7, n): sliders before the first at its limit stick, the others may slip;
-    forces alone are the same, however many sliders stand abreast, and all the bits by vectors of four."""
-    K, per_K, before, after, *force, e_x, e_y = kept
+    forces alone are the same, and all the bits by vectors of four; sums are those of all."""
+    s = PlaneSliders(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
     tried, sticks = np.empty((2, SLIDERS)), (c_double * 3)()
-    out, way = (POINTER_TO * 2)(*map(pointer, tried)), (c_double * 3)(*shift)
-    first = library.sliders_stick(AVX, SLIDERS, byref(s), way, out, sticks)
-    limits = np.append(reaches(list(tried), after) > 0.0, True)
-    assert first == np.argmax(limits) // 2 * 2
-    around = np.sum(e_x * tried[0] + e_y * tried[1], where=np.arange(SLIDERS) < first)
-    sums = [*np.sum(tried[:, :first], axis=1), around]
+    out = (POINTER_TO * 2)(*map(pointer, tried))
+    first = library.sliders_stick(AVX, SLIDERS, byref(s), out, sticks)
+    at_limit = np.append(reaches(list(tried), rows["after"]) > 0.0, True)
+    assert first == np.argmax(at_limit) // 2 * 2
+    sums = together(np.where(np.arange(SLIDERS) < first, tried, 0.0))
     close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
-    abreast, alone = Abreast(n=SLIDERS), Abreast(n=SLIDERS - 2)
-    fours = Abreast(n=SLIDERS, fours=AVX)
-    for rows in (abreast, fours, alone):
-        given = np.ctypeslib.as_array(rows.given)
-        given[:, :SLIDERS] = [*force, *tried, *of_each(shift), K, before, after, K, per_K]
-        library.sliders_slide(byref(rows), c_bool(rows is alone))
-    found = np.array(abreast.found)[:, :SLIDERS]
-    np.testing.assert_array_equal(np.array(fours.found)[:, :SLIDERS], found)
-    close(np.array(alone.found)[:2, : alone.n], found[:2, : alone.n], 1.0 + np.max(np.abs(tried)))
+    found, fours, alone = np.empty((3, 7, SLIDERS))
+    for slid, by_four, forces in ((found, False, False), (fours, AVX, False), (alone, AVX, True)):
+        into = (POINTER_TO * 7)(*map(pointer, slid))
+        library.sliders_slide(by_four, 0, SLIDERS, byref(s), into, forces)
+        total = Sum()
+        library.sliders_sum(by_four, 0, SLIDERS, byref(s), into, byref(total))
+        close(list(total.force), together(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
+    np.testing.assert_array_equal(fours, found)
+    close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
     np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
     return found
 
@@ -172,10 +179,10 @@ def test_in_a_plane(library: CDLL) -> None:
     """Forces, tangents and heat."""
     slipped = 0
     for K, before, after, force, shift in moves(plane=True):
-        s, kept = in_c(K, before, after, force)
-        moved, tangent, loss = np.split(in_plane(library, s, kept, shift)[:6], [2, 5])
+        rows = rows_of(K, before, after, force)
+        moved, tangent, loss = np.split(in_plane(library, rows, shift)[:6], [2, 5])
         tried = trial(list(force), 1.0, K, list(of_each(shift)))
-        slid = slide(list(force), 1.0, K, list(of_each(shift)), before, after, K, kept[1])
+        slid = slide(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["per_K"])
         size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
         close(moved, slid.force, size)
         close(loss[0], slid.loss, size**2)
@@ -190,21 +197,32 @@ def test_in_a_plane(library: CDLL) -> None:
 def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
     """Sliders that came back to their limit stick: no heat, no other force, for any direction."""
     for K, limit, _, force, shift in moves(plane=True):
-        s, kept = in_c(K, limit, limit, force)
-        there = in_plane(library, s, kept, shift)[:2]
-        s, kept = in_c(K, limit, limit, there)
-        found = in_plane(library, s, kept, np.zeros(3))
+        there = in_plane(library, rows_of(K, limit, limit, force), shift)[:2]
+        found = in_plane(library, rows_of(K, limit, limit, there), np.zeros(3))
         np.testing.assert_array_equal(found[:2], there)
         assert np.all(found[5] == 0.0)
+
+
+def test_limits_grow_by_the_stiffness(library: CDLL) -> None:
+    """From what stands in the rows, and are never below nothing."""
+    for K, before, after, force, shift in moves(plane=True):
+        rows, found = rows_of(K, before, after, force), np.empty((2, 7, SLIDERS))
+        grown = [rows | {"before": before - K, "after": after - 2.0 * K}, rows_of(K, before, after, force)]
+        grown[1] |= {"before": np.maximum(grown[0]["before"] + 0.5 * K, 0.0)}
+        grown[1] |= {"after": np.maximum(grown[0]["after"] + 1.5 * K, 0.0)}
+        for given, ways, slid in zip(grown, ((0.5, 1.5), (0.0, 0.0)), found, strict=True):
+            s = PlaneSliders(*(pointer(given[name]) for name in PLANE), *ways, (c_double * 3)(*shift))
+            library.sliders_slide(AVX, 0, SLIDERS, byref(s), (POINTER_TO * 7)(*map(pointer, slid)), False)
+        np.testing.assert_array_equal(*found)
 
 
 def test_force_alone(library: CDLL) -> None:
     """It is that of the whole, with its tangent."""
     for K, limit, _, force, (u, *_) in moves(plane=False):
-        s, kept = in_c(K, limit, limit, force)
+        rows = rows_of(K, limit, limit, force)
+        s = in_c(rows)
         tangent = c_double()
         found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
         expected = Sliders(K).along(force[0], u, limit, limit)
         size = 1.0 + abs(u) * float(np.sum(K))
         close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)
-        assert kept.size

@@ -79,37 +79,17 @@ def slide(
     """A slider after a straight path, see `trial`; its limit goes from `before` to `after`.
 
     Along one direction the force returns to its limit, and the heat is the mean of the limit while it slips
-    times the slip: exact for a stiffness that stays. In a plane see `slide_in_plane`.
+    times the slip: exact for a stiffness that stays. In a plane it turns towards the shift while it slips,
+    tan(angle/2) between both falling as exp(-K way/limit) under constant load (Krieg and Krieg 1977): met to
+    the third order of the way, with its heat, and exactly where nothing turns.
 
     compliance : 1/stiffness, 0 without springs
     """
     tried = trial(force, keeps, carries, shift)
-    if len(tried) > 1:
-        e_x, e_y, way = direction(shift)
-        return slide_in_plane(force, tried, [e_x, e_y], carries * way, before, after, stiffness, compliance)
-    moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
-    return Slid(moved, tangent, mean * (slip * compliance), slip)
-
-
-def slide_in_plane(
-    force: Vector,
-    tried: Vector,
-    unit: Vector,
-    carried: Number,
-    before: Number,
-    after: Number,
-    stiffness: Number,
-    compliance: Number,
-) -> Slid:
-    """A slider after a straight path in a plane, from its force and the trial force.
-
-    The force turns towards the shift while it slips, tan(angle/2) between both falling as exp(-K way/limit)
-    under constant load (Krieg and Krieg 1977): met to the third order of the way, with its heat, and exactly
-    where nothing turns.
-
-    unit, carried : direction of the shift, its size times what it adds
-    """
-    moved, tangent, slip, mean = _in_a_plane(force, tried, unit, carried, (before, after), stiffness)
+    if len(tried) == 1:
+        moved, tangent, slip, mean = _along(force, tried, before, after, stiffness)
+    else:
+        moved, tangent, slip, mean = _in_a_plane(force, tried, shift, carries, (before, after), stiffness)
     return Slid(moved, tangent, mean * (slip * compliance), slip)
 
 
@@ -123,14 +103,8 @@ def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffnes
     return [moved], [where(slips, 0.0, stiffness), stiffness], slip, mean
 
 
-def direction(shift: Vector) -> Vector:
-    """Unit vector of a shift in a plane, and its size."""
-    way = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
-    return [shift[0] / way, shift[1] / way, way]
-
-
 def _in_a_plane(
-    force: Vector, tried: Vector, unit: Vector, carried: Number, limits: Vector, stiffness: Number
+    force: Vector, tried: Vector, shift: Vector, carries: Number, limits: Vector, stiffness: Number
 ) -> _Returned:
     """The trial force, and half of K way times slip over limit more along the shift, returns to the centre.
 
@@ -139,7 +113,9 @@ def _in_a_plane(
     not jump to the other side. The slip is |trial| - limit, and limit g^2 (sin^2 before - sin^2 after)/12 by
     Hermite's rule, of the angle between force and shift.
     """
-    (before, limit), (e_x, e_y) = limits, unit
+    before, limit = limits
+    way = np.sqrt(np.maximum(shift[0] * shift[0] + shift[1] * shift[1], NOTHING))
+    e_x, e_y = shift[0] / way, shift[1] / way
     square, squared = tried[0] * tried[0] + tried[1] * tried[1], limit * limit
     largest = np.maximum(np.maximum(squared, square), NOTHING)
     size = np.sqrt(largest)
@@ -148,11 +124,13 @@ def _in_a_plane(
     sum_ = margin + out * size
     inverse = 1.0 / np.maximum(limit * sum_, NOTHING)
     per_limit, share = np.minimum(inverse * sum_, LARGEST), inverse * (limit * (out * size))
-    left = share * carried
+    left = share * (carries * way)
     held = np.minimum(np.maximum(before * before, squared), largest)
     lost = held - squared  # by a limit that shrinks, from where it slips on
-    turns, shrinks = 0.25 * (largest - held) - TWELFTH * (left * left), squared * squared + lost * lost / 16.0
-    more_by = (0.25 * lost * squared * held + turns * shrinks) / np.maximum(shrinks * held, NOTHING)
+    shrinks = squared * squared + lost * lost / 16.0
+    per_shrinks = 1.0 / np.maximum(shrinks * held, NOTHING)
+    turns = 0.25 * (lost * squared * held + (largest - held) * shrinks) * per_shrinks
+    more_by = turns - TWELFTH * shrinks * per_shrinks * (left * left)
     more = where(slips, left * more_by, 0.0)
     ahead = [q + more * e for q, e in zip(tried, (e_x, e_y), strict=True)]
     size2 = np.maximum(ahead[0] * ahead[0] + ahead[1] * ahead[1], NOTHING)

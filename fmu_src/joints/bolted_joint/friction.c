@@ -159,14 +159,6 @@ static inline void entered(const Foundation *f, int i, const Point *p, double *x
     x[X_BEND] = p->y[2];
 }
 
-/* Of a slider whose springs all touch, one number wherever it is asked for; where they have just come to touch
- * round-off would leave less than nothing. */
-static inline double limit_at(double limit, double K, double to)
-{
-    const double grown = limit + K * to;
-    return grown > 0.0 ? grown : 0.0;
-}
-
 /* Those of a range at a point, see `Foundation.carried`. */
 static inline Pair pair_at(const Foundation *f, int i, const Point *p)
 {
@@ -219,25 +211,13 @@ static void add(const SliderSum *sum, Shear *shear)
     shear->loss += sum->loss;
 }
 
-enum { ONE_FORCE, ONE_TANGENT = 3, ONE_LOSS = 9, N_ONE };
-
-/* What one slider gives by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
-static inline void of_one(const double *slid, double e_x, double e_y, double *one)
+/* One slider by its force, tangent xx, xy, yy and heat, with the way around the centre of its patch. */
+static inline void add_one(const double *slid, double e_x, double e_y, Shear *shear)
 {
     const double x = slid[0], y = slid[1], xx = slid[2], xy = slid[3], yy = slid[4];
     const double x_t = xx * e_x + xy * e_y, y_t = xy * e_x + yy * e_y;
-    const double all[N_ONE] = {x, y, x * e_x + y * e_y, xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y, slid[5]};
-    memcpy(one, all, sizeof all);
-}
-
-static inline void add_one(const double *slid, double e_x, double e_y, Shear *shear)
-{
-    double one[N_ONE];
-    of_one(slid, e_x, e_y, one);
-    SliderSum sum = {.loss = one[ONE_LOSS]};
-    memcpy(sum.force, one + ONE_FORCE, sizeof sum.force);
-    memcpy(sum.tangent, one + ONE_TANGENT, sizeof sum.tangent);
-    add(&sum, shear);
+    const SliderSum one = {{x, y, x * e_x + y * e_y}, {xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y}, slid[SLID_LOSS]};
+    add(&one, shear);
 }
 
 /* Sliders of all patches that may slip */
@@ -246,72 +226,76 @@ static inline void add_one(const double *slid, double e_x, double e_y, Shear *sh
 enum { C_ACROSS, C_FORCE, C_MOVED = 3, C_SHIFT = 5, C_FIRST = 7, C_LAST, C_SLIP, C_MIDDLE, N_CHANGING = 12 };
 
 /* Heat of a slider of a range that changes. */
-static inline double changing(const Run *run, int k, const double (*found)[ABREAST])
+static inline double changing(const Run *run, int k, const Abreast *all)
 {
     const int at = run->at + k;
     double x[N_CHANGING] = {run->across}, loss;
     for (int d = 0; d < 2; d++) {
-        x[C_FORCE + d] = run->force[d][k];
-        x[C_MOVED + d] = found[SLID_FORCE + d][at];
-        x[C_SHIFT + d] = run->shift[d] + run->shift[2] * run->turning[d][k];
-        x[C_MIDDLE + d] = run->across ? found[SLID_FORCE + d][at + 2] : 0.0;
+        x[C_FORCE + d] = all->force[d][at];
+        x[C_MOVED + d] = all->slid[SLID_FORCE + d][at];
+        x[C_SHIFT + d] = all->shift[d][at];
+        x[C_MIDDLE + d] = run->across ? all->slid[SLID_FORCE + d][at + 2] : 0.0;
     }
-    x[C_FIRST] = run->K[0];
-    x[C_LAST] = run->K[1];
-    x[C_SLIP] = found[SLID_SLIP][at];
+    x[C_FIRST] = run->K;
+    x[C_LAST] = all->K[at];
+    x[C_SLIP] = all->slid[SLID_SLIP][at];
     changing_loss(x, NULL, &loss);
     return loss;
 }
 
-/* Of forces alone. */
-static inline void end_forces(const Run *run, const double (*found)[ABREAST])
+static inline void end_run(const Run *run, const Abreast *all)
 {
-    double sum[3][2] = {{0.0}};
-    for (int k = 0; k < run->n; k += 2)
-        for (int l = 0; l < 2; l++) {
-            const double x = found[SLID_FORCE][run->at + k + l], y = found[SLID_FORCE + 1][run->at + k + l];
-            sum[0][l] += x;
-            sum[1][l] += y;
-            sum[2][l] += x * run->turning[0][k + l] + y * run->turning[1][k + l];
-        }
-    for (int d = 0; d < 3; d++)
-        run->shear->traction[d] += sum[d][0] + sum[d][1];
+    for (int k = 0; k < 2; k++) {
+        double slid[N_SLID];
+        for (int r = 0; r < N_SLID; r++)
+            slid[r] = all->slid[r][run->at + k];
+        if (run->changes)
+            slid[SLID_LOSS] = changing(run, k, all);
+        add_one(slid, run->turning[0][k], run->turning[1][k], run->shear);
+        for (int d = 0; d < 2; d++)
+            run->moved[d][k] = slid[d];
+    }
 }
 
-static inline void end_run(const Run *run, double (*found)[ABREAST])
+/* Add an even number of forces alone. */
+static inline void add_forces(int n, const double *x, const double *y, const double *e_x, const double *e_y, Shear *shear)
 {
-    double sum[N_ONE][2] = {{0.0}};
-    if (run->changes)
-        for (int k = 0; k < 2; k++)
-            found[SLID_LOSS][run->at + k] = changing(run, k, (const double(*)[ABREAST])found);
-    for (int k = 0; k < run->n; k += 2)
+    double sum[3][2] = {{0.0}};
+    for (int k = 0; k < n; k += 2)
         for (int l = 0; l < 2; l++) {
-            double slid[N_SLID - 1], one[N_ONE];
-            for (int r = 0; r < N_SLID - 1; r++)
-                slid[r] = found[r][run->at + k + l];
-            of_one(slid, run->turning[0][k + l], run->turning[1][k + l], one);
-            for (int r = 0; r < N_ONE; r++)
-                sum[r][l] += one[r];
-            run->moved[0][k + l] = slid[0];
-            run->moved[1][k + l] = slid[1];
+            sum[0][l] += x[k + l];
+            sum[1][l] += y[k + l];
+            sum[2][l] += x[k + l] * e_x[k + l] + y[k + l] * e_y[k + l];
         }
-    Shear *shear = run->shear;
     for (int d = 0; d < 3; d++)
-        shear->traction[d] += sum[ONE_FORCE + d][0] + sum[ONE_FORCE + d][1];
-    for (int d = 0; d < 6; d++)
-        shear->tangent[d] += sum[ONE_TANGENT + d][0] + sum[ONE_TANGENT + d][1];
-    shear->loss += sum[ONE_LOSS][0] + sum[ONE_LOSS][1];
+        shear->traction[d] += sum[d][0] + sum[d][1];
 }
 
 /* All runs so far. */
 static void end_runs(Work *work)
 {
-    sliders_slide(&work->abreast, work->forces);
-    for (int i = 0; i < work->n && work->forces; i++)
-        end_forces(&work->runs[i], (const double(*)[ABREAST])work->abreast.found);
-    for (int i = 0; i < work->n && !work->forces; i++)
-        end_run(&work->runs[i], work->abreast.found);
-    work->n = work->abreast.n = 0;
+    Abreast *all = &work->abreast;
+    const PlaneSliders s = {.force = {all->force[0], all->force[1]},
+                            .turning = {all->shift[0], all->shift[1]},
+                            .shift = {0.0, 0.0, 1.0},
+                            .keeps = all->keeps,
+                            .carries = all->carries,
+                            .K = all->K,
+                            .per_K = all->per_K,
+                            .before = all->before,
+                            .after = all->after};
+    double *slid[N_SLID];
+    for (int r = 0; r < N_SLID; r++)
+        slid[r] = all->slid[r];
+    sliders_slide(all->fours, 0, (all->n + 3) / 4 * 4, &s, slid, work->forces); /* the last beside old ones */
+    for (int i = 0; i < work->n; i++) {
+        const Run *run = &work->runs[i];
+        if (!work->forces)
+            end_run(run, all);
+        else
+            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear);
+    }
+    work->n = all->n = 0;
 }
 
 void foundations_end(Work *work)
@@ -320,90 +304,96 @@ void foundations_end(Work *work)
     work->forces = false;
 }
 
-/* A run of up to so many sliders. */
+/* A run of up to so many sliders, from one on of its patch. */
 static Run *begin_run(Work *work, int most, int k, double *const moved[2], const double *const turning[2], Shear *shear)
 {
-    if (work->abreast.n + most > ABREAST || work->n == ABREAST / 2)
+    if (work->abreast.n + most > ABREAST)
         end_runs(work);
     Run *run = &work->runs[work->n++];
     *run = (Run){.at = work->abreast.n,
-                 .n = most,
                  .moved = {moved[0] + k, moved[1] + k},
                  .turning = {turning[0] + k, turning[1] + k},
                  .shear = shear};
     return run;
 }
 
-/* Shift of a slider on a path. */
-static inline double shift_of(const double *const turning[2], int k, const double shift[3], int d)
+/* The next pair. */
+static inline void add_pair(Abreast *all, const PlaneSliders *s, int first)
 {
-    return shift[d] + shift[2] * turning[d][k];
-}
-
-/* The next pair of sliders of a run, the part `part` of its path. */
-static inline void add_pair(Abreast *abreast, const double *x, const double *y, const double *tried_x,
-                            const double *tried_y, const double *const turning[2], int k, const double shift[3],
-                            double part, double carries, const double *before, const double *after, double K,
-                            double per_K)
-{
-    for (int l = 0; l < 2; l++) {
-        const double u = part * shift_of(turning, k + l, shift, 0), v = part * shift_of(turning, k + l, shift, 1);
-        const double given[N_SLIDER] = {x[l],    y[l],      tried_x[l], tried_y[l], u,    v,
-                                       carries, before[l], after[l],   K,          per_K};
-        for (int r = 0; r < N_SLIDER; r++)
-            abreast->given[r][abreast->n + l] = given[r];
+    for (int k = first; k < first + 2; k++, all->n++) {
+        for (int d = 0; d < 2; d++) {
+            all->force[d][all->n] = s->force[d][k];
+            all->shift[d][all->n] = shift_of(s->turning, k, s->shift, d);
+        }
+        all->keeps[all->n] = s->keeps[k];
+        all->carries[all->n] = s->carries[k];
+        all->K[all->n] = s->K[k];
+        all->per_K[all->n] = s->per_K[k];
+        all->before[all->n] = limit_at(s->before[k], s->K[k], s->from);
+        all->after[all->n] = limit_at(s->after[k], s->K[k], s->to);
     }
-    abreast->n += 2;
 }
 
-/* Sliders whose stiffness stays, up to the first at its limit, which is returned: `stick` is the sum of the stiffness
- * of those before each second one. */
-static int stick_steady(int n, const Sliders *s, const double *stick, const PatchPath *path, bool along,
-                        double *const moved[2], const Work *work, Shear *shear)
+/* Sliders whose stiffness stays: `stick` is the sum of the stiffness of those before each second one. */
+static void move_steady(int n, const PlaneSliders *s, const double *stick, bool along, double *const moved[2],
+                        Work *work, Shear *shear)
 {
+    const bool fours = work->abreast.fours;
     SliderSum sum = {.loss = 0.0};
-    const int first = along ? sliders_sticking(n, s, path->shift[0], moved[0], &sum)
-                            : sliders_stick(work->abreast.fours, n, s, path->shift, moved, sum.force);
+    const int first = along ? sliders_sticking(n, s, moved[0], &sum) : sliders_stick(fours, n, s, moved, sum.force);
+    const int end = first + (n - first) / 4 * 4;
     const double K = first > 0 ? stick[first / 2 - 1] : 0.0;
     sum.tangent[0] += K;
     sum.tangent[2] += K;
     sum.tangent[5] += K;
     add(&sum, shear);
-    return along ? n : first;
-}
-
-/* Those from there on. */
-static void slip_steady(int first, int n, const Sliders *s, const PatchPath *path, double *const moved[2], Work *work,
-                        Shear *shear)
-{
-    if (first == n)
+    if (along)
         return;
-    begin_run(work, n - first, first, moved, s->turning, shear);
-    for (int k = first; k < n; k += 2)
-        add_pair(&work->abreast, s->force[0] + k, s->force[1] + k, moved[0] + k, moved[1] + k, s->turning, k,
-                 path->shift, 1.0, s->K[k], s->before + k, s->after + k, s->K[k], s->per_K[k]);
+    if (end > first) {
+        double rows[N_SLID - 2][SLIDERS], *slid[N_SLID] = {moved[0], moved[1]};
+        for (int r = 2; r < N_SLID; r++)
+            slid[r] = rows[r - 2];
+        sliders_slide(fours, first, end, s, slid, work->forces);
+        if (!work->forces) {
+            sliders_sum(fours, first, end, s, slid, &sum);
+            add(&sum, shear);
+        } else {
+            add_forces(end - first, moved[0] + first, moved[1] + first, s->turning[0] + first, s->turning[1] + first,
+                       shear);
+        }
+    }
+    if (n > end) {
+        begin_run(work, 2, end, moved, s->turning, shear);
+        add_pair(&work->abreast, s, end);
+    }
 }
 
-WITHIN void grow_limits(int first, int n, const double *restrict limit, const double *restrict K, double to,
-                   double *restrict found)
+/* Parts kept of the force where the stiffness stays. */
+static const double all_kept[] = {
+    1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
+    1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+_Static_assert(sizeof all_kept == SLIDERS * sizeof *all_kept, "of each");
+
+/* Those from one on. */
+static inline PlaneSliders sliders_on(const Foundation *f, const PatchPath *path, int k)
 {
-    for (int k = first; k < n; k++)
-        found[k] = limit_at(limit[k], K[k], to);
+    return (PlaneSliders){.force = {path->force[0] + k, path->force[1] + k},
+                          .keeps = all_kept,
+                          .turning = {f->turning[0] + k, f->turning[1] + k},
+                          .shift = {path->shift[0], path->shift[1], path->shift[2]}};
 }
-COMPILED_TWICE(grow_limits, (int first, int n, const double *limit, const double *K, double to, double *found),
-               (first, n, limit, K, to, found))
 
 /* The first `n` sliders, of ranges all in contact. */
 static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
                       Work *work, Shear *shear)
 {
-    const double grown = f->mu / f->ratio, from = grown * path->from->approach, to = grown * path->to->approach;
-    const Sliders s = {f->K, f->per_K, work->before, work->after, {path->force[0], path->force[1]},
-                       {f->turning[0], f->turning[1]}};
-    (work->abreast.fours ? grow_limits_fours : grow_limits_any)(0, n, f->limit, f->K, to, work->after);
-    const int first = stick_steady(n, &s, f->stick, path, along, moved, work, shear);
-    grow_limits_any(first, n, f->limit, f->K, from, work->before);
-    slip_steady(first, n, &s, path, moved, work, shear);
+    PlaneSliders s = sliders_on(f, path, 0);
+    s.K = s.carries = f->K;
+    s.per_K = f->per_K;
+    s.before = s.after = f->limit;
+    s.from = f->mu / f->ratio * path->from->approach;
+    s.to = f->mu / f->ratio * path->to->approach;
+    move_steady(n, &s, f->stick, along, moved, work, shear);
 }
 
 /* The range in which springs begin to touch, while the load stays. */
@@ -412,10 +402,12 @@ static void move_resting(const Foundation *f, int i, const PatchPath *path, bool
 {
     const Pair here = pair_at(f, i, path->to);
     const double soft = here.K > 0.0 ? 1.0 / here.K : 0.0, K[2] = {here.K, here.K}, per_K[2] = {soft, soft};
-    const Sliders s = {K, per_K, here.limit, here.limit, {path->force[0] + 2 * i, path->force[1] + 2 * i},
-                       {f->turning[0] + 2 * i, f->turning[1] + 2 * i}};
     double *const to[2] = {moved[0] + 2 * i, moved[1] + 2 * i}, stick = 2.0 * here.K;
-    slip_steady(stick_steady(2, &s, &stick, path, along, to, work, shear), 2, &s, path, to, work, shear);
+    PlaneSliders s = sliders_on(f, path, 2 * i);
+    s.K = s.carries = K;
+    s.per_K = per_K;
+    s.before = s.after = here.limit;
+    move_steady(2, &s, &stick, along, to, work, shear);
 }
 
 /* Arguments of `carrying`. */
@@ -455,26 +447,25 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     const Pair ends[2] = {end, across ? pair_at(f, i, half) : end};
     const int n = across ? 2 : 1;
     double x[N_CARRYING], gained[2];
+    PlaneSliders s = sliders_on(f, path, 2 * i);
     Run *run = begin_run(work, 2 * n, 2 * i, moved, f->turning, shear);
-    run->n = 2;
-    for (int d = 0; d < 2; d++)
-        run->force[d] = path->force[d] + 2 * i;
-    memcpy(run->shift, path->shift, sizeof run->shift);
     run->across = across;
-    run->K[0] = start.K;
-    run->K[1] = ends[0].K;
-    run->changes = start.K != ends[0].K;
+    run->K = start.K;
+    run->changes = start.K != end.K;
     for (int at = 0; at < n; at++) {
-        const double K = ends[at].K, part = at > 0 ? 0.5 : 1.0;
         gain(f, i, path, &start, &ends[at], points[at], x);
         carrying(x, NULL, gained);
-        double tried[2][2];
-        for (int d = 0; d < 2; d++)
-            for (int l = 0; l < 2; l++)
-                tried[d][l] = gained[0] * run->force[d][l] +
-                              gained[1] * (part * shift_of(run->turning, l, path->shift, d));
-        add_pair(&work->abreast, run->force[0], run->force[1], tried[0], tried[1], run->turning, 0, path->shift, part,
-                 gained[1], start.limit, ends[at].limit, K, K > 0.0 ? 1.0 / K : 0.0);
+        const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
+        const double K[2] = {ends[at].K, ends[at].K}, soft = K[0] > 0.0 ? 1.0 / K[0] : 0.0, per_K[2] = {soft, soft};
+        s.K = K;
+        s.per_K = per_K;
+        s.keeps = keeps;
+        s.carries = carries;
+        s.before = start.limit;
+        s.after = ends[at].limit;
+        add_pair(&work->abreast, &s, 0);
+        for (int d = 0; d < 3; d++)
+            s.shift[d] *= 0.5;
     }
 }
 
@@ -601,12 +592,8 @@ static Slid slide_on(const Foundation *f, const PatchPath *path, const PathRate 
     const double x[] = {path->force[0][k], path->force[1][k], gained[0], gained[1], u, v, before, after, K, per_K,
                         gains[0], gains[1], du, dv,
                         least * start->rate.limit[late], least * end->rate.limit[late], end->rate.K, -end->rate.K * per_K * per_K};
-    const double trial[] = {x[0], x[1], x[2], x[3], u, v, after};
-    double tried[3];
     Slid slid;
-    stick_plane(trial, NULL, tried);
-    const double given[N_SLIDER] = {x[0], x[1], tried[0], tried[1], u, v, x[3], before, after, K, per_K};
-    slide_plane(given, NULL, slid.at);
+    slide_plane(x, NULL, slid.at);
     slide_plane_seed(x, NULL, slid.rate);
     return slid;
 }

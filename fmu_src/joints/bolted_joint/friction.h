@@ -54,24 +54,32 @@ typedef struct {
     double traction[3], tangent[6], loss; /* the tangent of a further motion */
 } Shear;
 
-/* Sliders of a patch that stand abreast: from the first at its limit on of ranges in contact, or both of a range; of
- * one that changes with its stiffness before and after, and beside them the same half way where it is `across`. */
+/* Two sliders of a range that stand abreast of others; of one that changes with its stiffness before, and beside them
+ * the same half way where it is `across`. */
 typedef struct {
-    int at, n;
+    int at;
     bool changes, across;
-    double K[2], shift[3];
-    const double *force[2], *turning[2];
+    double K;
+    const double *turning[2];
     double *moved[2];
     Shear *shear;
 } Run;
 
-/* Sliders that may slip, of all patches, and the limits of those of a patch. */
+/* Sliders of all patches side by side, with their shifts. */
+enum { ABREAST = 64 };
+typedef struct {
+    bool fours; /* the processor has vectors_of_four */
+    int n;
+    double force[2][ABREAST], shift[2][ABREAST], keeps[ABREAST], carries[ABREAST], K[ABREAST], per_K[ABREAST];
+    double before[ABREAST], after[ABREAST], slid[N_SLID][ABREAST];
+} Abreast;
+
+/* Pairs that may slip, of all patches. */
 typedef struct {
     Abreast abreast;
     bool forces; /* alone, up to the next end */
     int n;
     Run runs[ABREAST / 2];
-    double before[SLIDERS], after[SLIDERS];
 } Work;
 
 /* Lay the heights around an approach; curve, energy, mu, ratio, turning and offset are given. */

@@ -28,7 +28,7 @@ _Static_assert(SLIDERS % 4 == 0, "as sliders_line needs them");
 
 static Sliders sliders_of(const Hysteresis *h, const double *memory)
 {
-    return (Sliders){h->K, h->per_K, h->limit, h->limit, {memory + AT_FORCE, NULL}, {NULL, NULL}};
+    return (Sliders){h->K, h->per_K, h->limit, h->limit, memory + AT_FORCE};
 }
 
 SliderSum hysteresis_at(const Hysteresis *hysteresis, const double *memory, double phi, double *after)
@@ -166,7 +166,7 @@ SliderSum friction_at(const Friction *friction, const double *memory, Turn turn,
     const double shift = way(memory, turn);
     limits_at(friction, memory, shift, memory + AT_LIMIT, start);
     limits_at(friction, memory, shift, turn.limit, end);
-    const Sliders s = {friction->K, friction->per_K, start, end, {memory + AT_BRAKE, NULL}, {NULL, NULL}};
+    const Sliders s = {friction->K, friction->per_K, start, end, memory + AT_BRAKE};
     SliderSum sum;
     sliders_line(BRAKES, &s, shift, after + AT_BRAKE, &sum);
     after[AT_ANGLE] = turn.angle;
@@ -186,7 +186,7 @@ SliderSum friction_rate(const Friction *friction, const double *memory, Turn tur
     limits_at(friction, memory, shift, memory + AT_LIMIT, start);
     limits_at(friction, memory, shift, turn.limit, end);
     limits_at(friction, memory, shift, rate.limit, rises);
-    const Sliders s = {friction->K, friction->per_K, start, end, {memory + AT_BRAKE, NULL}, {NULL, NULL}};
+    const Sliders s = {friction->K, friction->per_K, start, end, memory + AT_BRAKE};
     SliderSum sum;
     sliders_line_rate(BRAKES, &s, shift, begun ? rate.angle : TURNED * rate.speed, rises, &sum);
     if (!begun)

@@ -8,7 +8,8 @@
 enum { LANES = 4 };
 
 typedef struct {
-    double x[LANES], t[LANES], xx[LANES], yy[LANES], xt[LANES], yt[LANES], tt[LANES], loss[LANES];
+    double x[LANES], y[LANES], t[LANES];
+    double xx[LANES], xy[LANES], yy[LANES], xt[LANES], yt[LANES], tt[LANES], loss[LANES];
 } Lanes;
 
 static inline double sum_of(const double *lane)
@@ -19,8 +20,8 @@ static inline double sum_of(const double *lane)
 static inline SliderSum total(const Lanes *s)
 {
     return (SliderSum){
-        .force = {sum_of(s->x), 0.0, sum_of(s->t)},
-        .tangent = {sum_of(s->xx), 0.0, sum_of(s->yy), sum_of(s->xt), sum_of(s->yt), sum_of(s->tt)},
+        .force = {sum_of(s->x), sum_of(s->y), sum_of(s->t)},
+        .tangent = {sum_of(s->xx), sum_of(s->xy), sum_of(s->yy), sum_of(s->xt), sum_of(s->yt), sum_of(s->tt)},
         .loss = sum_of(s->loss)};
 }
 
@@ -39,13 +40,13 @@ enum { L_FORCE, L_ALONG, L_ACROSS, L_LOSS, L_HEAT, N_LINE }; /* results of slide
 
 static inline void one_steady(const Sliders *s, int k, double shift, double *y)
 {
-    const double x[] = {s->force[0][k], s->after[k], s->K[k], s->per_K[k], shift};
+    const double x[] = {s->force[k], s->after[k], s->K[k], s->per_K[k], shift};
     slide_steady(x, NULL, y);
 }
 
 static inline void one_line(const Sliders *s, int k, double shift, double *y)
 {
-    const double x[] = {s->force[0][k], s->before[k], s->K[k], s->per_K[k], shift, s->after[k]};
+    const double x[] = {s->force[k], s->before[k], s->K[k], s->per_K[k], shift, s->after[k]};
     slide_line(x, NULL, y);
 }
 
@@ -103,17 +104,35 @@ double sliders_heat(int n, const Sliders *s, double shift)
     return sum_of(heat);
 }
 
+void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
+                       SliderSum *rate)
+{
+    Lanes lanes = {.x = {0.0}};
+    for (int i = 0; i < n; i += LANES)
+        for (int l = 0; l < LANES; l++) {
+            const int k = i + l;
+            const double x[] = {s->force[k], s->before[k], s->K[k],    s->per_K[k],
+                                shift,          s->after[k],  shift_rate, after_rate[k]};
+            double y[N_LINE];
+            slide_line_seed(x, NULL, y);
+            lanes.x[l] += y[L_FORCE];
+            lanes.loss[l] += y[L_LOSS];
+        }
+    *rate = total(&lanes);
+}
+
+/* In a plane */
+
 /* What sliders from the first at its limit on give. */
 typedef struct {
     double reaches[MOST_SLIDERS], loss[MOST_SLIDERS];
 } Each;
 
-static inline void stick_all(int n, const double *restrict K, const double *restrict limit,
-                             const double *restrict force, double shift, double *restrict moved,
-                             double *restrict reaches)
+static inline void stick_all(int n, const PlaneSliders *s, double *restrict moved, double *restrict reaches)
 {
+    const PlaneSliders own = *s;
     for (int k = 0; k < n; k++) {
-        const double x[] = {force[k], shift, limit[k], K[k]};
+        const double x[] = {own.force[0][k], own.shift[0], limit_at(own.after[k], own.K[k], own.to), own.K[k]};
         double y[2];
         stick_line(x, NULL, y);
         moved[k] = y[0];
@@ -121,12 +140,12 @@ static inline void stick_all(int n, const double *restrict K, const double *rest
     }
 }
 
-static inline void slide_all(int first, int n, const double *restrict K, const double *restrict per_K,
-                             const double *restrict limit, const double *restrict force, double shift,
-                             double *restrict moved, Each *restrict each)
+static inline void slide_all(int first, int n, const PlaneSliders *s, double *restrict moved, Each *restrict each)
 {
+    const PlaneSliders own = *s;
     for (int k = first; k < n; k++) {
-        const double x[] = {force[k], limit[k], K[k], per_K[k], shift};
+        const double limit = limit_at(own.after[k], own.K[k], own.to);
+        const double x[] = {own.force[0][k], limit, own.K[k], own.per_K[k], own.shift[0]};
         double y[N_LINE];
         slide_steady(x, NULL, y);
         moved[k] = y[L_FORCE];
@@ -134,13 +153,13 @@ static inline void slide_all(int first, int n, const double *restrict K, const d
     }
 }
 
-int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum)
+int sliders_sticking(int n, const PlaneSliders *s, double *moved, SliderSum *sum)
 {
     Each each;
     Lanes lanes = {.x = {0.0}};
-    stick_all(n, s->K, s->after, s->force[0], shift, moved, each.reaches);
+    stick_all(n, s, moved, each.reaches);
     const int first = first_at_limit(each.reaches, n);
-    slide_all(first, n, s->K, s->per_K, s->after, s->force[0], shift, moved, &each);
+    slide_all(first, n, s, moved, &each);
     for (int k = 0; k < n; k += 2)
         for (int l = 0; l < 2; l++) {
             lanes.x[l] += moved[k + l];
@@ -161,32 +180,23 @@ int sliders_sticking(int n, const Sliders *s, double shift, double *moved, Slide
     return first;
 }
 
-void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
-                       SliderSum *rate)
-{
-    Lanes lanes = {.x = {0.0}};
-    for (int i = 0; i < n; i += LANES)
-        for (int l = 0; l < LANES; l++) {
-            const int k = i + l;
-            const double x[] = {s->force[0][k], s->before[k], s->K[k],    s->per_K[k],
-                                shift,          s->after[k],  shift_rate, after_rate[k]};
-            double y[N_LINE];
-            slide_line_seed(x, NULL, y);
-            lanes.x[l] += y[L_FORCE];
-            lanes.loss[l] += y[L_LOSS];
-        }
-    *rate = total(&lanes);
-}
+/* Four at a time, two pairs, as operations that follow one another take long; no row overlaps another. */
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers do not let it */
+#define ALL_FOUR _Pragma("clang loop vectorize(assume_safety) vectorize_width(4)")
+#else
+#define ALL_FOUR
+#endif
 
-/* In a plane */
-
-WITHIN void stick_each(int n, const double *restrict K, const double *restrict limit, const double *restrict q_x,
-                       const double *restrict q_y, const double *restrict e_x, const double *restrict e_y,
-                       const double *restrict shift, double *restrict x, double *restrict y, double *restrict reaches)
+WITHIN void stick_each(int n, const PlaneSliders *s, double *const moved[2], double *reaches)
 {
-    const double u = shift[0], v = shift[1], w = shift[2];
+    const PlaneSliders own = *s;
+    double *const x = moved[0], *const y = moved[1];
+    ALL_FOUR
     for (int k = 0; k < n; k++) {
-        const double a[] = {q_x[k], q_y[k], 1.0, K[k], u + w * e_x[k], v + w * e_y[k], limit[k]};
+        const double u = shift_of(own.turning, k, own.shift, 0), v = shift_of(own.turning, k, own.shift, 1);
+        const double a[] = {own.force[0][k], own.force[1][k], own.keeps[k], own.carries[k], u, v,
+                            limit_at(own.after[k], own.K[k], own.to)};
         double b[3];
         stick_plane(a, NULL, b);
         x[k] = b[0];
@@ -194,17 +204,14 @@ WITHIN void stick_each(int n, const double *restrict K, const double *restrict l
         reaches[k] = b[2];
     }
 }
-COMPILED_TWICE(stick_each,
-               (int n, const double *K, const double *limit, const double *q_x, const double *q_y, const double *e_x,
-                const double *e_y, const double *shift, double *x, double *y, double *reaches),
-               (n, K, limit, q_x, q_y, e_x, e_y, shift, x, y, reaches))
+COMPILED_TWICE(stick_each, (int n, const PlaneSliders *s, double *const moved[2], double *reaches),
+               (n, s, moved, reaches))
 
-int sliders_stick(bool fours, int n, const Sliders *s, const double shift[3], double *const moved[2], double force[3])
+int sliders_stick(bool fours, int n, const PlaneSliders *s, double *const moved[2], double force[3])
 {
     double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0}, t[2] = {0.0};
     const double *e_x = s->turning[0], *e_y = s->turning[1];
-    (fours ? stick_each_fours : stick_each_any)(n, s->K, s->after, s->force[0], s->force[1], e_x, e_y, shift, moved[0],
-                                                moved[1], reaches);
+    (fours ? stick_each_fours : stick_each_any)(n, s, moved, reaches);
     const int first = first_at_limit(reaches, n);
     for (int k = 0; k < first; k += 2)
         for (int l = 0; l < 2; l++) {
@@ -218,59 +225,94 @@ int sliders_stick(bool fours, int n, const Sliders *s, const double shift[3], do
     return first;
 }
 
-/* Four at a time, two pairs, as operations that follow one another take long. */
-#ifdef __clang__
-#pragma clang diagnostic ignored "-Wpass-failed" /* sanitizers do not let it */
-#define ALL_FOUR _Pragma("clang loop vectorize_width(4)")
-#else
-#define ALL_FOUR
-#endif
+enum { N_SLIDER = 10 };
 
-WITHIN void slide_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+/* Arguments of `slide_plane` and `return_plane`. */
+static inline void arguments(const PlaneSliders *s, int k, double *x)
 {
-    for (int i = 0; i < n; i += LANES) {
+    const double K = s->K[k];
+    const double all[N_SLIDER] = {s->force[0][k], s->force[1][k], s->keeps[k], s->carries[k],
+                                  shift_of(s->turning, k, s->shift, 0), shift_of(s->turning, k, s->shift, 1),
+                                  limit_at(s->before[k], K, s->from), limit_at(s->after[k], K, s->to), K, s->per_K[k]};
+    memcpy(x, all, sizeof all);
+}
+
+WITHIN void slide_each(int first, int end, const PlaneSliders *s, double *const *slid)
+{
+    const PlaneSliders own = *s;
+    double *const all[N_SLID] = {slid[0], slid[1], slid[2], slid[3], slid[4], slid[5], slid[6]};
+    for (int i = first; i < end; i += LANES) {
         ALL_FOUR
         for (int k = i; k < i + LANES; k++) {
             double x[N_SLIDER], y[N_SLID];
-            for (int r = 0; r < N_SLIDER; r++)
-                x[r] = given[r][k];
+            arguments(&own, k, x);
             slide_plane(x, NULL, y);
             for (int r = 0; r < N_SLID; r++)
-                found[r][k] = y[r];
+                all[r][k] = y[r];
         }
     }
 }
 
-WITHIN void return_each(int n, const double (*restrict given)[ABREAST], double (*restrict found)[ABREAST])
+WITHIN void return_each(int first, int end, const PlaneSliders *s, double *const *slid)
 {
-    for (int i = 0; i < n; i += LANES) {
+    const PlaneSliders own = *s;
+    double *const all[2] = {slid[0], slid[1]};
+    for (int i = first; i < end; i += LANES) {
         ALL_FOUR
         for (int k = i; k < i + LANES; k++) {
             double x[N_SLIDER], y[2];
-            for (int r = 0; r < N_SLIDER; r++)
-                x[r] = given[r][k];
+            arguments(&own, k, x);
             return_plane(x, NULL, y);
             for (int r = 0; r < 2; r++)
-                found[r][k] = y[r];
+                all[r][k] = y[r];
         }
     }
 }
 
-WITHIN void slide_or_return(int n, Abreast *abreast, bool forces)
+WITHIN void slide_or_return(int first, int end, const PlaneSliders *s, double *const *slid, bool forces)
 {
-    const double(*given)[ABREAST] = (const double(*)[ABREAST])abreast->given;
     if (forces)
-        return_each(n, given, abreast->found);
+        return_each(first, end, s, slid);
     else
-        slide_each(n, given, abreast->found);
+        slide_each(first, end, s, slid);
 }
-COMPILED_TWICE(slide_or_return, (int n, Abreast *abreast, bool forces), (n, abreast, forces))
+COMPILED_TWICE(slide_or_return, (int first, int end, const PlaneSliders *s, double *const *slid, bool forces),
+               (first, end, s, slid, forces))
 
-void sliders_slide(Abreast *abreast, bool forces)
+void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], bool forces)
 {
-    int n = abreast->n;
-    for (; n % LANES != 0; n++) /* none has hardly any limit */
-        for (int r = 0; r < N_SLIDER; r++)
-            abreast->given[r][n] = 0.0;
-    (abreast->fours ? slide_or_return_fours : slide_or_return_any)(n, abreast, forces);
+    (fours ? slide_or_return_fours : slide_or_return_any)(first, end, s, slid, forces);
+}
+
+WITHIN void sum_each(int first, int end, const PlaneSliders *s, double *const *slid, Lanes *restrict lanes)
+{
+    const double *const all[] = {slid[0], slid[1], slid[2], slid[3], slid[4], slid[5]};
+    const double *const e_x = s->turning[0], *const e_y = s->turning[1];
+    for (int i = first; i < end; i += LANES) {
+        ALL_FOUR
+        for (int l = 0; l < LANES; l++) {
+            const int k = i + l;
+            const double x = all[0][k], y = all[1][k], xx = all[2][k], xy = all[3][k], yy = all[4][k];
+            const double x_t = xx * e_x[k] + xy * e_y[k], y_t = xy * e_x[k] + yy * e_y[k];
+            lanes->x[l] += x;
+            lanes->y[l] += y;
+            lanes->t[l] += x * e_x[k] + y * e_y[k];
+            lanes->xx[l] += xx;
+            lanes->xy[l] += xy;
+            lanes->yy[l] += yy;
+            lanes->xt[l] += x_t;
+            lanes->yt[l] += y_t;
+            lanes->tt[l] += x_t * e_x[k] + y_t * e_y[k];
+            lanes->loss[l] += all[SLID_LOSS][k];
+        }
+    }
+}
+COMPILED_TWICE(sum_each, (int first, int end, const PlaneSliders *s, double *const *slid, Lanes *lanes),
+               (first, end, s, slid, lanes))
+
+void sliders_sum(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], SliderSum *sum)
+{
+    Lanes lanes = {.x = {0.0}};
+    (fours ? sum_each_fours : sum_each_any)(first, end, s, slid, &lanes);
+    *sum = total(&lanes);
 }

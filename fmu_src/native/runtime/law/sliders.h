@@ -9,12 +9,32 @@
 
 enum { MOST_SLIDERS = 48 }; /* of one call; an even number each */
 
-/* Sliders before a straight path: springs K and 1/K (0 without), limits at both ends of it, forces. */
+/* Sliders before a straight path along one direction: springs K and 1/K (0 without), limits at both ends of it,
+ * forces. */
 typedef struct {
-    const double *K, *per_K, *before, *after;
-    const double *force[2];   /* in a plane; along one direction the first */
-    const double *turning[2]; /* in a plane: shifts in a turn about the centre, over its way */
+    const double *K, *per_K, *before, *after, *force;
 } Sliders;
+
+/* The same in a plane, by a shift along x, y and around the centre. Each limit is what stands there and K `from`, or
+ * `to`, but not below 0; a force keeps a part and gains `carries` times the slider's shift, which is as far around the
+ * centre as `turning` says. */
+typedef struct {
+    const double *force[2], *turning[2], *keeps, *carries, *K, *per_K, *before, *after;
+    double from, to, shift[3];
+} PlaneSliders;
+
+/* Shift of a slider along x or y, or its rate. */
+static inline double shift_of(const double *const turning[2], int k, const double shift[3], int d)
+{
+    return shift[d] + shift[2] * turning[d][k];
+}
+
+/* Where springs have just come to touch round-off would leave less than nothing. */
+static inline double limit_at(double limit, double K, double grown)
+{
+    const double at = limit + K * grown;
+    return at > 0.0 ? at : 0.0;
+}
 
 /* What they give together: forces along x, y and around the centre, tangents xx, xy, yy, xt, yt, tt of a further
  * motion, t around the centre; heat. Along one direction the tangents are along and, as yy, across it. */
@@ -24,9 +44,6 @@ typedef struct {
 
 /* Along one direction, a multiple of four sliders; `before` and `after` are one array where the limits stay. */
 void sliders_line(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
-/* The same in a plane with limits that stay, with nothing along y and around the centre and where most stick: the
- * tangents are those from a slider on that is returned. */
-int sliders_sticking(int n, const Sliders *s, double shift, double *moved, SliderSum *sum);
 /* Force along one direction with limits that stay, and its tangent; a multiple of four sliders. */
 double sliders_force(int n, const Sliders *s, double shift, double *tangent);
 /* Derivative of the heat along one direction with limits that stay; a multiple of four sliders. */
@@ -35,22 +52,19 @@ double sliders_heat(int n, const Sliders *s, double shift);
 void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate, const double *after_rate,
                        SliderSum *rate);
 
-/* In a plane, by a shift along x, y and around the centre: the forces of those that stick, up to the first at its
- * limit, which is returned, and their sum; beyond it those that they would have; on a processor with
- * vectors_of_four or any other. */
-int sliders_stick(bool fours, int n, const Sliders *s, const double shift[3], double *const moved[2],
-                  double force[3]);
+/* In a plane, a shift along x alone with limits that stay, where most stick: the tangents are those from a slider on
+ * that is returned. */
+int sliders_sticking(int n, const PlaneSliders *s, double *moved, SliderSum *sum);
+/* In a plane: the forces of those that stick, up to the first at its limit, which is returned, and their sum; beyond it
+ * those that they would have; on a processor with vectors_of_four or any other. */
+int sliders_stick(bool fours, int n, const PlaneSliders *s, double *const moved[2], double force[3]);
 
-/* Sliders that may slip, side by side whosever they are: arguments and results of `slide_plane`. */
-enum { ABREAST = 64, N_SLIDER = 11, SLID_FORCE = 0, SLID_TANGENT = 2, SLID_LOSS = 5, SLID_SLIP, N_SLID };
-_Static_assert((int)ABREAST >= (int)MOST_SLIDERS, "those of one call");
-typedef struct {
-    bool fours; /* the processor has vectors_of_four */
-    int n;
-    double given[N_SLIDER][ABREAST], found[N_SLID][ABREAST];
-} Abreast;
+/* Results of sliders that may slip, one row each: forces, tangents xx, xy, yy of a further motion, heat, slip. */
+enum { SLID_FORCE, SLID_LOSS = 5, SLID_SLIP, N_SLID };
 
-/* Fills what is found; of forces alone the others stay as they are. */
-void sliders_slide(Abreast *abreast, bool forces);
+/* Sliders from `first` to `end` that may slip, a multiple of four; of forces alone the other rows stay as they are. */
+void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], bool forces);
+/* What they give together. */
+void sliders_sum(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], SliderSum *sum);
 
 #endif
