@@ -24,8 +24,8 @@ STEPS, LITTLE = 8, 1e-2
 FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 1e-3, 0.2, 5.0, 1e6
 """Damping over the diagonal of the equations [1], its factors after a step that is better and one that is
 not, and where it ends."""
-NEWTON = 4
-"""Of Newton's method for what is held [1]."""
+HELD, EXACT = 40, 1e-6
+"""Most steps to what is held [1], and what may be missed of it [1]."""
 TINY = 1e-15
 """Shift [m] that counts as one, and other least numbers."""
 LEAST = 0.03
@@ -174,13 +174,25 @@ class PatchWork:
         motions and modes while nothing slips: the tightened joint stays as stiff as its finite elements."""
         typical, size = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), TINY), _size(aim)
         weight = np.broadcast_to(typical, rows.shape).ravel()
-        for _ in range(NEWTON):
-            every, at = self.moved(linear, rows)
-            missed = ((work(at, self.places.area, every).stuck - aim) / size).ravel()
+
+        def missing(there: Array) -> tuple[Array, Array, Friction]:
+            every, at = self.moved(linear, there)
+            return ((work(at, self.places.area, every).stuck - aim) / size).ravel(), every, at
+
+        damping, (missed, every, at) = FIRST_DAMPING, missing(rows)
+        for _ in range(HELD):
+            if np.max(np.abs(missed)) < EXACT or damping > MOST_DAMPING:
+                break
             slope = _of_patches(_by_rows(self.places.area * at.stick, at, every, linear.amplitude), rows)
-            slope = (slope / size.reshape((*size.shape, 1, 1, 1))).reshape(missed.size, -1)
-            step = weight * np.linalg.lstsq(slope * weight, -missed, rcond=1e-8)[0]
-            rows = rows + step.reshape(rows.shape)
+            slope = weight * (slope / size.reshape((*size.shape, 1, 1, 1))).reshape(missed.size, -1)
+            square = slope @ slope.T
+            square += damping * np.mean(np.diag(square)) * np.eye(missed.size)
+            step = weight * (slope.T @ np.linalg.solve(square, -missed))
+            trial = missing(rows + step.reshape(rows.shape))
+            better = trial[0] @ trial[0] < missed @ missed
+            if better:
+                rows, (missed, every, at) = rows + step.reshape(rows.shape), trial
+            damping *= LESS if better else MORE
         return rows
 
     def _missed(self, rows: Array, change: Array) -> Array:
