@@ -5,7 +5,6 @@ import json
 import shlex
 import shutil
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,15 +15,13 @@ from jointfmu_fmu_src.native.compiled.cache import CACHE
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_tools import cli
 from jointfmu_tools.command_line.examples import EXAMPLES
-from jointfmu_tools.fem.whole_joint import WholeJoint
-from jointfmu_tools.joints.bolted_joint.new import computed as new_computed
 from jointfmu_tools.parser import parser
 from test_readme import commands
 
 from jointfmu.contact.laws import LAWS
 from jointfmu.joints import KINDS, MODELS
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
-from jointfmu.parameters import ParameterFile, default
+from jointfmu.parameters import default
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -47,7 +44,6 @@ def example(parser: argparse.ArgumentParser) -> str:
 HELPS = {sub.prog: example(sub) for sub in parsers(parser())}
 NEED = (
     "build",
-    "new bolted-joint",
     "report",
     "modelica",
     "prove",
@@ -110,11 +106,14 @@ def folder(read: Path, tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "line", sorted({line for line in HELPS.values() if not line.startswith(NEED)}), ids=lambda line: line[:24]
+    "line",
+    sorted({line for line in HELPS.values() if not line.startswith((*NEED, "new bolted-joint"))}),
+    ids=lambda line: line[:24],
 )
 def test_an_example_runs(
     line: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """But for that of a plate, which tests/drawing/test_new.py runs."""
     monkeypatch.chdir(folder)
     monkeypatch.setenv(CACHE, str(folder / "parts"))  # a user's may be large
     if line.startswith("robot"):
@@ -132,11 +131,6 @@ def built(tmp_path_factory: pytest.TempPathFactory, native: Path) -> Path:
     (place / "models").symlink_to(ROOT / "models")
     shutil.copy(ROOT / "models/bolted_joint/box_specimen.toml", place / "my_joint.toml")
     return place
-
-
-def coarse(file: ParameterFile, plates: new_computed.Plates, attached: str) -> new_computed.ComputedJoint:
-    """The whole joint of a drawing, solved here."""
-    return new_computed.whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
 
 
 @pytest.mark.slow
@@ -158,9 +152,6 @@ def test_an_example_with_fmus_runs(
         computed = shlex.split(EXAMPLES["footprint compute"])
         monkeypatch.chdir(built)
         assert cli.main([*computed, "--field", "my_field.csv"]) == 0
-    if line.startswith("new bolted-joint"):  # coarse elements, which no other test is to find
-        monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
-        monkeypatch.setattr(new_computed, "whole_joint", coarse)
     monkeypatch.chdir(built)
     with here_alone():
         assert cli.main(shlex.split(line)) == 0

@@ -545,11 +545,20 @@ def test_ctrl_c_ends_it_and_its_importer(fmu: Path, tmp_path: Path) -> None:
     """In the midst of an experiment of a million steps."""
     one = '<Experiment name="long"><TransientSimulation stopTime="10" stepSize="2e-6"/></Experiment>'
     path = other_manifest(fmu, tmp_path / "long.fmu", one)
-    command = [sys.executable, "-m", "jointfmu", "prove", str(path)]
+    command, own = [sys.executable, "-m", "jointfmu", "prove", str(path)], tmp_path / "own"
+    own.mkdir()
     process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        env=os.environ | {"TMPDIR": str(own)},
     )
-    time.sleep(6.0)
+    while not list(own.rglob("modelDescription.xml")):  # the FMU is unpacked
+        time.sleep(0.05)
+        assert process.poll() is None
+    time.sleep(1.5)
     assert process.poll() is None
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=30)

@@ -11,10 +11,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numbers_of_all
 import numpy as np
 import pytest
 from jointfmu_tools import cli
 from jointfmu_tools.joints.bolted_joint.new import computed
+from numbers_of_all import texts
 from numpy._core._multiarray_umath import __cpu_features__
 
 pytestmark = pytest.mark.slow
@@ -35,10 +37,10 @@ PLATES = {
 }
 
 
-def made(folder: Path, variables: dict[str, str], paths: list[Path]) -> dict[str, str]:
-    """{what: text} with these variables."""
-    script = [sys.executable, str(Path(__file__).parents[1] / "support" / "numbers_of_all.py"), str(folder)]
-    run = subprocess.run([*script, *map(str, paths)], env=os.environ | variables, stdout=subprocess.PIPE)
+def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
+    """{what: text} as the old processor has it."""
+    script = [sys.executable, numbers_of_all.__file__, str(folder)]
+    run = subprocess.run([*script, *map(str, paths)], env=os.environ | OLD, stdout=subprocess.PIPE)
     assert run.returncode == 0
     return json.loads(run.stdout)
 
@@ -59,12 +61,12 @@ def paths(tmp_path_factory) -> list[Path]:
 @pytest.fixture(scope="module")
 def here(tmp_path_factory, paths) -> dict[str, str]:
     """As this process has it."""
-    return made(tmp_path_factory.mktemp("here"), {}, paths)
+    return texts(tmp_path_factory.mktemp("here"), paths)
 
 
 @pytest.mark.skipif(not __cpu_features__.get("AVX2", False), reason="this processor has no AVX2")
 def test_numbers_are_those_of_an_old_processor(tmp_path, here, paths):
-    there = made(tmp_path, OLD, paths)
+    there = elsewhere(tmp_path, paths)
     assert there.keys() == here.keys()
     for what, text in here.items():
         if what.endswith(".csv"):

@@ -7,6 +7,7 @@ The Modelica library is written into the folder; the files come beside those tha
 
 import json
 import sys
+from contextlib import redirect_stdout
 from importlib.resources import files
 from pathlib import Path
 
@@ -31,11 +32,10 @@ def texts(folder: Path, paths: list[Path]) -> dict[str, str]:
             made = {k: v for k, v in sources(name, file).items() if k in GENERATED}
             made |= {k: v.decode() for k, v in proof(model, file).items() if k.endswith(".csv")}
             found |= {f"{path.stem}/{name}/{k}": text for k, text in made.items()}
-    sys.stdout = sys.stderr
-    assert main(["modelica", "--out", str(folder)]) == 0
+    with redirect_stdout(sys.stderr):
+        assert main(["modelica", "--out", str(folder)]) == 0
     return found | {str(p.relative_to(folder)): p.read_text() for p in sorted(folder.rglob("*.mo"))}
 
 
 if __name__ == "__main__":
-    found = texts(Path(sys.argv[1]), [Path(path) for path in sys.argv[2:]])
-    json.dump(found, sys.__stdout__)
+    json.dump(texts(Path(sys.argv[1]), [Path(path) for path in sys.argv[2:]]), sys.stdout)

@@ -16,6 +16,7 @@ the components of a serial arm, see `arm`.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -144,10 +145,15 @@ def system(name: str) -> System:
     Raises ValueError with one line that names the entry and what is allowed.
     """
     if name in names():
-        return read(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
+        return _shipped(name)
     if not name.endswith(".toml"):
         raise ValueError(f"system {name!r}: allowed are {', '.join(names())}, or a file .toml")
     return read(Path(name))
+
+
+@cache
+def _shipped(name: str) -> System:
+    return read(Path(str(files("jointfmu_models") / "systems" / f"{name}.toml")))
 
 
 def read(path: Path) -> System:

@@ -334,7 +334,15 @@ def test_identification_finds_the_lengths_of_a_known_box(monkeypatch):
     One step of the least squares must do it: the slopes of all five lengths decide its direction. An even
     pressure of the contact is enough.
     """
-    monkeypatch.setattr(box, "frequencies", partial(box.frequencies, even=True))
+    known_ones, solve = {}, partial(box.frequencies, even=True)
+
+    def frequencies(assembly, *arguments, **options):  # the first lengths are asked for twice
+        key = repr(assembly)
+        if key not in known_ones:
+            known_ones[key] = solve(assembly, *arguments, **options)
+        return known_ones[key]
+
+    monkeypatch.setattr(box, "frequencies", frequencies)
     lengths = box.lengths_of(box.shipped())
     known = lengths * np.array([1.03, 1.0, 1.0, 1.0, 0.97])
     target = ringing(known.tolist())

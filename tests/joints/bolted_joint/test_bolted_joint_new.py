@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -382,8 +383,7 @@ def test_the_fmu_of_a_drawing_is_the_package(capsys, tmp_path):
 @pytest.mark.slow
 def test_a_computed_field_is_near_the_cones(capsys, tmp_path, monkeypatch):
     """By elements of thrice the size, whose error is far below what is asked."""
-    fine = BoltedContact.of
-    monkeypatch.setattr(BoltedContact, "of", lambda assembly: fine(assembly, 0.35))
+    monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.35))
     files = {}
     for field in ("cones", "computed"):
         path = tmp_path / f"{field}.toml"

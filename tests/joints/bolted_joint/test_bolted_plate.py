@@ -3,6 +3,7 @@
 import json
 import sys
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.commands.footprint.compute import with_assembly
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.fem.whole_joint import WholeJoint
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
@@ -329,7 +331,9 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
 
 
 @pytest.mark.slow
-def test_four_bolts_share_a_load_evenly(capsys):
+def test_four_bolts_share_a_load_evenly(capsys, monkeypatch):
+    """Of coarse elements, too."""
+    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
     facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
     assert facts["whole_load_factor"] == pytest.approx(4.0 * facts["whole_bolt_share"], rel=1e-2)
