@@ -250,14 +250,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("joints", nargs="*", choices=[*JOINTS, []], default=list(JOINTS))
+    parser.add_argument("joints", nargs="*", choices=[*JOINTS, []])
     parser.add_argument("--why", action="store_true", help="more modes, more patches, neither; the first way")
     parser.add_argument("--refinement", type=float, default=1.0, help="divides the sizes of the elements")
     given = parser.parse_args(arguments)
     cells = [f"{what} at {level:g}" for level in CYCLES for what in ("force", "loss")]
     print("| joint | reduction | patches | most force | first way | " + " | ".join(cells) + " |")
     print("|---|" + "---|" * (4 + len(cells)))
-    for name in given.joints:
+    for name in given.joints or JOINTS:
         compared(name, given.why, given.refinement)
     return 0
 
