@@ -58,6 +58,8 @@ PRESS = 40e3
 """What presses the lap [N]."""
 LINEAR = 1e-3
 """Approach at which a linear interface is as stiff as it stays, over that at tightening [1]."""
+RISES = 1e-6
+"""Of a stiffness that is called linear [1]."""
 
 
 @dataclass(frozen=True)
@@ -122,12 +124,16 @@ def vdi() -> None:
 
 
 def linear_curve(stiffness: float, approach: float) -> Curve:
-    """Pressure of springs of a stiffness [Pa/m] that touch within LINEAR of an approach [m]."""
-    rise = LINEAR * approach
-    places, load = np.array([0.0, rise, 20.0 * approach]), 0.5 * stiffness * rise
-    loads = np.array([0.0, load, load + stiffness * (places[2] - rise)])
-    bend = np.array([stiffness / rise, 0.0])
-    return Curve(places, loads, np.array([0.0, stiffness, stiffness]), bend, bend)
+    """Pressure of springs of a stiffness [Pa/m] that touch within LINEAR of an approach [m].
+
+    It grows by RISES of itself from there to twice the approach, so that a stiffness tells an approach.
+    """
+    places, bend = np.array([0.0, LINEAR, 20.0]) * approach, RISES * stiffness / approach
+    slopes = stiffness + bend * (places - approach)
+    slopes[0] = 0.0
+    loads = np.concatenate([[0.0], np.cumsum(0.5 * (slopes[1:] + slopes[:-1]) * np.diff(places))])
+    bends = np.array([slopes[1] / places[1], bend])
+    return Curve(places, loads, slopes, bends, bends)
 
 
 @dataclass(frozen=True)
