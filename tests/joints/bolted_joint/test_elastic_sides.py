@@ -95,7 +95,7 @@ def test_the_tightened_joint_is_as_stiff_as_by_finite_elements(made, words, prel
 def test_gross_slip_about_poles_inside_has_the_force_of_all_nodes(made):
     """Patches turn with the bodies: of 40 poles inside the contact 95 % are within 2 % of the friction, all
     within 3 %. As tightened: bodies that bend move some of the pressure. Seen: 1.7 %; 200 poles of the
-    README's plate have 1.3 and 2.3 %.
+    README's plate have 1.3 and 2.4 %.
     """
     joint, preload = made(*FOUR, preload=15e3), 15e3
     values, shape = joint.file.values, pressure_shape(joint.file.values.pattern)

@@ -121,8 +121,8 @@ def test_a_field_that_is_a_bit_off_is_the_same():
 
 
 def test_patches_come_from_the_nodes(tmp_path):
-    """A ring under pure torsion has its moment and no lateral force, within 4e-3 of its friction; the file
-    keeps the patches, and those that do not balance are refused."""
+    """A ring under pure torsion has its moment, within 2e-3, and no lateral force, within 4e-3 of its
+    friction; the file keeps the patches, and those that do not balance are refused."""
     ring = patch_reduction.annulus(48, 5)
     mean = PRELOAD * JOINT.n_bolts / JOINT.A_0
     contact = ContactField(ring.share * JOINT.A_0, ring.position, mean * ring.equal)
@@ -136,7 +136,7 @@ def test_patches_come_from_the_nodes(tmp_path):
     friction = joint.mu * PRELOAD * joint.n_bolts
     assert np.hypot(slides["f_x"], slides["f_y"]) < 4e-3 * friction
     arm = (ring.share * ring.equal) @ np.hypot(*ring.position.T)
-    assert -slides["m_z"] == pytest.approx(friction * arm, rel=1e-3)
+    assert -slides["m_z"] == pytest.approx(friction * arm, rel=2e-3)
     share = (2.0 * joint.pattern.patch_share[0], *joint.pattern.patch_share[1:])
     with pytest.raises(ValueError, match=r"^the sum of patch_share is 1\.\d+, expected 1 within 1e-06$"):
         replace(joint.pattern, patch_share=share)
