@@ -23,12 +23,10 @@ from scipy.spatial import cKDTree
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
 from jointfmu.joints.bolted_joint.law import pressures, working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.footprint.friction import CIRCLE
-from jointfmu.mechanics.footprint.shape import FrictionPatches
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
-from .patch_work import Friction, PatchWork, Shears, Surface, into_slip, work
+from .patch_work import Friction, PatchWork, Shears, into_slip, on_circles, shifts, turned, work
 from .whole_joint import AXES, Linear, WholeJoint
 
 LEAST = 1e-3
@@ -229,27 +227,27 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
     curve, law = spring.curve, spring.foundation()
     closed = np.interp(normal, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
-    every = np.concatenate([_turns(at.centred), np.concatenate(traces[:2])], axis=1)
+    every = np.concatenate([shifts(at.centred), np.concatenate(traces[:2])], axis=1)
     shift = np.concatenate([shears.motion, shears.amplitude], axis=1) @ every.T
     aim = work(Friction.of(law, closed, shift), at.area, every)
     means = cell_means(joint, patches.position, normal)
     both = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
-        _turns(patches.position),
+        shifts(patches.position),
         np.tile(weight * patches.share * shear, 2),
-        _turns(at.centred),
+        shifts(at.centred),
         np.concatenate(traces[:2]),
         np.tile(ratio * area, 2),
     )
-    turned = _turned(joint, patches, normal, traces)
-    working = PatchWork(law, shears, *_on_circles(patches, weight, few, turned), aim)
+    turns = turned(at.centred, patches, means, traces)
+    working = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
     sticks = Friction.of(law, closed, np.concatenate([unit.motion, unit.amplitude], axis=1) @ every.T)
     both = working.held(working.fitted(both), unit, work(sticks, at.area, every).stuck)
     pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
     moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
-    moved["patch_around"] = patches.radius[:, None] * turned
+    moved["patch_around"] = patches.radius[:, None] * turns
     most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
     rounded: dict[str, Any] = {
         name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
@@ -275,37 +273,6 @@ def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
     planes = _planes(points)
     plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
     return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
-
-
-def _turned(joint: WholeJoint, patches: FrictionPatches, normal: Array, traces: list[Array]) -> Array:
-    """Turns (m, k) [1/m] of the patches about their centres by modes that shift the contact by traces (q, k).
-
-    Of each the mean over its cell, by the stiffness (q) there and the square of the distance.
-    """
-    place = joint.interface.centred
-    means = cell_means(joint, patches.position, normal)
-    cell = cKDTree(patches.position).query(place)[1]
-    x, y = (place - (means @ place)[cell]).T
-    lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
-    some = square > 0.0
-    return np.asarray(np.where(some, 1.0 / np.where(some, square, 1.0), 0.0)[:, None] * (means @ lever))
-
-
-def _on_circles(
-    patches: FrictionPatches, area: float, approach: Array, turned: Array
-) -> tuple[Surface, Array]:
-    """Places of the sliders of patches on a nominal area [m2] at approaches (m) [m], and what they shift by
-    turns (m, k)."""
-    places = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
-    away = places[:, None] * patches.radius[:, None]
-    count, (x, y) = len(places), away.reshape(-1, 2).T[:, :, None]
-    each = np.tile(turned, (count, 1))
-    there = Surface(
-        np.tile(area * patches.share / count, count),
-        np.tile(approach, count),
-        _turns((patches.position + away).reshape(-1, 2)),
-    )
-    return there, np.concatenate([-y * each, x * each])
 
 
 def _listed(values: Array) -> tuple[float, ...]:
@@ -341,13 +308,6 @@ def _planes(place: Array) -> Array:
     """Openings (n, 3) of places (n, 2) under motions without deformation."""
     x, y = place.T
     return np.stack([np.ones_like(x), y, -x], axis=1)
-
-
-def _turns(place: Array) -> Array:
-    """Shifts (2 n, 3) of places (n, 2) along x, then along y."""
-    x, y = place.T
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
 
 
 def _matched(

@@ -11,7 +11,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.spatial import cKDTree
 
+from jointfmu.mechanics.footprint.friction import CIRCLE
+from jointfmu.mechanics.footprint.shape import FrictionPatches
 from jointfmu.mechanics.sliders import Foundation
 from jointfmu.quantity import Array
 
@@ -221,6 +225,41 @@ class PatchWork:
             loss[:, i] = (area * at.rate * along)[:, :, None] * amplitude[:, None]
         parts = zip((_of_patches(each, rows) for each in (forces, stuck, loss)), self.aim.scale, strict=True)
         return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
+
+
+def shifts(place: Array) -> Array:
+    """Shifts (2 n, 3) of places (n, 2) along x, then along y."""
+    x, y = place.T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
+
+
+def turned(place: Array, patches: FrictionPatches, means: sp.csr_matrix, traces: list[Array]) -> Array:
+    """Turns (m, k) [1/m] of the patches about their centres by modes that shift the contact at
+    places (q, 2) [m] by traces (q, k).
+
+    Of each the mean over its cell, by the weights of means (m, q) there and the square of the distance.
+    """
+    cell = cKDTree(patches.position).query(place)[1]
+    x, y = (place - (means @ place)[cell]).T
+    lever, square = x[:, None] * traces[1] - y[:, None] * traces[0], means @ (x * x + y * y)
+    some = square > 0.0
+    return np.asarray(np.where(some, 1.0 / np.where(some, square, 1.0), 0.0)[:, None] * (means @ lever))
+
+
+def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Array) -> tuple[Surface, Array]:
+    """Places of the sliders of patches on a nominal area [m2] at approaches (m) [m], and what they shift by
+    turns (m, k) [1/m]."""
+    places = CIRCLE if np.any(patches.radius) else 0.0 * CIRCLE[:1]
+    away = places[:, None] * patches.radius[:, None]
+    count, (x, y) = len(places), away.reshape(-1, 2).T[:, :, None]
+    each = np.tile(turns, (count, 1))
+    there = Surface(
+        np.tile(area * patches.share / count, count),
+        np.tile(approach, count),
+        shifts((patches.position + away).reshape(-1, 2)),
+    )
+    return there, np.concatenate([-y * each, x * each])
 
 
 def _of_patches(slopes: Array, rows: Array) -> Array:
