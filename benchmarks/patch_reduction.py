@@ -242,23 +242,32 @@ def friction(
     return np.array(forces), np.array(losses)
 
 
-def pole_deviations(shape: PressureShape, patches: FrictionPatches) -> Array:
-    """(2) deviation of the force over the friction [1] in gross slip about POLES poles inside the contact: of
-    95 %, largest."""
+def poles_inside(shape: PressureShape, count: int) -> Array:
+    """Places (count, 2) [m] at random nodes of a contact, and beside them."""
     rng = np.random.default_rng(1)
-    poles = shape.position[rng.choice(shape.share.size, POLES, p=shape.share)]
-    poles = poles + 0.5 * np.sqrt(np.prod(np.ptp(shape.position, axis=0)) / shape.share.size) * rng.uniform(
+    poles = shape.position[rng.choice(shape.share.size, count, p=shape.share)]
+    return poles + 0.5 * np.sqrt(np.prod(np.ptp(shape.position, axis=0)) / shape.share.size) * rng.uniform(
         -1.0, 1.0, poles.shape
     )
 
-    def force(points: FrictionPatches) -> Array:
-        x, y = turning(SLIDERS)
-        places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
-        arm = places - poles[:, None, None]
-        way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
-        return np.asarray(np.einsum("n,pkni->pi", points.share * points.equal, way)) / SLIDERS
 
-    off = np.linalg.norm(force(shape.as_patches()) - force(patches), axis=1)
+def gross_slip(points: FrictionPatches, friction: Array, poles: Array) -> Array:
+    """Forces (p, 2) along turns about poles (p, 2) [m] of points with a friction (n)."""
+    x, y = turning(SLIDERS)
+    places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
+    arm = places - poles[:, None, None]
+    way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
+    return np.asarray(np.einsum("n,pkni->pi", friction, way)) / SLIDERS
+
+
+def pole_deviations(shape: PressureShape, patches: FrictionPatches) -> Array:
+    """(2) deviation of the force over the friction [1] in gross slip about POLES poles inside the contact: of
+    95 %, largest."""
+    poles = poles_inside(shape, POLES)
+    both = (
+        gross_slip(points, points.share * points.equal, poles) for points in (shape.as_patches(), patches)
+    )
+    off = np.linalg.norm(np.subtract(*both), axis=1)
     return np.quantile(off, [0.95, 1.0])
 
 

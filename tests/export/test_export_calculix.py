@@ -31,25 +31,25 @@ def cases(tmp_path_factory):
     return calculix.cases(tmp_path_factory.mktemp("calculix"))
 
 
-def close(cases, tolerance):
+def assert_close(cases, tolerance):
     assert cases
     for meaning, theirs, ours in cases:
         assert theirs == pytest.approx(ours, rel=tolerance), meaning
 
 
 def test_springs_between_rigid_bodies_and_on_meshes(cases):
-    close([case for case in cases if case[0].startswith("springs")], PRINTED)
+    assert_close([case for case in cases if case[0].startswith("springs")], PRINTED)
 
 
 def test_elastic_blocks_in_contact(cases):
     # 1 % is what is asked for; the table keeps to the pressure within 1e-3, and the laws' pressure grows
     # at least with the third power of the approach here
-    close([case for case in cases if case[0].startswith("contact")], 1e-3 / 3.0)
+    assert_close([case for case in cases if case[0].startswith("contact")], 1e-3 / 3.0)
 
 
 @pytest.mark.parametrize("normal", ["x", "y"])
 def test_springs_along_another_normal(normal, tmp_path):
-    close(calculix.rigid_bodies(tmp_path, *calculix.STATES[1], normal), PRINTED)
+    assert_close(calculix.rigid_bodies(tmp_path, *calculix.STATES[1], normal), PRINTED)
 
 
 def test_documented_figures_are_those_of_the_run(cases):

@@ -2,19 +2,13 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.fem.patch_work import PatchWork, Shears, Surface, into_slip, moved, work
+from jointfmu_tools.fem.patch_work import PatchWork, Shears, Surface, into_slip, rigid_shifts, work_of
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
 
 RADIUS, COUNT, PATCHES = 0.02, 24, 10
 LEVELS = np.array([0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3])
-
-
-def rigid(place):
-    x, y = place.T
-    one, zero = np.ones_like(x), np.zeros_like(x)
-    return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
 
 
 @pytest.fixture(scope="module")
@@ -28,13 +22,13 @@ def disc():
     rows = np.concatenate([np.stack([-lag, nothing], axis=1), np.stack([nothing, -lag], axis=1)])
     approach = float(law.curve.inverse(5e6))
     area = np.full(len(place), 1e-6)
-    points = Surface(area, np.full(len(place), approach), rigid(place))
+    points = Surface(area, np.full(len(place), approach), rigid_shifts(place))
     number = np.arange(PATCHES) + 0.5
     far, angle = RADIUS * np.sqrt(number / PATCHES), np.pi * (3.0 - np.sqrt(5.0)) * number
     seed = np.stack([far * np.cos(angle), far * np.sin(angle)], axis=1)
     cell = np.argmin(np.hypot(*(place[:, None] - seed).transpose(2, 0, 1)), axis=1)
     means = np.stack([cell == i for i in range(PATCHES)]) / np.bincount(cell)[:, None]
-    few = Surface(1e-6 * np.bincount(cell), np.full(PATCHES, approach), rigid(means @ place))
+    few = Surface(1e-6 * np.bincount(cell), np.full(PATCHES, approach), rigid_shifts(means @ place))
     both = np.concatenate([means @ rows[: len(place)], means @ rows[len(place) :]])
     motion = np.zeros((21, 6))
     reach = law.friction / law.ratio * approach
@@ -44,11 +38,6 @@ def disc():
     slip = into_slip(motion)
     shears = Shears((slip @ motion)[:, (0, 1, 5)], slip @ amplitude)
     return law, points, rows, few, both, shears
-
-
-def of(law, shears, surface, rows):
-    every, at = moved(law, shears, surface, rows)
-    return work(at, surface.area, every)
 
 
 def test_ways_are_single_and_paired_motions(disc):
@@ -61,9 +50,9 @@ def test_ways_are_single_and_paired_motions(disc):
 def test_patches_lose_and_resist_as_all_points(disc):
     """At their means they lose too little in partial slip; fitted, hardly anything."""
     law, points, rows, few, means, shears = disc
-    aim = of(law, shears, points, rows)
+    aim = work_of(law, shears, points, rows)
     fitted = PatchWork(law, shears, few, 0.0 * means, aim).fitted(means)
-    before, after = (of(law, shears, few, each) for each in (means, fitted))
+    before, after = (work_of(law, shears, few, each) for each in (means, fitted))
     partial = np.arange(1, 7)  # along x
     assert np.min(before.loss[partial] / aim.loss[partial]) < 0.97
     np.testing.assert_allclose(after.loss[partial], aim.loss[partial], rtol=0.03)
@@ -76,10 +65,10 @@ def test_what_is_held_is_exact(disc):
     """Forces of linear ways without slip, with rows hardly changed."""
     law, points, rows, few, means, _ = disc
     linear = Shears(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
-    aim = of(law, linear, points, rows).stuck
-    working = PatchWork(law, linear, few, 0.0 * means, of(law, linear, points, rows))
+    aim = work_of(law, linear, points, rows).stuck
+    working = PatchWork(law, linear, few, 0.0 * means, work_of(law, linear, points, rows))
     held = working.held(means, linear, aim)
-    before, found = (of(law, linear, few, rows).stuck for rows in (means, held))
+    before, found = (work_of(law, linear, few, rows).stuck for rows in (means, held))
     missed = [np.max(np.abs(each - aim)[:2]) / np.max(np.abs(aim)) for each in (before, found)]
     assert missed[0] > 0.01
     assert missed[1] < 1e-6
@@ -88,7 +77,7 @@ def test_what_is_held_is_exact(disc):
 
 def test_slopes_are_those_of_differences(disc):
     law, points, rows, few, means, shears = disc
-    working = PatchWork(law, shears, few, 0.0 * means, of(law, shears, points, rows))
+    working = PatchWork(law, shears, few, 0.0 * means, work_of(law, shears, points, rows))
     slope, still, step = working._slopes(means), np.zeros_like(means), 1e-6
     for index in ((0, 0), (5, 1)):
         there = [means.copy(), means.copy()]

@@ -115,7 +115,7 @@ def in_c(rows: dict[str, np.ndarray]) -> CSliders:
     return CSliders(*(pointer(rows[name]) for name in LINE))
 
 
-def close(found: object, expected: object, size: float) -> None:
+def assert_close(found: object, expected: object, size: float) -> None:
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=ROUND_OFF * size)
 
 
@@ -129,8 +129,8 @@ def test_along_one_direction(library: CDLL) -> None:
         library.sliders_line(SLIDERS, byref(s), c_double(u), pointer(moved), byref(total))
         expected = Sliders(K).along(force[0], u, before, after)
         size = 1.0 + abs(u) * float(np.sum(K))
-        close(moved, expected.force, size)
-        close([total.force[0], total.loss], [expected.traction, expected.loss], SLIDERS * size**2)
+        assert_close(moved, expected.force, size)
+        assert_close([total.force[0], total.loss], [expected.traction, expected.loss], SLIDERS * size**2)
         assert total.tangent[0] == pytest.approx(float(expected.tangent), abs=ROUND_OFF * SLIDERS)
         tried = force[0] + K * u
         slips = np.abs(tried) > after
@@ -161,16 +161,16 @@ def in_plane(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray) -> n
     at_limit = np.append(reaches(list(tried), rows["after"]) > 0.0, True)
     assert first == np.argmax(at_limit) // 2 * 2
     sums = together(np.where(np.arange(SLIDERS) < first, tried, 0.0))
-    close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
+    assert_close(list(sticks), sums, SLIDERS * (1.0 + np.max(np.abs(tried))))
     found, fours, alone = np.empty((3, 7, SLIDERS))
     for slid, by_four, forces in ((found, False, False), (fours, AVX, False), (alone, AVX, True)):
         into = (POINTER_TO * 7)(*map(pointer, slid))
         library.sliders_slide(by_four, 0, SLIDERS, byref(s), into, forces)
         total = Sum()
         library.sliders_sum(by_four, 0, SLIDERS, byref(s), into, byref(total))
-        close(list(total.force), together(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
+        assert_close(list(total.force), together(slid[:2]), SLIDERS * (1.0 + np.max(np.abs(tried))))
     np.testing.assert_array_equal(fours, found)
-    close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
+    assert_close(alone[:2], found[:2], 1.0 + np.max(np.abs(tried)))
     np.testing.assert_array_equal(found[:2, :first], tried[:, :first])
     return found
 
@@ -184,9 +184,9 @@ def test_in_a_plane(library: CDLL) -> None:
         tried = trial(list(force), 1.0, K, list(of_each(shift)))
         slid = slide(list(force), 1.0, K, list(of_each(shift)), before, after, K, rows["per_K"])
         size = 1.0 + float(np.linalg.norm(shift) * np.sum(K))
-        close(moved, slid.force, size)
-        close(loss[0], slid.loss, size**2)
-        close(tangent, slid.tangent, SLIDERS)
+        assert_close(moved, slid.force, size)
+        assert_close(loss[0], slid.loss, size**2)
+        assert_close(tangent, slid.tangent, SLIDERS)
         slips = beyond(tried, after) > 0.0
         slipped += int(np.sum(slips))
         assert np.all(np.isfinite(moved)), (K, before, after)
@@ -225,4 +225,4 @@ def test_force_alone(library: CDLL) -> None:
         found = library.sliders_force(c_int(SLIDERS), byref(s), c_double(u), byref(tangent))
         expected = Sliders(K).along(force[0], u, limit, limit)
         size = 1.0 + abs(u) * float(np.sum(K))
-        close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)
+        assert_close([found, tangent.value], [expected.traction, expected.tangent], SLIDERS * size)

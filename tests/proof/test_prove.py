@@ -42,7 +42,7 @@ RUNS = [
 (tests/native/test_native_clients.py)."""
 
 
-def all_pass(found: dict) -> None:
+def assert_all_pass(found: dict) -> None:
     assert (found["passed"], found["misses"], found["start_values"]["differing"]) == (True, [], [])
     assert {one["verdict"] for one in found["experiments"]} == {"passed"}
     for one in found["experiments"]:
@@ -56,7 +56,7 @@ def test_an_fmu_proves_itself(
 ) -> None:
     needs(importer)
     found = proved(capsys, native / version / f"{name}.fmu", "--in", importer)
-    all_pass(found)
+    assert_all_pass(found)
     assert {one["purpose"] for one in found["experiments"]} == {
         "smoke-test",
         "validation",
@@ -82,7 +82,7 @@ def test_fmus_of_other_laws_prove_themselves(
     with here_alone():
         fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
     assert fmu.name == "own_joint.fmu"
-    all_pass(proved(capsys, fmu))
+    assert_all_pass(proved(capsys, fmu))
 
 
 # Tampered FMUs
@@ -297,7 +297,7 @@ def test_an_fmu_agrees_with_the_parameter_file_that_it_is_of(
     """What the FMU carries is not read: references come from the file."""
     own = KINDS[MODELS[NAME].joint].default_file()
     for path in (native / "fmi3" / f"{NAME}.fmu", fmus / f"{NAME}.fmu"):
-        all_pass(proved(capsys, path, "--against", str(own)))
+        assert_all_pass(proved(capsys, path, "--against", str(own)))
 
 
 def test_a_changed_parameter_is_seen_though_references_were_changed_along(
@@ -307,7 +307,7 @@ def test_a_changed_parameter_is_seen_though_references_were_changed_along(
     text = b"e = { value = 0.2,", b"e = { value = 0.3,"
     path = resealed(fmus / f"{NAME}.fmu", tmp_path / f"{NAME}.fmu", "e", 0.3)
     path = copy(path, tmp_path / "changed.fmu", replaced("resources/parameters.toml", *text))
-    all_pass(proved(capsys, path))
+    assert_all_pass(proved(capsys, path))
     own = KINDS[MODELS[NAME].joint].default_file()
     found = proved(capsys, path, "--against", str(own), status=1)
     assert found["misses"][0] == f"e starts at 0.3, {own} says 0.2"

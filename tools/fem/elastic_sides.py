@@ -26,7 +26,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
-from .patch_work import Friction, PatchWork, Shears, into_slip, on_circles, shifts, turned, work
+from .patch_work import PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
 from .whole_joint import AXES, Linear, WholeJoint
 
 LEAST = 1e-3
@@ -227,23 +227,21 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
     curve, law = spring.curve, spring.foundation()
     closed = np.interp(normal, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
-    every = np.concatenate([shifts(at.centred), np.concatenate(traces[:2])], axis=1)
-    shift = np.concatenate([shears.motion, shears.amplitude], axis=1) @ every.T
-    aim = work(Friction.of(law, closed, shift), at.area, every)
+    every, along = Surface(at.area, closed, rigid_shifts(at.centred)), np.concatenate(traces[:2])
+    aim = work_of(law, shears, every, along)
     means = cell_means(joint, patches.position, normal)
     both = _matched(
         np.concatenate([means @ traces[0], means @ traces[1]]),
-        shifts(patches.position),
+        rigid_shifts(patches.position),
         np.tile(weight * patches.share * shear, 2),
-        shifts(at.centred),
-        np.concatenate(traces[:2]),
+        every.rigid,
+        along,
         np.tile(ratio * area, 2),
     )
     turns = turned(at.centred, patches, means, traces)
     working = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
-    sticks = Friction.of(law, closed, np.concatenate([unit.motion, unit.amplitude], axis=1) @ every.T)
-    both = working.held(working.fitted(both), unit, work(sticks, at.area, every).stuck)
+    both = working.held(working.fitted(both), unit, work_of(law, unit, every, along).stuck)
     pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
     moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
     moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))

@@ -179,8 +179,8 @@ class PatchWork:
         typical, size = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), TINY), _size(aim)
         weight = np.broadcast_to(typical, rows.shape).ravel()
 
-        def missing(there: Array) -> tuple[Array, Array, Friction]:
-            every, at = self.moved(linear, there)
+        def missing(rows: Array) -> tuple[Array, Array, Friction]:
+            every, at = self.moved(linear, rows)
             return ((work(at, self.places.area, every).stuck - aim) / size).ravel(), every, at
 
         damping, (missed, every, at) = FIRST_DAMPING, missing(rows)
@@ -192,10 +192,11 @@ class PatchWork:
             square = slope @ slope.T
             square += damping * np.mean(np.diag(square)) * np.eye(missed.size)
             step = weight * (slope.T @ np.linalg.solve(square, -missed))
-            trial = missing(rows + step.reshape(rows.shape))
+            there = rows + step.reshape(rows.shape)
+            trial = missing(there)
             better = trial[0] @ trial[0] < missed @ missed
             if better:
-                rows, (missed, every, at) = rows + step.reshape(rows.shape), trial
+                rows, (missed, every, at) = there, trial
             damping *= LESS if better else MORE
         return rows
 
@@ -227,8 +228,8 @@ class PatchWork:
         return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
 
 
-def shifts(place: Array) -> Array:
-    """Shifts (2 n, 3) of places (n, 2) along x, then along y."""
+def rigid_shifts(place: Array) -> Array:
+    """Shifts (2 n, 3) of places (n, 2), along x, then along y, by motions along x, y and about z."""
     x, y = place.T
     one, zero = np.ones_like(x), np.zeros_like(x)
     return np.concatenate([np.stack([one, zero, -y], axis=1), np.stack([zero, one, x], axis=1)])
@@ -257,7 +258,7 @@ def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Ar
     there = Surface(
         np.tile(area * patches.share / count, count),
         np.tile(approach, count),
-        shifts((patches.position + away).reshape(-1, 2)),
+        rigid_shifts((patches.position + away).reshape(-1, 2)),
     )
     return there, np.concatenate([-y * each, x * each])
 
@@ -292,3 +293,9 @@ def work(at: Friction, area: Array, every: Array) -> Work:
         for slope in (at.secant, at.stick)
     )
     return Work(forces, stuck, at.loss @ area)
+
+
+def work_of(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> Work:
+    """Of the friction of a surface that modes shift by rows (2 n, k), on ways of the joint."""
+    every, at = moved(law, shears, surface, rows)
+    return work(at, surface.area, every)

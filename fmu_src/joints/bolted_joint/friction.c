@@ -257,20 +257,6 @@ static inline void end_run(const Run *run, const Abreast *all)
     }
 }
 
-/* Add an even number of forces alone. */
-static inline void add_forces(int n, const double *x, const double *y, const double *e_x, const double *e_y, Shear *shear)
-{
-    double sum[3][2] = {{0.0}};
-    for (int k = 0; k < n; k += 2)
-        for (int l = 0; l < 2; l++) {
-            sum[0][l] += x[k + l];
-            sum[1][l] += y[k + l];
-            sum[2][l] += x[k + l] * e_x[k + l] + y[k + l] * e_y[k + l];
-        }
-    for (int d = 0; d < 3; d++)
-        shear->traction[d] += sum[d][0] + sum[d][1];
-}
-
 /* All runs so far. */
 static void end_runs(Work *work)
 {
@@ -293,7 +279,7 @@ static void end_runs(Work *work)
         if (!work->forces)
             end_run(run, all);
         else
-            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear);
+            add_forces(2, slid[0] + run->at, slid[1] + run->at, run->turning[0], run->turning[1], run->shear->traction);
     }
     work->n = all->n = 0;
 }
@@ -359,7 +345,7 @@ static void move_steady(int n, const PlaneSliders *s, const double *stick, bool 
             add(&sum, shear);
         } else {
             add_forces(end - first, moved[0] + first, moved[1] + first, s->turning[0] + first, s->turning[1] + first,
-                       shear);
+                       shear->traction);
         }
     }
     if (n > end) {

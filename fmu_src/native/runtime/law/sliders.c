@@ -209,19 +209,11 @@ COMPILED_TWICE(stick_each, (int n, const PlaneSliders *s, double *const moved[2]
 
 int sliders_stick(bool fours, int n, const PlaneSliders *s, double *const moved[2], double force[3])
 {
-    double reaches[MOST_SLIDERS], x[2] = {0.0}, y[2] = {0.0}, t[2] = {0.0};
-    const double *e_x = s->turning[0], *e_y = s->turning[1];
+    double reaches[MOST_SLIDERS];
     (fours ? stick_each_fours : stick_each_any)(n, s, moved, reaches);
     const int first = first_at_limit(reaches, n);
-    for (int k = 0; k < first; k += 2)
-        for (int l = 0; l < 2; l++) {
-            x[l] += moved[0][k + l];
-            y[l] += moved[1][k + l];
-            t[l] += moved[0][k + l] * e_x[k + l] + moved[1][k + l] * e_y[k + l];
-        }
-    force[0] = x[0] + x[1];
-    force[1] = y[0] + y[1];
-    force[2] = t[0] + t[1];
+    memset(force, 0, 3 * sizeof *force);
+    add_forces(first, moved[0], moved[1], s->turning[0], s->turning[1], force);
     return first;
 }
 

@@ -55,6 +55,21 @@ void sliders_line_rate(int n, const Sliders *s, double shift, double shift_rate,
 /* In a plane, a shift along x alone with limits that stay, where most stick: the tangents are those from a slider on
  * that is returned. */
 int sliders_sticking(int n, const PlaneSliders *s, double *moved, SliderSum *sum);
+/* Add those of an even number of sliders along x, y and around the centre, from their forces along x and y. */
+static inline void add_forces(int n, const double *x, const double *y, const double *e_x, const double *e_y,
+                              double force[3])
+{
+    double sum[3][2] = {{0.0}};
+    for (int k = 0; k < n; k += 2)
+        for (int l = 0; l < 2; l++) {
+            sum[0][l] += x[k + l];
+            sum[1][l] += y[k + l];
+            sum[2][l] += x[k + l] * e_x[k + l] + y[k + l] * e_y[k + l];
+        }
+    for (int d = 0; d < 3; d++)
+        force[d] += sum[d][0] + sum[d][1];
+}
+
 /* In a plane: the forces of those that stick, up to the first at its limit, which is returned, and their sum; beyond it
  * those that they would have; on a processor with vectors_of_four or any other. */
 int sliders_stick(bool fours, int n, const PlaneSliders *s, double *const moved[2], double force[3]);
