@@ -22,12 +22,16 @@ Symbols = Sequence[Number]
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """`y = name(x)` besides the constants; `doc` says what x and y are."""
+    """`y = name(x)` besides the constants; `doc` says what x and y are.
+
+    looped : loops over many of them call it: it is inline, however long
+    """
 
     name: str
     doc: str
     x: Sequence[ca.SX]
     y: Sequence[ca.SX]
+    looped: bool = False
 
 
 @dataclass(slots=True)
@@ -45,9 +49,9 @@ class Graph:
     constants: list[ca.SX] = field(default_factory=list)
     symbols: list[ca.SX] = field(default_factory=list)
 
-    def add(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols) -> None:
+    def add(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, looped: bool = False) -> None:
         """Add a function."""
-        self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y]))
+        self.functions.append(Function(name, doc, x, [ca.SX(value) for value in y], looped))
 
     def add_with_seed(self, name: str, doc: str, x: Sequence[ca.SX], y: Symbols, fixed: int = 0) -> None:
         """Add a function and `name_seed`: its derivative along a seed for all x but the first `fixed`."""

@@ -1,6 +1,8 @@
 """The rule of one slider as functions for C, which `law/sliders.c` calls in its loops."""
 
-from jointfmu.mechanics.jenkins import reaches, slide, trial
+import casadi as ca
+
+from jointfmu.mechanics.jenkins import Slid, reaches, slide, trial
 from jointfmu.quantity import where
 
 from .graph import Graph, symbols
@@ -31,17 +33,30 @@ def add_sliders(g: Graph) -> None:
 
 
 def _plane(g: Graph) -> None:
-    force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
-    before, after, stiffness, compliance = ends = symbols("x", 4)
-    tried = trial(force, keeps, carries, shift)
-    x, doc = [*force, keeps, carries, *shift], "force, part kept, gain, shift"
+    x, (force, after, shift), slid = _slid()
+    tried = trial(force, *x[2:4], shift)
+    doc = "force, part kept, gain, shift"
     y = [*tried, reaches(tried, after)]
     g.add(
-        "stick_plane", f"{doc}, limit -> force if it sticks, whether at the limit or beyond", [*x, after], y
+        "stick_plane",
+        f"{doc}, limit -> force if it sticks, whether at the limit or beyond",
+        [*x[:6], after],
+        y,
     )
-    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
     doc = f"{doc}, limits before and after, stiffness, compliance"
     y = [*slid.force, *slid.tangent, slid.loss, slid.slip]
-    g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", [*x, *ends], y)
-    g.add("return_plane", f"{doc} -> force", [*x, *ends], slid.force)
-    g.add_seed("slide_plane", doc, [*x, *ends], y, fixed=2)
+    g.add("slide_plane", f"{doc} -> force, tangent xx, xy, yy, loss, slip", x, y)
+    g.add("return_plane", f"{doc} -> force", x, slid.force)
+    g.add_seed("slide_plane", doc, x, y, fixed=2)
+    x, (_, after, shift), slid = _slid()  # of symbols of its own: it is written apart from the seed's
+    y = list(ca.densify(ca.jacobian(ca.vertcat(*slid.force), ca.vertcat(*shift, after))).T.nz)
+    g.add("return_slopes", f"{doc} -> derivatives of the force by shift and limit after", x, y, looped=True)
+
+
+def _slid() -> tuple[list[ca.SX], tuple[list[ca.SX], ca.SX, list[ca.SX]], Slid]:
+    """A slider after a path in a plane: what it is made of (force, part kept, gain, shift, limits before and
+    after, stiffness, compliance), of this force, limit after and shift, and the result."""
+    force, shift, (keeps, carries) = symbols("q", 2), symbols("u", 2), symbols("k", 2)
+    before, after, stiffness, compliance = ends = symbols("x", 4)
+    slid = slide(force, keeps, carries, shift, before, after, stiffness, compliance)
+    return [*force, keeps, carries, *shift, *ends], (force, after, shift), slid

@@ -906,31 +906,14 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope)
 {
     Kind *kind = &joint->kind;
-    double *const moved[2] = {kind->tried[0], kind->tried[1]};
-    Shear shears[MOST_PATCHES];
     if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
         for (int j = 0; j < n_patches(); j++)
             slopes_of(kind->tangent[j], slope[j]);
         return;
     }
-    for (int d = 0; d < 4; d++) {
-        kind->work.forces = true;
-        for (int j = 0; j < n_patches(); j++) {
-            const Foundation *f = &kind->foundation[j];
-            PatchPath path = path_of(joint, j, inputs, memory);
-            Point apart;
-            if (d < 3) {
-                path.shift[d] += step;
-            } else {
-                apart = foundation_point(f, path.to->approach - step, path.to->full);
-                path.to = &apart;
-            }
-            foundation_move(f, &path, moved, &kind->work, &shears[j]);
-        }
-        foundations_end(&kind->work);
-        for (int j = 0; j < n_patches(); j++)
-            for (int t = 0; t < 3; t++)
-                slope[j][d][t] = (shears[j].traction[t] - kind->traction[j][t]) / step;
+    for (int j = 0; j < n_patches(); j++) {
+        const PatchPath path = path_of(joint, j, inputs, memory);
+        foundation_slopes(&kind->foundation[j], &path, step, &kind->work, slope[j]);
     }
 }
 

@@ -11,6 +11,9 @@
 /* Arguments of `outputs`. */
 enum { X_S_REL = N_SUMS, X_THETA = X_S_REL + 3, X_RATES = X_THETA + 3, X_P_MAX = X_RATES + 6, N_X };
 
+/* Derivatives of a patch's traction by shifts along x, y and around its centre, and by coming apart. */
+typedef double Slopes[4][3];
+
 /* Preload, moment, shift along the surface, and the end of the memory. */
 enum { FOLLOW_KEY = 5 + 3 + MODES + 6 * MOST_PATCHES };
 
@@ -58,10 +61,11 @@ typedef struct {
     double pressing[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
-     * the modes, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
+     * the modes, slopes of the patches, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */
     double by[MOST_OPENING + MOST_STRETCH];
     double weighted[MOST_OPENING + MOST_PATCH_X + MOST_STRETCH][WIDE];
     double by_normal[WIDE][WIDE], by_shear[WIDE][WIDE], tried[2][SLIDERS];
+    Slopes slope[MOST_PATCHES];
     Factors factors;
     double steps[NEWTON_STEPS][MODES], squares[NEWTON_STEPS];
 } Kind;

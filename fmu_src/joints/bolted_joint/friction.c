@@ -257,19 +257,24 @@ static inline void end_run(const Run *run, const Abreast *all)
     }
 }
 
+static PlaneSliders abreast(const Abreast *all)
+{
+    return (PlaneSliders){.force = {all->force[0], all->force[1]},
+                          .turning = {all->shift[0], all->shift[1]},
+                          .shift = {0.0, 0.0, 1.0},
+                          .keeps = all->keeps,
+                          .carries = all->carries,
+                          .K = all->K,
+                          .per_K = all->per_K,
+                          .before = all->before,
+                          .after = all->after};
+}
+
 /* All runs so far. */
 static void end_runs(Work *work)
 {
     Abreast *all = &work->abreast;
-    const PlaneSliders s = {.force = {all->force[0], all->force[1]},
-                            .turning = {all->shift[0], all->shift[1]},
-                            .shift = {0.0, 0.0, 1.0},
-                            .keeps = all->keeps,
-                            .carries = all->carries,
-                            .K = all->K,
-                            .per_K = all->per_K,
-                            .before = all->before,
-                            .after = all->after};
+    const PlaneSliders s = abreast(all);
     double *slid[N_SLID];
     for (int r = 0; r < N_SLID; r++)
         slid[r] = all->slid[r];
@@ -369,9 +374,8 @@ static inline PlaneSliders sliders_on(const Foundation *f, const PatchPath *path
                           .shift = {path->shift[0], path->shift[1], path->shift[2]}};
 }
 
-/* The first `n` sliders, of ranges all in contact. */
-static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
-                      Work *work, Shear *shear)
+/* Those of ranges all in contact. */
+static PlaneSliders full_on(const Foundation *f, const PatchPath *path)
 {
     PlaneSliders s = sliders_on(f, path, 0);
     s.K = s.carries = f->K;
@@ -379,6 +383,14 @@ static void move_full(const Foundation *f, int n, const PatchPath *path, bool al
     s.before = s.after = f->limit;
     s.from = f->mu / f->ratio * path->from->approach;
     s.to = f->mu / f->ratio * path->to->approach;
+    return s;
+}
+
+/* The first `n` sliders, of ranges all in contact. */
+static void move_full(const Foundation *f, int n, const PatchPath *path, bool along, double *const moved[2],
+                      Work *work, Shear *shear)
+{
+    const PlaneSliders s = full_on(f, path);
     move_steady(n, &s, f->stick, along, moved, work, shear);
 }
 
@@ -473,6 +485,84 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
         else
             move_range(f, i, path, &middle, moved, work, shear);
     }
+}
+
+/* Slopes */
+
+/* The next pair, of a range from the first slider on: without more it comes apart as its limit grows. */
+static void add_sloped(const Foundation *f, const PlaneSliders *s, int first, int own, Work *work)
+{
+    for (int k = 0; k < 2; k++) {
+        const int at = work->abreast.n + k;
+        work->apart.limit[at] = -f->mu / f->ratio * s->K[own];
+        for (int d = 0; d < 2; d++) {
+            work->apart.turning[d][at] = f->turning[d][first + k];
+            work->apart.shift[d][at] = 0.0;
+        }
+    }
+    add_pair(&work->abreast, s, own);
+}
+
+/* That of a range that changes, with what it gains where the patch comes apart by a step, by differences. */
+static void add_changing(const Foundation *f, int i, const PatchPath *path, const Point *apart, double step, Work *work)
+{
+    const Point *at[2] = {path->to, apart};
+    const Pair start = pair_at(f, i, path->from);
+    Pair end[2];
+    double gained[2][2];
+    for (int k = 0; k < 2; k++) {
+        double x[N_CARRYING];
+        end[k] = pair_at(f, i, at[k]);
+        gain(f, i, path, &start, &end[k], at[k], x);
+        carrying(x, NULL, gained[k]);
+    }
+    const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0;
+    const double per_gain = gained[0][1] > 0.0 ? 1.0 / (step * gained[0][1]) : 0.0;
+    const double keeps[2] = {gained[0][0], gained[0][0]}, carries[2] = {gained[0][1], gained[0][1]};
+    const double K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
+    PlaneSliders s = sliders_on(f, path, 2 * i);
+    s.K = K;
+    s.per_K = per_K;
+    s.keeps = keeps;
+    s.carries = carries;
+    s.before = start.limit;
+    s.after = end->limit;
+    add_sloped(f, &s, 2 * i, 0, work);
+    for (int k = 0; k < 2; k++) {
+        const int row = work->abreast.n - 2 + k;
+        work->apart.limit[row] = (end[1].limit[k] - end[0].limit[k]) / step;
+        for (int d = 0; d < 2; d++)
+            work->apart.shift[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->abreast.force[d][row] +
+                                                    (gained[1][1] - gained[0][1]) * work->abreast.shift[d][row]);
+    }
+}
+
+void foundation_slopes(const Foundation *f, const PatchPath *path, double step, Work *work, double slope[4][3])
+{
+    const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
+    Abreast *all = &work->abreast;
+    double force[3], *const tried[2] = {work->apart.tried[0], work->apart.tried[1]};
+    PlaneSliders s = full_on(f, path);
+    const int first = sliders_stick(all->fours, 2 * full, &s, tried, force);
+    const Point apart = foundation_point(f, path->to->approach - step, path->to->full);
+    for (int k = first; k < 2 * full; k += 2)
+        add_sloped(f, &s, k, k, work);
+    for (int i = full; i < touched; i++)
+        add_changing(f, i, path, &apart, step, work);
+    if (all->n % 4 > 0) { /* two that have nothing */
+        static const double none[2] = {0.0};
+        s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
+                           .per_K = none, .before = none, .after = none};
+        add_sloped(f, &s, 0, 0, work);
+    }
+    const SliderRates rates = {{work->apart.turning[0], work->apart.turning[1]},
+                               work->apart.limit,
+                               {work->apart.shift[0], work->apart.shift[1]}};
+    s = abreast(all);
+    sliders_slopes(all->fours, all->n, &s, &rates, slope);
+    for (int d = 0; d < 3 && first > 0; d++)
+        slope[d][d] += f->stick[first / 2 - 1];
+    all->n = 0;
 }
 
 double foundation_stick(const Foundation *f, const Point *at)

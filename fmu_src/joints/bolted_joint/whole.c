@@ -81,8 +81,8 @@ static void press_all(Kind *kind, int size)
     }
 }
 
-/* The same by shear in `by_shear`, of patches with their slopes; all of the matrix or its lower half. */
-static void shear_all(Kind *kind, int size, bool all, const Slopes *slope)
+/* The same by shear in `by_shear`, of patches by their slopes; all of the matrix or its lower half. */
+static void shear_all(Kind *kind, int size, bool all)
 {
     const bool fours = kind->work.abreast.fours;
     const int n = (int)data.n_patches;
@@ -94,19 +94,19 @@ static void shear_all(Kind *kind, int size, bool all, const Slopes *slope)
     for (int d = 0; d < 3; d++) {
         for (int j = 0; j < n; j++)
             for (int s = 0; s < 4; s++)
-                by[j][s] = kind->area * data.patches[j][SHARE] * slope[j][s][d];
+                by[j][s] = kind->area * data.patches[j][SHARE] * kind->slope[j][s][d];
         dense_combine(fours, n, (const double(*)[4])by, rows, kind->weighted);
         dense_products(fours, n, (const double(*)[WIDE])kind->weighted, rows[d], size, all, kind->by_shear);
     }
 }
 
 /* Factors of the derivative of the residual by the amplitudes, and what acts beside it up to a size: from the slopes of
- * patches; all of it or as if it were symmetric. */
-static void differentiate(Kind *kind, int size, bool all, const Slopes *slope, Factors *factors)
+ * the patches; all of it or as if it were symmetric. */
+static void differentiate(Kind *kind, int size, bool all, Factors *factors)
 {
     double(*a)[MODES] = factors->a;
     press_all(kind, size);
-    shear_all(kind, size, all, slope);
+    shear_all(kind, size, all);
     for (int r = 0; r < MODES; r++) {
         for (int k = 0; k <= r; k++) {
             const double normal = kind->by_normal[r][k], shear = kind->by_shear[r][k];
@@ -171,34 +171,31 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
 {
     Kind *kind = &joint->kind;
     static const double units[4][4] = {{0.0, 1.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0, 1.0}, {-1.0}};
-    Slopes slope[MOST_PATCHES];
     for (int j = 0; j < (int)data.n_patches; j++)
         for (int c = 0; c < 4; c++) {
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
-            memcpy(slope[j][c], rate.traction, sizeof slope[j][c]);
+            memcpy(kind->slope[j][c], rate.traction, sizeof kind->slope[j][c]);
         }
-    differentiate(kind, MODES, true, (const Slopes *)slope, &kind->factors);
+    differentiate(kind, MODES, true, &kind->factors);
 }
 
-/* The same at the last trial, by differences. */
+/* The same at the last trial; what ranges of heights gain that change by differences. */
 static void jacobian(Joint *joint, const double *inputs, const double *memory)
 {
     Kind *kind = &joint->kind;
-    Slopes slope[MOST_PATCHES];
     double deepest = 0.0;
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
-    patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, slope);
-    differentiate(kind, MODES, true, (const Slopes *)slope, &kind->factors);
+    patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, kind->slope);
+    differentiate(kind, MODES, true, &kind->factors);
 }
 
 /* How the amplitudes follow the motions, in the tangents of points and patches, and the stiffnesses that are left. */
 static void follow(Kind *kind, const double (*tangent)[6], Followed *followed)
 {
-    Slopes slope[MOST_PATCHES];
     for (int j = 0; j < (int)data.n_patches; j++)
-        slopes_of(tangent[j], slope[j]);
-    differentiate(kind, WIDE, false, (const Slopes *)slope, &followed->factors);
+        slopes_of(tangent[j], kind->slope[j]);
+    differentiate(kind, WIDE, false, &followed->factors);
     for (int d = 0; d < MOTIONS; d++) {
         static const int beside[MOTIONS] = {0, 1, 0, 1, 2, 2};
         const int at = MODES + beside[d];

@@ -29,15 +29,13 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
 bool joint_press(Joint *joint, const double *inputs, Text *why);
 Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *memory, const double *after,
                  double rate, const double shift[3]);
-/* Derivatives of a patch's traction by shifts along x, y and around its centre, and by coming apart. */
-typedef double Slopes[4][3];
-/* From its tangents xx, xy, yy, xt, yt, tt. */
+/* The slopes of a patch from its tangents xx, xy, yy, xt, yt, tt. */
 static inline void slopes_of(const double t[6], Slopes slope)
 {
     const Slopes rows = {{t[0], t[1], t[3]}, {t[1], t[2], t[4]}, {t[3], t[4], t[5]}};
     memcpy(slope, rows, sizeof rows);
 }
-/* Those of the last trial at its end, by differences: as `Trials.slopes` of the package. */
+/* Those of the last trial at its end: `Trials.slopes` of the package, which takes differences. */
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope);
 
 #endif

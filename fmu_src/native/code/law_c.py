@@ -25,10 +25,11 @@ def law_c(g: Graph, model: Model, part: NativePart) -> tuple[str, str]:
     series = {name: [f for f in count if f.rsplit("_", 1)[0] == name] for name in _SERIES}
     series = {name: regimes for name, regimes in series.items() if regimes}
     bodies, prototypes, inline = [], [], []
+    looped = {f.name for f in g.functions if f.looped}
     for name, text in _functions(g).items():
         if name.rsplit("_", 1)[0] in series:
             bodies.append(text.replace("\nvoid ", "\nstatic void ", 1))
-        elif part.tabulated and name != "law_constants" and text.count("\n") <= _SHORT:
+        elif part.tabulated and name != "law_constants" and (name in looped or text.count("\n") <= _SHORT):
             inline.append(text.replace("\nvoid ", "\nstatic inline void ", 1))
         else:
             bodies.append(text)

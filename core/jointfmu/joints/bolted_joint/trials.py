@@ -120,7 +120,7 @@ class Trials:
         """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
         coming apart.
 
-        By differences, at the end of the way.
+        By differences, at the end of the way; FMUs have the derivative of the rule.
         """
         approach = self.approaches(place, amplitude)[1]
         step = DIFFERENCE * float(np.max(self.starts[1] - self.spring.curve.displacement[0]))

@@ -3,7 +3,7 @@
 #define JOINTFMU_COLD_H
 
 #ifdef __clang__
-#define COLD _Pragma("clang attribute push(__attribute__((cold)), apply_to = function)")
+#define COLD _Pragma("clang attribute push(__attribute__((cold, minsize)), apply_to = function)")
 #define END_OF_COLD _Pragma("clang attribute pop")
 #else
 #define COLD

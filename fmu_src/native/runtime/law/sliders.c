@@ -276,6 +276,46 @@ void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double
     (fours ? slide_or_return_fours : slide_or_return_any)(first, end, s, slid, forces);
 }
 
+enum { X_X, X_Y, X_LIMIT, Y_X, Y_Y, Y_LIMIT, N_SLOPES }; /* results of `return_slopes` */
+
+/* Sums in lanes of the slopes of sliders, see `sliders_slopes`. */
+WITHIN void slope_each(int n, const PlaneSliders *s, const SliderRates *rates, double (*restrict sum)[3][LANES])
+{
+    const PlaneSliders own = *s;
+    for (int i = 0; i < n; i += LANES) {
+        ALL_FOUR
+        for (int l = 0; l < LANES; l++) {
+            const int k = i + l;
+            double x[N_SLIDER], y[N_SLOPES];
+            arguments(&own, k, x);
+            return_slopes(x, NULL, y);
+            const double e_x = rates->turning[0][k], e_y = rates->turning[1][k];
+            const double limit = rates->limit[k], u = rates->shift[0][k], v = rates->shift[1][k];
+            const double columns[4][2] = {{y[X_X], y[Y_X]},
+                                          {y[X_Y], y[Y_Y]},
+                                          {y[X_X] * e_x + y[X_Y] * e_y, y[Y_X] * e_x + y[Y_Y] * e_y},
+                                          {y[X_LIMIT] * limit + y[X_X] * u + y[X_Y] * v,
+                                           y[Y_LIMIT] * limit + y[Y_X] * u + y[Y_Y] * v}};
+            for (int d = 0; d < 4; d++) {
+                sum[d][0][l] += columns[d][0];
+                sum[d][1][l] += columns[d][1];
+                sum[d][2][l] += columns[d][0] * e_x + columns[d][1] * e_y;
+            }
+        }
+    }
+}
+COMPILED_TWICE(slope_each, (int n, const PlaneSliders *s, const SliderRates *rates, double (*sum)[3][LANES]),
+               (n, s, rates, sum))
+
+void sliders_slopes(bool fours, int n, const PlaneSliders *s, const SliderRates *rates, double slope[4][3])
+{
+    double sum[4][3][LANES] = {{{0.0}}};
+    (fours ? slope_each_fours : slope_each_any)(n, s, rates, sum);
+    for (int d = 0; d < 4; d++)
+        for (int t = 0; t < 3; t++)
+            slope[d][t] = sum_of(sum[d][t]);
+}
+
 WITHIN void sum_each(int first, int end, const PlaneSliders *s, double *const *slid, Lanes *restrict lanes)
 {
     const double *const all[] = {slid[0], slid[1], slid[2], slid[3], slid[4], slid[5]};

@@ -82,4 +82,13 @@ void sliders_slide(bool fours, int first, int end, const PlaneSliders *s, double
 /* What they give together. */
 void sliders_sum(bool fours, int first, int end, const PlaneSliders *s, double *const slid[N_SLID], SliderSum *sum);
 
+/* How sliders move with something else: their shift around the centre, and what is as a change of the limit after and
+ * of the shift. */
+typedef struct {
+    const double *turning[2], *limit, *shift[2];
+} SliderRates;
+/* Derivatives of their forces along x, y and around the centre by a shift along x, y, around the centre, and by that
+ * something; a multiple of four sliders. */
+void sliders_slopes(bool fours, int n, const PlaneSliders *s, const SliderRates *rates, double slope[4][3]);
+
 #endif

@@ -11,21 +11,19 @@
 #define WITHIN static inline
 #endif
 
-/* `loop`, which is WITHIN, as `loop_any` and `loop_fours`. */
-#define COMPILED_TWICE(loop, parameters, arguments) \
-    static void loop##_any parameters               \
-    {                                               \
-        loop arguments;                             \
-    }                                               \
-    OF_FOUR static void loop##_fours parameters     \
-    {                                               \
-        loop arguments;                             \
-    }
-
 #if defined __x86_64__ && defined __GNUC__
 #include <cpuid.h>
 
-#define OF_FOUR __attribute__((target("avx")))
+/* `loop`, which is WITHIN, as `loop_any`, small rather than fast, and `loop_fours`. */
+#define COMPILED_TWICE(loop, parameters, arguments)               \
+    __attribute__((cold, minsize)) static void loop##_any parameters       \
+    {                                                             \
+        loop arguments;                                           \
+    }                                                             \
+    __attribute__((target("avx"))) static void loop##_fours parameters \
+    {                                                             \
+        loop arguments;                                           \
+    }
 
 /* Whether processor and operating system have them (Intel, Software Developer's Manual, 1-14.3). */
 static inline bool vectors_of_four(void)
@@ -38,7 +36,15 @@ static inline bool vectors_of_four(void)
     return (low & XMM_AND_YMM) == XMM_AND_YMM;
 }
 #else
-#define OF_FOUR
+#define COMPILED_TWICE(loop, parameters, arguments) \
+    static void loop##_any parameters               \
+    {                                               \
+        loop arguments;                             \
+    }                                               \
+    static inline void loop##_fours parameters      \
+    {                                               \
+        loop##_any arguments;                       \
+    }
 
 static inline bool vectors_of_four(void)
 {
