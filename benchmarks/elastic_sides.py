@@ -13,7 +13,7 @@ import argparse
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -26,6 +26,7 @@ from jointfmu_tools.fem.elastic_sides import Cells, States
 from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
 from jointfmu_tools.host import Instance, opened, unpacked
 from jointfmu_tools.joints.bolted_joint.new import NEW, computed
+from lap_beam_reduction import patches as one_each
 from numpy.typing import NDArray
 from patch_reduction import gross_slip, poles_inside
 from whole_joint import EXAMPLE
@@ -66,13 +67,24 @@ class Joint:
     members: float
 
     @classmethod
-    def of(cls, attached: str, example: Mapping[str, object] = EXAMPLE, refinement: float = 1.0) -> "Joint":
-        """Made as the command makes it, beside finite elements of sizes divided by `refinement` [1]."""
+    def of(
+        cls,
+        attached: str,
+        example: Mapping[str, object] = EXAMPLE,
+        refinement: float = 1.0,
+        elements: bool = False,
+    ) -> "Joint":
+        """Made as the command makes it, beside finite elements of sizes divided by `refinement` [1].
+
+        elements : the contact has a point for each element in place of nine
+        """
         seen: dict[str, object] = {}
         real = computed.whole_joint
 
         def watched(file: ParameterFile, plates: computed.Plates, to: str) -> computed.ComputedJoint:
             joint = WholeJoint.of(plates.assembly(file), to, refinement)
+            if elements:
+                joint = replace(joint, interface=one_each(joint.interface))
             springs = computed._springs(file, plates.preload, joint)
             linear = joint.linear(springs, file.values.bolt_stiffness)
             seen.update(rigid=file, preload=plates.preload, normal=springs[:, 2], linear=linear)

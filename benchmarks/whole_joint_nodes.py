@@ -15,7 +15,7 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from coulomb_springs import Springs
@@ -25,15 +25,13 @@ from jointfmu_tools.fem.elasticity import Cholesky
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops
-from lap_beam_reduction import AT_ONCE, Reduced, patches
+from lap_beam_reduction import AT_ONCE, Reduced
 from numpy.typing import NDArray
 from scipy import sparse as sp
-from scipy.spatial import cKDTree
 
-from jointfmu.joints.bolted_joint import bodies, spring
-from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
+from jointfmu.joints.bolted_joint import bodies, memory, spring
+from jointfmu.joints.bolted_joint.law import shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
-from jointfmu.mechanics.footprint.bolts import pressure_shape
 
 Array = NDArray[np.float64]
 
@@ -128,14 +126,9 @@ class Elements:
     @classmethod
     def clamped(cls, joint: Joint, wrench: Array) -> "Elements":
         """Of a joint under its bolts, to all friction."""
-        values, whole = joint.rigid.values, joint.linear.joint
-        at = patches(whole.interface)
-        shape = pressure_shape(values.pattern)
-        here = cKDTree(shape.position).query(at.position - at.area @ at.position / at.area.sum())[1]
-        pressure = pressures(values, shape, joint.preload, 0.0)[here]
-        pressure *= values.n_bolts * joint.preload / (at.area @ pressure)
-        spring = BoltedJointSpring.of(values)
-        return cls.of(replace(whole, interface=at), pressure, spring, joint.load()[0], wrench)
+        spring = BoltedJointSpring.of(joint.rigid.values)
+        pressure = spring.curve.derivatives(reduction.closed_by(spring, joint.normal), 0)[0]
+        return cls.of(joint.linear.joint, pressure, spring, joint.load()[0], wrench)
 
     def along(self, loads: Sequence[float]) -> tuple[Array, Array]:
         """Work per load (n) [N.m] of the force, and heat (n) [J] so far, on a way through loads from rest."""
@@ -172,9 +165,8 @@ def along_motion(
 @contextmanager
 def finer(modes: int, count: int):
     """The reduction with so many modes and patches."""
-    kept = [
-        (module, name, getattr(module, name)) for module in (bodies, reduction, spring) for name in ("MODES",)
-    ]
+    modules = bodies, memory, reduction, spring
+    kept = [(module, "MODES", module.MODES) for module in modules]
     kept.append((spring, "PATCHES", spring.PATCHES))
     try:
         for module, name, _ in kept:
@@ -215,7 +207,7 @@ def cases() -> dict[str, Array]:
 def compared(name: str, why: bool, refinement: float) -> None:
     """Print rows of the table."""
     attached, drawing, wrench = JOINTS[name]
-    joint = Joint.of(attached, drawing, refinement)
+    joint = Joint.of(attached, drawing, refinement, elements=True)
     elements = Elements.clamped(joint, wrench)
     ways = cases()
     full = {key: elements.along(list(loads)) for key, loads in ways.items()}

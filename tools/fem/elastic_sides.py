@@ -26,7 +26,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
 from .elasticity import Cholesky
-from .patch_work import PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
+from .patch_work import TINY, PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
 from .whole_joint import AXES, Linear, WholeJoint
 
 LEAST = 1e-3
@@ -42,6 +42,8 @@ OPENING = 0.3
 found: the loss in partial slip needs finer ones."""
 STEPS, CLOSE = 40, 1e-9
 """Of Newton's method [1], and its residual over the largest motion [1]."""
+SETTLED = 3
+"""Steps of the sheared ways to equilibrium at all points [1]."""
 GAIN = 10.0
 """Most by which what a mode does at the points is changed [1]."""
 SAME = 1e-9
@@ -185,6 +187,45 @@ class States:
             yield (2.0 * ((0.5 + (number + 1.0) * SPREAD) % 1.0) - 1.0) * unit
 
 
+def closed_by(spring: BoltedJointSpring, normal: Array) -> Array:
+    """Approaches (q) [m] at which the law has a stiffness (q) [Pa/m]."""
+    curve = spring.curve
+    return np.interp(normal, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
+
+
+def settled(
+    linear: Linear, spring: BoltedJointSpring, normal: Array, motions: Array, deformed: Array
+) -> Array:
+    """Deformation (n, s), less its sign, nearer to equilibrium with the law at all points: motions (s, 6).
+
+    normal   : (q) [Pa/m] stiffness of the tightened interface at the points
+    deformed : (n, s) [m] that with the law at the cells
+
+    By steps with the tightened joint's stiffness: slip only lowers it, so they lead there. A way whose step
+    grows, as its contact closes, stays where it is.
+    """
+    joint, law, closed = linear.joint, spring.foundation(), closed_by(spring, normal)
+    at, curve = joint.interface, spring.curve
+    along, stretch = [joint.apart(axis) for axis in AXES], sp.csr_matrix(joint.stretch)
+    rigid = linear.rigid @ motions.T
+    given, before = [rows @ rigid for rows in (*along, stretch.T)], np.full(len(motions), np.inf)
+    tight = curve.derivatives(closed, 0)[0][:, None]
+    moved = -deformed
+    for _ in range(SETTLED):
+        u, v, apart, pulled = (
+            first + rows @ moved for first, rows in zip(given, (*along, stretch.T), strict=True)
+        )
+        now = closed[:, None] - apart
+        size = np.maximum(np.hypot(u, v), TINY)
+        secant = at.area[:, None] * law.backbone(now, size) / size
+        loads = along[0].T @ (secant * u) + along[1].T @ (secant * v) + linear.bolt * (stretch @ pulled)
+        loads -= along[2].T @ (at.area[:, None] * (curve.derivatives(now, 0)[0] - tight))
+        step = linear.solve(-(linear.bodies @ moved + loads))
+        size = np.sum(step * ((linear.bodies + linear.contact + linear.shanks) @ step), axis=0)
+        moved, before = moved + np.where(size < before, step, 0.0), np.minimum(size, before)
+    return -moved
+
+
 SPREAD = 0.8566748838545029 ** np.arange(1.0, 7.0)
 """An even sequence in six dimensions: powers of the inverse root of x^7 = x + 1."""
 
@@ -204,6 +245,8 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     states = States.of(cells, bolts, preload)
     motions = np.array(list(states.motions()))
     deformed = cells.moved @ np.stack([states.forces(motion) for motion in motions], axis=1)
+    sheared = ~np.any(motions[:, 2:5], axis=1)
+    deformed[:, sheared] = settled(linear, spring, normal, motions[sheared], deformed[:, sheared])
     fields = _modes(linear, deformed, motions)
     stretch = cells.loads[3 * states.start.size :] @ fields
     patches = spring.patches
@@ -225,8 +268,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     slip = into_slip(motions)
     bent = -(deformed @ slip.T)
     shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
-    curve, law = spring.curve, spring.foundation()
-    closed = np.interp(normal, curve.derivatives(curve.displacement, 1)[1], curve.displacement)
+    law, closed = spring.foundation(), closed_by(spring, normal)
     every, along = Surface(at.area, closed, rigid_shifts(at.centred)), np.concatenate(traces[:2])
     aim = work_of(law, shears, every, along)
     means = cell_means(joint, patches.position, normal)

@@ -137,9 +137,12 @@ class ElasticBody:
         load[2::3] = share / share.sum()
         return load
 
-    def rigid_motions(self) -> Array:
-        """Displacements (n, 6) of unit translations [m/m] along and rotations [m/rad] about x, y, z."""
-        x, y, z = self.nodes
+    def rigid_motions(self, centre: tuple[float, float] = (0.0, 0.0)) -> Array:
+        """Displacements (n, 6) of unit translations [m/m] along and rotations [m/rad] about x, y, z.
+
+        centre : (x, y) [m] where z = 0, about which it turns
+        """
+        x, y, z = self.nodes - np.array([[*centre, 0.0]]).T
         unit, zero = np.ones_like(x), np.zeros_like(x)
         motions = [
             (unit, zero, zero),

@@ -114,17 +114,19 @@ class WholeJoint:
         shanks = bolt * sp.csr_matrix(self.stretch) @ sp.csr_matrix(self.stretch.T)
         return Linear(self, bodies, contact, shanks, bolt, *self._solved(bodies + contact + shanks))
 
-    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array]:
-        """Displacements (n, 6) under unit motions of side 2's attachment, and those of rigid sides."""
+    def _solved(self, stiffness: sp.csr_matrix) -> tuple[Array, Array, Index, Cholesky]:
+        """Displacements (n, 6) under unit motions of side 2's attachment about the centroid of the contact,
+        and those of rigid sides; unknowns that are free, factors of their stiffness."""
         first, second = self.bodies
-        rigid = np.concatenate([np.zeros((first.size, 6)), second.rigid_motions()])
+        x, y = self.interface.centroid
+        rigid = np.concatenate([np.zeros((first.size, 6)), second.rigid_motions((float(x), float(y)))])
         held = np.concatenate([self.held[0], first.size + self.held[1]])
         free = np.setdiff1d(np.arange(rigid.shape[0]), held)
         moved = np.zeros_like(rigid)
         moved[held] = rigid[held]
         factor = Cholesky(stiffness[free][:, free])
         moved[free] = -factor.solve(stiffness[free][:, held] @ rigid[held])
-        return moved, rigid
+        return moved, rigid, free, factor
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,9 @@ class Linear:
     """A joint whose interface is springs: stiffness matrices (n, n) [N/m] of bodies, contact and bolts.
 
     bolt         : [N/m] stiffness of each bolt
-    moved, rigid : (n, 6) displacement under unit motions of side 2's attachment, and without deformation
+    moved, rigid : (n, 6) displacement under unit motions of side 2's attachment about the centroid of the
+        contact, and without deformation
+    free, factor : unknowns that no attachment holds, and factors of their stiffness
     """
 
     joint: WholeJoint
@@ -142,9 +146,17 @@ class Linear:
     bolt: float
     moved: Array
     rigid: Array
+    free: Index
+    factor: Cholesky
+
+    def solve(self, loads: Array) -> Array:
+        """Displacements (n, s) [m] under loads (n, s) [N] while the attachments rest."""
+        moved = np.zeros_like(loads)
+        moved[self.free] = self.factor.solve(loads[self.free])
+        return moved
 
     def compliances(self) -> Compliances:
-        """Of the joint about its centre."""
+        """Of the joint about the centroid of its contact."""
         parts = (self.contact, self.bodies, self.shanks)
         forces = self.moved.T @ (sum(parts) @ self.moved)
         shapes = self.moved @ np.linalg.inv(forces)
