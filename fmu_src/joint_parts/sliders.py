@@ -34,7 +34,7 @@ def add_sliders(g: Graph) -> None:
 
 def _plane(g: Graph) -> None:
     x, (force, after, shift), slid = _slid()
-    tried = trial(force, *x[2:4], shift)
+    tried = trial(force, x[2], x[3], shift)
     doc = "force, part kept, gain, shift"
     y = [*tried, reaches(tried, after)]
     g.add(
