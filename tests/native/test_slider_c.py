@@ -48,6 +48,12 @@ class PlaneSliders(Structure):
     ]
 
 
+class SliderRates(Structure):
+    """The same name there."""
+
+    _fields_ = [(name, POINTER_TO) for name in ("turning_x", "turning_y", "limit", "shift_x", "shift_y")]
+
+
 class Sum(Structure):
     """`SliderSum`."""
 
@@ -192,6 +198,50 @@ def test_in_a_plane(library: CDLL) -> None:
         assert np.all(np.isfinite(moved)), (K, before, after)
         assert np.all(np.hypot(*moved) <= after * (1.0 + ROUND_OFF) + ROUND_OFF)
     assert 0.2 * MOVES < slipped < 0.8 * MOVES
+
+
+def slopes(library: CDLL, rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """Derivatives (4, 3) of the forces together, by the shift and by what limits and shifts (3, n) follow."""
+    s = PlaneSliders(*(pointer(rows[name]) for name in PLANE), 0.0, 0.0, (c_double * 3)(*shift))
+    given = SliderRates(*map(pointer, (rows["turning_x"], rows["turning_y"], *rates)))
+    found, fours = np.empty((2, 4, 3))
+    for slope, by_four in ((found, False), (fours, AVX)):
+        library.sliders_slopes(by_four, SLIDERS, byref(s), byref(given), pointer(slope))
+    np.testing.assert_array_equal(fours, found)
+    return found
+
+
+def forces_together(
+    rows: dict[str, np.ndarray], shift: np.ndarray, rates: np.ndarray, motion: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (3) after a shift and a motion (4) more, the last of it of what follows; which of them slip."""
+    force, K = [rows["force_x"], rows["force_y"]], rows["K"]
+    after = rows["after"] + motion[3] * rates[0]
+    each = list(of_each(shift + motion[:3]) + motion[3] * rates[1:])
+    slid = slide(force, 1.0, K, each, rows["before"], after, K, rows["per_K"])
+    return together(np.array(slid.force)), beyond(trial(force, 1.0, K, each), after) > 0.0
+
+
+def test_slopes(library: CDLL) -> None:
+    """Finite of whatever sliders; where none begins or ends to slip they are what differences tend to: within
+    the step over the least limit."""
+    rng, step, compared = np.random.default_rng(2), 1e-6, 0
+    for K, before, after, force, shift in moves(plane=True):
+        rates = rng.normal(size=(3, SLIDERS))
+        assert np.all(np.isfinite(slopes(library, rows_of(K, before, after, force), shift, rates)))
+        if compared > MOVES // SLIDERS:
+            continue
+        rows = rows_of(K, 0.1 + before, 0.1 + after + 0.01 * rng.random(SLIDERS), force)
+        found = slopes(library, rows, shift, rates)
+        for slope, motion in zip(found, step * np.eye(4), strict=True):
+            (more, slips), (less, others) = (
+                forces_together(rows, shift, rates, x) for x in (motion, -motion)
+            )
+            if np.array_equal(slips, others):
+                compared += 1
+                difference = (more - less) / (2.0 * step)
+                np.testing.assert_allclose(difference, slope, rtol=0.0, atol=1e-4 * SLIDERS)
+    assert compared > MOVES // SLIDERS
 
 
 def test_a_path_that_moves_nothing_changes_nothing(library: CDLL) -> None:
