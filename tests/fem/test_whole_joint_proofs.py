@@ -108,7 +108,7 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     fine = WholeJoint.of
     monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.6))
     attached, drawing, wrench = JOINTS["bracket"]
-    joint = Joint.of(attached, drawing)
+    joint = Joint.of(attached, drawing, elements=True)
     elements = Elements.clamped(joint, wrench)
     loads = [0.5, 1.0, 2.0, 3.0, 2.0, 0.0, -2.0, -3.0]
     force, heat = elements.along(loads)

@@ -88,12 +88,13 @@ def cell_means(joint: WholeJoint, places: Array, normal: Array) -> sp.csr_matrix
     position = at.centred
     cell = cKDTree(places).query(position)[1]
     weight = at.area * np.maximum(normal, 1e-6 * normal.max())
-    sums = sp.csr_matrix((weight, (cell, np.arange(cell.size))), shape=(len(places), cell.size))
-    total = np.asarray(sums.sum(axis=1)).ravel()
-    for alone in np.flatnonzero(total == 0.0):
-        sums[alone, cKDTree(position).query(places[alone])[1]] = 1.0
-    total = np.asarray(sums.sum(axis=1)).ravel()
-    return (sp.diags(1.0 / total) @ sums).tocsr()
+    alone = np.flatnonzero(np.bincount(cell, weight, minlength=len(places)) == 0.0)
+    nearest = cKDTree(position).query(places[alone])[1]
+    rows, columns = np.append(cell, alone), np.append(np.arange(cell.size), nearest)
+    sums = sp.csr_matrix(
+        (np.append(weight, np.ones(alone.size)), (rows, columns)), shape=(len(places), cell.size)
+    )
+    return (sp.diags(1.0 / np.asarray(sums.sum(axis=1)).ravel()) @ sums).tocsr()
 
 
 @dataclass(frozen=True)
