@@ -2,8 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import TYPE_CHECKING
 
-from ..host import Instance
+from ..host import Instance, description
+
+if TYPE_CHECKING:
+    from fmpy.model_description import ModelDescription
 
 REAL = ("Real", "Float64")
 """Types of real numbers."""
@@ -64,3 +69,9 @@ def reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[floa
     if all(instance.variables[name].type in REAL for name in outputs):
         return instance.reals(outputs).get
     return lambda: [float(instance.value(name)) for name in outputs]
+
+
+@lru_cache(1)
+def described(fmu: str) -> "ModelDescription":
+    """fmpy's model description, read once for all tasks of an FMU."""
+    return description(fmu)
