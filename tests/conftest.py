@@ -198,7 +198,9 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     def found(*asked: Any) -> Any:
         if sys.modules.get("gmsh", sys) is None:  # a test hides it
             return real(*asked)
-        name = f"whole-{sha256(repr(asked).encode()).hexdigest()[:16]}"
+        fem = sys.modules.get("jointfmu_tools.fem.whole_joint")
+        elements = getattr(fem.WholeJoint.of, "keywords", None) if fem else None  # coarser than the product's
+        name = f"whole-{sha256(repr((asked, elements)).encode()).hexdigest()[:16]}"
         folder = made_once(
             tmp_path_factory,
             name,
