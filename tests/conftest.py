@@ -7,7 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, wraps
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -190,26 +190,34 @@ def here_alone() -> Iterator[None]:
 
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of the same plates are solved by finite elements once for all processes that share the tests."""
+    """Bodies of equal plates, and patches of equal contacts, are found once for all processes that share the
+    tests."""
+    from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import computed
 
-    real = computed.whole_joint
+    from jointfmu.joints.bolted_joint import spring
 
-    def found(*asked: Any) -> Any:
-        if sys.modules.get("gmsh", sys) is None:  # a test hides it
-            return real(*asked)
-        fem = sys.modules.get("jointfmu_tools.fem.whole_joint")
-        elements = getattr(fem.WholeJoint.of, "keywords", None) if fem else None  # coarser than the product's
-        name = f"whole-{sha256(repr((asked, elements)).encode()).hexdigest()[:16]}"
-        folder = made_once(
-            tmp_path_factory,
-            name,
-            lambda out: (out.mkdir(), (out / "joint").write_bytes(pickle.dumps(real(*asked)))),
-        )
-        return pickle.loads((folder / "joint").read_bytes())
+    def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(real)
+        def found(*asked: Any) -> Any:
+            fem = sys.modules.get("jointfmu_tools.fem.whole_joint")
+            elements = getattr(fem.WholeJoint.of, "keywords", None) if fem else None  # coarser ones
+            if sys.modules.get("gmsh", sys) is None:  # a test hides it
+                return real(*asked)
+            name = f"{what}-{sha256(pickle.dumps((asked, elements))).hexdigest()[:16]}"
+            folder = made_once(
+                tmp_path_factory,
+                name,
+                lambda out: (out.mkdir(), (out / "found").write_bytes(pickle.dumps(real(*asked)))),
+            )
+            return pickle.loads((folder / "found").read_bytes())
+
+        return found
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "whole_joint", found)
+        patch.setattr(computed, "whole_joint", once("whole", computed.whole_joint))
+        for module in (spring, joint_parameters):
+            patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
         yield
 
 
