@@ -6,8 +6,8 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from functools import cache, wraps
+from contextlib import contextmanager, suppress
+from functools import cache, partial, wraps
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -188,10 +188,20 @@ def here_alone() -> Iterator[None]:
         yield
 
 
+REFINEMENT = {"bodies": 0.5}
+"""Of the elements of plates that `jointfmu new` makes."""
+
+
+@pytest.fixture
+def fine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elements as the product has them: where their digits count."""
+    monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of equal plates, and patches of equal contacts, are found once for all processes that share the
-    tests."""
+    """Bodies of equal plates, of elements twice as large but in tests that are `fine`, and patches of equal
+    contacts are found once for all processes that share the tests."""
     from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import computed
 
@@ -200,11 +210,9 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(real)
         def found(*asked: Any) -> Any:
-            fem = sys.modules.get("jointfmu_tools.fem.whole_joint")
-            elements = getattr(fem.WholeJoint.of, "keywords", None) if fem else None  # coarser ones
             if sys.modules.get("gmsh", sys) is None:  # a test hides it
                 return real(*asked)
-            name = f"{what}-{sha256(pickle.dumps((asked, elements))).hexdigest()[:16]}"
+            name = f"{what}-{sha256(pickle.dumps((asked, REFINEMENT))).hexdigest()[:16]}"
             folder = made_once(
                 tmp_path_factory,
                 name,
@@ -214,8 +222,16 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         return found
 
+    def whole(*asked: Any, solve: Callable[..., Any] = computed.whole_joint) -> Any:
+        with suppress(ImportError), pytest.MonkeyPatch.context() as patch:
+            from jointfmu_tools.fem.whole_joint import WholeJoint
+
+            patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=REFINEMENT["bodies"]))
+            return solve(*asked)
+        return solve(*asked)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "whole_joint", once("whole", computed.whole_joint))
+        patch.setattr(computed, "whole_joint", once("whole", whole))
         for module in (spring, joint_parameters):
             patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
         yield

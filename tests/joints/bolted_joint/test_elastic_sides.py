@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import elastic_sides
 import numpy as np
 import pytest
-from conftest import Fmu, here_alone, refused_line
+from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.fem.whole_joint import WholeJoint
@@ -50,8 +50,8 @@ def made(tmp_path_factory):
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(computed, "whole_joint", watched)
-                if words == (*FOUR,):
-                    patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+                if words != (*FOUR,):
+                    patch.setitem(REFINEMENT, "bodies", 1.0)
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load(path)
