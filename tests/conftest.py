@@ -193,14 +193,14 @@ REFINEMENT = {"bodies": 0.5}
 
 
 @pytest.fixture
-def fine(monkeypatch: pytest.MonkeyPatch) -> None:
+def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     """Elements as the product has them: where their digits count."""
     monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
 
 
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of equal plates, of elements twice as large but in tests that are `fine`, and patches of equal
+    """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal
     contacts are found once for all processes that share the tests."""
     from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import computed

@@ -306,7 +306,7 @@ def made(capsys, *words):
 
 
 @pytest.mark.slow
-def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine):
+def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
     """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
     face; its opening load is the preload over 1 - Phi."""
     facts, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
@@ -318,7 +318,7 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine):
 
 
 @pytest.mark.slow
-def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine):
+def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
     heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     faces, found = made(capsys, *M16, *LOAD)

@@ -403,7 +403,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
     less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
-    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.35))
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]
