@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from jointfmu_fmu_src.proof.standard import FLOOR
 
-from ..host import Instance, opened
-from .task import Rows, Task, described, reader
+from ..host import Instance, description, opened
+from .task import Rows, Task, reader
 
 MOST_STEPS = 100_000
 """Of the solver between two communication points."""
@@ -31,7 +31,7 @@ def available() -> bool:
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy and CVode, FMI 2.0 and 3.0."""
-    with opened(task.folder, described(task.fmu), task.fmu, messages, exchange=True) as instance:
+    with opened(task.folder, description(task.fmu), task.fmu, messages, exchange=True) as instance:
         instance.begin(task.times[0])
         instance.set({**task.settings, **task.given(0)})
         instance.fmu.exitInitializationMode()

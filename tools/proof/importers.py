@@ -8,14 +8,14 @@ from typing import Any
 
 from jointfmu_fmu_src.proof.standard import CO_SIMULATION, MODEL_EXCHANGE
 
-from ..host import opened
+from ..host import description, opened
 from . import exchange
-from .task import Execute, Rows, Task, described, reader
+from .task import Execute, Rows, Task, reader
 
 
 def fmpy(task: Task, messages: list[str]) -> Rows:
     """By fmpy, FMI 2.0 and 3.0."""
-    with opened(task.folder, described(task.fmu), task.fmu, messages) as slave:
+    with opened(task.folder, description(task.fmu), task.fmu, messages) as slave:
         slave.begin(task.times[0])
         slave.set({**task.settings, **task.given(0)})
         slave.fmu.exitInitializationMode()
@@ -31,7 +31,7 @@ def fmpy(task: Task, messages: list[str]) -> Rows:
 def start_values(task: Task, messages: list[str]) -> list[list[Any]]:
     """What the FMU starts the variables `task.outputs` of any type with, by fmpy; one row."""
     exchanged = task.interface == MODEL_EXCHANGE
-    with opened(task.folder, described(task.fmu), task.fmu, messages, exchanged) as slave:
+    with opened(task.folder, description(task.fmu), task.fmu, messages, exchanged) as slave:
         slave.begin()
         return [[slave.value(name) for name in task.outputs]]
 
@@ -111,7 +111,7 @@ def libcosim(task: Task, messages: list[str]) -> Rows:
 
 def _known(task: Task) -> None:
     """Raise ValueError for a variable of a type that ecos leaves as it is and libcosim does not list."""
-    variables = {v.name: v for v in described(task.fmu).modelVariables}
+    variables = {v.name: v for v in description(task.fmu).modelVariables}
     for name in (*task.settings, *task.inputs, *task.outputs):
         if variables[name].type in ("Enumeration", "Int64"):
             raise ValueError(f"{name} is of type {variables[name].type}, which this importer does not take")

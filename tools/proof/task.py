@@ -2,13 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
-from typing import TYPE_CHECKING
 
-from ..host import Instance, description
-
-if TYPE_CHECKING:
-    from fmpy.model_description import ModelDescription
+from ..host import Instance
 
 REAL = ("Real", "Float64")
 """Types of real numbers."""
@@ -69,9 +64,3 @@ def reader(instance: Instance, outputs: Sequence[str]) -> Callable[[], list[floa
     if all(instance.variables[name].type in REAL for name in outputs):
         return instance.reals(outputs).get
     return lambda: [float(instance.value(name)) for name in outputs]
-
-
-@lru_cache(1)
-def described(fmu: str) -> "ModelDescription":
-    """fmpy's model description, read once for all tasks of an FMU."""
-    return description(fmu)
