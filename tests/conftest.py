@@ -173,8 +173,11 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 
 
 @contextmanager
-def here_alone() -> Iterator[None]:
-    """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
+def here_alone(versions: str = "23") -> Iterator[None]:
+    """What is built here is for this machine alone: that all platforms are served is shown of `native`.
+
+    versions : of FMI that are compiled
+    """
     from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
@@ -182,7 +185,8 @@ def here_alone() -> Iterator[None]:
         return libraries(*files[:3], [platform_tuple], **options)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(CACHE, str(parts() / "here"))
+        patch.setenv(CACHE, str(parts() / f"here{versions}"))
+        patch.setattr(kept, "VERSIONS", (*versions,))
         patch.setattr(kept, "libraries", here)
         patch.setattr(system, "libraries", here)
         yield

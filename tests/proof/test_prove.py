@@ -79,7 +79,7 @@ def test_fmus_of_other_laws_prove_themselves(
 ) -> None:
     """Under a name of the user's own, too."""
     name = KINDS[joint].models[-1].name
-    with here_alone():
+    with here_alone("3"):
         fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
     assert fmu.name == "own_joint.fmu"
     assert_all_pass(proved(capsys, fmu))
