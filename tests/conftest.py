@@ -1,5 +1,6 @@
 """Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
+import gc
 import os
 import pickle
 import signal
@@ -40,6 +41,17 @@ RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
 optimization, 20 s without."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """What is imported and collected stays: no search for garbage looks through it, then or later."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
