@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cache, partial, wraps
 from hashlib import sha256
 from importlib.util import find_spec
@@ -238,16 +238,22 @@ def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
         return found
 
-    def whole(*asked: Any, solve: Callable[..., Any] = computed.whole_joint) -> Any:
-        with suppress(ImportError), pytest.MonkeyPatch.context() as patch:
-            from jointfmu_tools.fem.whole_joint import WholeJoint
+    solve = computed.whole_joint
+    kept = once("whole", solve)
 
-            patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=REFINEMENT["bodies"]))
+    def whole(*asked: Any) -> Any:
+        try:
+            from jointfmu_tools.fem.whole_joint import WholeJoint
+        except ImportError:  # a test hides a package
             return solve(*asked)
-        return solve(*asked)
+        if not isinstance(vars(WholeJoint)["of"], classmethod):  # a test has elements of its own
+            return solve(*asked)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=REFINEMENT["bodies"]))
+            return kept(*asked)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "whole_joint", once("whole", whole))
+        patch.setattr(computed, "whole_joint", whole)
         for module in (spring, joint_parameters):
             patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
         yield
