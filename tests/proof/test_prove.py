@@ -17,8 +17,8 @@ from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_fmu_src.proof.members import proof
 from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.proof.importers import VERSIONS as KNOWN
