@@ -253,11 +253,11 @@ def poles_inside(shape: PressureShape, count: int) -> Array:
 
 def gross_slip(points: FrictionPatches, friction: Array, poles: Array) -> Array:
     """Forces (p, 2) along turns about poles (p, 2) [m] of points with a friction (n)."""
-    x, y = turning(SLIDERS)
+    x, y = turning(SLIDERS if np.any(points.radius) else 2)
     places = points.position + points.radius[:, None] * np.column_stack([y, -x])[:, None]
     arm = places - poles[:, None, None]
     way = np.stack([-arm[..., 1], arm[..., 0]], axis=-1) / np.linalg.norm(arm, axis=-1)[..., None]
-    return np.asarray(np.einsum("n,pkni->pi", friction, way)) / SLIDERS
+    return np.asarray(np.einsum("n,pkni->pi", friction, way)) / len(x)
 
 
 def pole_deviations(shape: PressureShape, patches: FrictionPatches) -> Array:

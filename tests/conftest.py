@@ -1,5 +1,6 @@
 """Random cases are the same in every run, so a failure can be replayed. FMUs are built once."""
 
+import gc
 import os
 import pickle
 import signal
@@ -7,7 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial, wraps
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -40,6 +41,17 @@ RELEASED = ("-target", TARGETS[platform_tuple], "-O2", "-s")
 optimization, 20 s without."""
 SLOW_FIXTURES = frozenset({"fmus", "native", "tutorial", "site"})
 """Fixtures that build FMUs or run commands; `fmu`, `host` and others stand on them."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """What is imported and collected stays: no search for garbage looks through it, then or later."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -173,8 +185,11 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 
 
 @contextmanager
-def here_alone() -> Iterator[None]:
-    """What is built here is for this machine alone: that all platforms are served is shown of `native`."""
+def here_alone(versions: str = "23") -> Iterator[None]:
+    """What is built here is for this machine alone: that all platforms are served is shown of `native`.
+
+    versions : of FMI that are compiled
+    """
     from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
@@ -182,32 +197,65 @@ def here_alone() -> Iterator[None]:
         return libraries(*files[:3], [platform_tuple], **options)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(CACHE, str(parts() / "here"))
+        patch.setenv(CACHE, str(parts() / f"here{versions}"))
+        patch.setattr(kept, "VERSIONS", (*versions,))
         patch.setattr(kept, "libraries", here)
         patch.setattr(system, "libraries", here)
         yield
 
 
+REFINEMENT = {"bodies": 0.5}
+"""Of the elements of plates that `jointfmu new` makes."""
+
+
+@pytest.fixture
+def fine_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elements as the product has them: where their digits count."""
+    monkeypatch.setitem(REFINEMENT, "bodies", 1.0)
+
+
 @pytest.fixture(scope="session", autouse=True)
 def solved_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Bodies of the same plates are solved by finite elements once for all processes that share the tests."""
+    """Bodies of equal plates, of elements twice as large but with `fine_elements`, and patches of equal
+    contacts are found once for all processes that share the tests."""
+    from jointfmu_tools.fields import joint_parameters
     from jointfmu_tools.joints.bolted_joint.new import computed
 
-    real = computed.whole_joint
+    from jointfmu.joints.bolted_joint import spring
 
-    def found(*asked: Any) -> Any:
-        if sys.modules.get("gmsh", sys) is None:  # a test hides it
-            return real(*asked)
-        name = f"whole-{sha256(repr(asked).encode()).hexdigest()[:16]}"
-        folder = made_once(
-            tmp_path_factory,
-            name,
-            lambda out: (out.mkdir(), (out / "joint").write_bytes(pickle.dumps(real(*asked)))),
-        )
-        return pickle.loads((folder / "joint").read_bytes())
+    def once(what: str, real: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(real)
+        def found(*asked: Any) -> Any:
+            if sys.modules.get("gmsh", sys) is None:  # a test hides it
+                return real(*asked)
+            name = f"{what}-{sha256(pickle.dumps((asked, REFINEMENT))).hexdigest()[:16]}"
+            folder = made_once(
+                tmp_path_factory,
+                name,
+                lambda out: (out.mkdir(), (out / "found").write_bytes(pickle.dumps(real(*asked)))),
+            )
+            return pickle.loads((folder / "found").read_bytes())
+
+        return found
+
+    solve = computed.whole_joint
+    kept = once("whole", solve)
+
+    def whole(*asked: Any) -> Any:
+        try:
+            from jointfmu_tools.fem.whole_joint import WholeJoint
+        except ImportError:  # a test hides a package
+            return solve(*asked)
+        if not isinstance(vars(WholeJoint)["of"], classmethod):  # a test has elements of its own
+            return solve(*asked)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=REFINEMENT["bodies"]))
+            return kept(*asked)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(computed, "whole_joint", found)
+        patch.setattr(computed, "whole_joint", whole)
+        for module in (spring, joint_parameters):
+            patch.setattr(module, "friction_patches", once("patches", module.friction_patches))
         yield
 
 

@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from ctypes import c_double, c_uint
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
@@ -179,10 +180,16 @@ def opened(
 
 
 def description(fmu: str | Path) -> "ModelDescription":
-    """fmpy's model description of an FMU, not validated."""
+    """fmpy's model description of an FMU, not validated; the last ones are kept while their files last."""
+    file = os.stat(fmu)
+    return _description(str(fmu), (file.st_ino, file.st_size, file.st_mtime_ns))
+
+
+@lru_cache(16)
+def _description(fmu: str, file: tuple[int, ...]) -> "ModelDescription":
     from fmpy import read_model_description
 
-    return read_model_description(str(fmu), validate=False)
+    return read_model_description(fmu, validate=False)
 
 
 @contextmanager

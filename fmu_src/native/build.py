@@ -10,7 +10,7 @@ from jointfmu.parameters import ParameterFile
 
 from ..archive import pack, workshop
 from ..partners import PARTNERS
-from ..proof import proof
+from ..proof.members import proof
 from ..xml_parts import VARIABILITIES
 from .compiled.binary import finished
 from .compiled.compiler import exported, file_name, universal

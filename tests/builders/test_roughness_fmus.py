@@ -32,7 +32,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder with fmi3/NAME.fmu and python/NAME.fmu."""
 
     def make_all(out: Path) -> None:
-        with here_alone():
+        with here_alone("3"):
             for name in NAMES:
                 build([name], ["fmi3", "python"], file_of(name), out)
 

@@ -3,14 +3,12 @@
 import json
 import math
 import shlex
-from functools import partial
 
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.drawing.reading import number, numbers
 from jointfmu_tools.drawing.tables import MATERIAL, classes, row, table, threads
-from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joint_parts import part
 
 from jointfmu.joints import KINDS
@@ -30,9 +28,7 @@ def test_there_are_some():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NEW)
-def test_the_example_makes_a_file_that_loads(capsys, tmp_path, monkeypatch, name):
-    """Of coarse elements."""
-    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+def test_the_example_makes_a_file_that_loads(capsys, tmp_path, name):
     path = tmp_path / "joint.toml"
     words = ["new", name, *shlex.split(NEW[name].example), "--out", path]
     text = said(capsys, *words).out

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import fmpy
 import numpy as np
 import pytest
+import ziglang
 from fmpy import read_model_description
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS
 from natives import SAID
@@ -49,6 +50,17 @@ def qemu() -> str:
 QEMU = qemu()
 
 
+WINDOWS = (
+    str(HOSTS / "windows.c"), "-nostdlib", "-Wl,--entry=mainCRTStartup", "-D_UCRT", "-isystem",
+    str(Path(ziglang.__file__).parent / "lib" / "libc" / "include" / "any-windows-any"), "-lkernel32",
+    *(
+        f"-lapi-ms-win-crt-{part}-l1-1-0"
+        for part in ("convert", "heap", "math", "private", "runtime", "stdio", "string", "utility")
+    ),
+)  # fmt: skip
+"""The system's runtime alone, as FMUs are linked: mingw's would take zig a minute to compile at first."""
+
+
 class Machine(NamedTuple):
     """How to build and run a host; `needs` is what must be there, {what: whether it is}."""
 
@@ -75,7 +87,7 @@ HERE = Machine(
 OTHERS = {
     "windows": Machine(
         TARGETS["x86_64-windows"],
-        (),
+        WINDOWS,
         {"fmi2": "win64", "fmi3": "x86_64-windows"},
         "dll",
         ("wine",),

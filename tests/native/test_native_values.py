@@ -345,7 +345,7 @@ def test_reconfiguration_mode_takes_parameters(host: Host, name: str, exchange: 
 )
 def test_a_parameter_file_is_baked_in(host: Host, tmp_path: Path, name: str, changes: dict[str, Any]) -> None:
     file = default(MODELS[name].joint).with_values(changes, "user", "test")
-    with here_alone():
+    with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)
     instance, plain = host(name, folder=tmp_path).start(STATE[name]), host(name).start(STATE[name])
     assert instance.get() != plain.get()

@@ -17,9 +17,10 @@ from joint_cases import NAMES, law, parameters
 from jointfmu_fmu_src.partners import PARTNERS
 from jointfmu_fmu_src.partners import parameters as partner_parameters
 from jointfmu_fmu_src.partners.laws import GRAVITY
-from jointfmu_fmu_src.proof import computed, proof, standard
+from jointfmu_fmu_src.proof import standard
 from jointfmu_fmu_src.proof.experiments import ReferenceExperiment, models, study
 from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_fmu_src.proof.members import computed, proof
 from jointfmu_fmu_src.proof.reference import Stimulus, results
 from jointfmu_fmu_src.proof.series import TimeSeries, parse, text
 from jointfmu_tools.proof import manifest

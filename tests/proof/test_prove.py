@@ -17,8 +17,8 @@ from conftest import here_alone, refused_line
 from fmpy.cross_check import validate_result
 from fmpy.util import read_csv, read_ref_opt_file
 from jointfmu_fmu_src.native.build import build as native_build
-from jointfmu_fmu_src.proof import proof
 from jointfmu_fmu_src.proof.files import TOLERANCE
+from jointfmu_fmu_src.proof.members import proof
 from jointfmu_fmu_src.proof.standard import FOLDER
 from jointfmu_tools import cli
 from jointfmu_tools.proof.importers import VERSIONS as KNOWN
@@ -79,7 +79,7 @@ def test_fmus_of_other_laws_prove_themselves(
 ) -> None:
     """Under a name of the user's own, too."""
     name = KINDS[joint].models[-1].name
-    with here_alone():
+    with here_alone("3"):
         fmu = native_build(name, default(joint, law), tmp_path, "3", alias="own_joint")
     assert fmu.name == "own_joint.fmu"
     assert_all_pass(proved(capsys, fmu))

@@ -12,7 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from jointfmu_fmu_src.native.code.generate import sources
-from jointfmu_fmu_src.proof import proof
+from jointfmu_fmu_src.proof.members import proof
 from jointfmu_tools.cli import main
 
 from jointfmu.joints import KINDS, MODELS

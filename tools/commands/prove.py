@@ -53,7 +53,7 @@ def _expected(fmu: Path, path: Path) -> Expected:
 
     Raises ValueError if the FMU has not the inputs and outputs of one of the file's joint.
     """
-    from jointfmu_fmu_src.proof import proof
+    from jointfmu_fmu_src.proof.members import proof
 
     from ..host import unpacked
 

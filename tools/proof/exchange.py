@@ -51,8 +51,8 @@ class _Motion:
         from fmpy.sundials import CVodeSolver
 
         self.instance, self.fmu, self.task = instance, instance.fmu, task
-        described, variables = instance.description, instance.variables
-        self.accepts = described.modelExchange.needsCompletedIntegratorStep
+        model, variables = instance.description, instance.variables
+        self.accepts = model.modelExchange.needsCompletedIntegratorStep
         self.continuous = [
             name
             for name in task.inputs
@@ -62,8 +62,8 @@ class _Motion:
         self.failure: Exception | None = None
         self._settle()
         self.solver = CVodeSolver(
-            nx=described.numberOfContinuousStates,
-            nz=described.numberOfEventIndicators,
+            nx=model.numberOfContinuousStates,
+            nz=model.numberOfEventIndicators,
             get_x=self._kept(self.fmu.getContinuousStates),
             set_x=self._kept(self.fmu.setContinuousStates),
             get_dx=self._kept(instance.rates),

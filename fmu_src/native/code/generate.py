@@ -21,6 +21,7 @@ from .law_c import law_c
 
 RUNTIME = Path(__file__).parent.with_name("runtime")
 _GENERATED = ("law.h", "law.c", "variables.c", "model.h", "elementary_tables.h")
+_laws: dict[tuple[object, ...], tuple[str, str]] = {}
 
 
 def runtime(law: Sequence[str] = ()) -> list[Path]:
@@ -43,9 +44,7 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
     """The same without the data, for all parameter files of a structure."""
     native = native_part(model)
     files = _handwritten(model, native)
-    files["law.h"], files["law.c"] = law_c(
-        graph(model, given, native.functions, native.tabulated), model, native
-    )
+    files["law.h"], files["law.c"] = _law(model, given, native)
     files |= {
         "variables.c": variables_c(model),
         "model.h": _model(model, parameters.values, native.memory.size),
@@ -54,6 +53,14 @@ def code(model: Model, parameters: ParameterFile, given: Split) -> dict[str, str
     head = GENERATED.format(version=__version__, of="")
     files |= {n: head + files[n] for n in _GENERATED}
     return dict(sorted((files | {"data.h": placeholder(model, given).header()}).items()))
+
+
+def _law(model: Model, given: Split, native: NativePart) -> tuple[str, str]:
+    """law.h and law.c, made once for all parameter files of a structure."""
+    key = model.name, model.parameters, given.of, given.structure
+    if key not in _laws:
+        _laws[key] = law_c(graph(model, given, native.functions, native.tabulated), model, native)
+    return _laws[key]
 
 
 def token(files: Mapping[str, str]) -> str:

@@ -74,7 +74,7 @@ def test_springs_that_just_touch_have_a_friction(host: Host, tmp_path: Path) -> 
     """Of a range that has just been entered whole, one slider has none but for round-off, which was less than
     none: after some hundred steps of this way forces were no numbers, whatever came then."""
     file = Path(str(files("jointfmu_models"))) / "bolted_joint/box_specimen_roughness.toml"
-    with here_alone():
+    with here_alone("3"):
         build(["BoltedJoint"], ["fmi3"], load(file), tmp_path)
     joint, heat = host("BoltedJoint", folder=tmp_path).start({"preload": 1e4}), 0.0
     most = dict(zip(MOVED, (2.6e-6, 8.4e-7, 6.8e-7, 4.6e-5, 6.8e-6, 7.6e-6), strict=True))

@@ -3,7 +3,6 @@
 import json
 import sys
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.commands.footprint.compute import with_assembly
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
-from jointfmu_tools.fem.whole_joint import WholeJoint
 
 from jointfmu.contact.surface import Elastic
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
@@ -308,7 +306,7 @@ def made(capsys, *words):
 
 
 @pytest.mark.slow
-def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys):
+def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys, fine_elements):
     """The cone of VDI 2230 is within 15 to 20 % of finite elements, which hold what lies under a head as one
     face; its opening load is the preload over 1 - Phi."""
     facts, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
@@ -320,7 +318,7 @@ def test_a_bolt_loaded_at_its_heads_is_that_of_vdi_2230(capsys):
 
 
 @pytest.mark.slow
-def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
+def test_the_load_at_the_faces_passes_the_bolts_by(capsys, fine_elements):
     """VDI's factor n: the nearer to the interface a load enters, the less of it the bolts take."""
     heads, _ = made(capsys, *M16, *LOAD, "--attached", "heads")
     faces, found = made(capsys, *M16, *LOAD)
@@ -331,9 +329,8 @@ def test_the_load_at_the_faces_passes_the_bolts_by(capsys):
 
 
 @pytest.mark.slow
-def test_four_bolts_share_a_load_evenly(capsys, monkeypatch):
+def test_four_bolts_share_a_load_evenly(capsys):
     """Of coarse elements, too."""
-    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
     words = ["--plate", "80x80", "--bolts", "4xM8", "--at", "50x50", "--grip", "20", *M16[6:]]
     facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
     assert facts["whole_load_factor"] == pytest.approx(4.0 * facts["whole_bolt_share"], rel=1e-2)

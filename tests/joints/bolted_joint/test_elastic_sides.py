@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import elastic_sides
 import numpy as np
 import pytest
-from conftest import Fmu, here_alone, refused_line
+from conftest import REFINEMENT, Fmu, here_alone, refused_line
 from jointfmu_fmu_src.building import build
 from jointfmu_tools import cli
 from jointfmu_tools.fem.whole_joint import WholeJoint
@@ -36,7 +36,8 @@ MOTIONS = ("s_rel_x", "s_rel_y", "s_rel_z", "theta_x", "theta_y", "theta_z")
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """Joints that the command makes, with the compliances that finite elements gave it."""
+    """Joints that the command makes, with the compliances that finite elements gave it; that of four bolts,
+    which is compared with its own elements alone, of coarse ones."""
     found, seen = {}, {}
     real = computed.whole_joint
 
@@ -49,6 +50,8 @@ def made(tmp_path_factory):
             path = tmp_path_factory.mktemp("whole") / "joint.toml"
             with pytest.MonkeyPatch.context() as patch:
                 patch.setattr(computed, "whole_joint", watched)
+                if words != (*FOUR,):
+                    patch.setitem(REFINEMENT, "bodies", 1.0)
                 stated = [*words, "--embedding", "0", "--preload", str(preload), "--out", str(path)]
                 assert cli.main(["new", "bolted-joint", *stated, "--json"]) == 0
             file = load(path)
@@ -400,7 +403,7 @@ def test_an_assembly_makes_the_whole_joint(made, plates, tmp_path, capsys, monke
     """Its computed pressure reaches further than the cones of the drawing's joint: the joint is stiffer, by
     less than the interface has of the compliance; a field alone leaves no body behind. Coarse elements do."""
     drawn, out = embedded(made(*FOUR, preload=15e3), tmp_path / "drawn.toml"), tmp_path / "whole.toml"
-    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.5))
+    monkeypatch.setattr(WholeJoint, "of", partial(WholeJoint.of, refinement=0.35))
     words = ["footprint", "compute", str(plates), "--params", str(drawn.path), "--preload", "14200"]
     field, back = tmp_path / "field.csv", tmp_path / "back.toml"
     both = ["--attached", "faces", "--out", str(out), "--field", str(field)]

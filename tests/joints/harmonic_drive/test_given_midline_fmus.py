@@ -57,7 +57,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folders LAW/fmi3 and LAW/python."""
 
     def make_all(out: Path) -> None:
-        with here_alone():
+        with here_alone("3"):
             for one in LAWS:
                 build([SPRING], ["fmi3", "python"], file_of(one), out / one)
                 build([COMPLIANCE], ["fmi3"], file_of(one), out / one)
@@ -163,7 +163,7 @@ def test_another_table_needs_no_compiler(
 
     monkeypatch.setattr(kept, "compiled", refused)
     file = table_of(points)
-    with here_alone():
+    with here_alone("3"):
         build([name], ["fmi3"], file, tmp_path)
     instance, expected = host(name, "fmi3", tmp_path).start(), law(name, file.values).after()
     for inputs in random_inputs(name, 10, seed=11):

@@ -14,7 +14,7 @@ int main(int argc, char **argv)
     Fmu fmu;
     CHECK(fmu_instantiate(&fmu, &library, argv[3], false, false), &fmu.log);
     CHECK(fmu_enter(&fmu) == OK && fmu_exit(&fmu) == OK, &fmu.log);
-    double inputs[MAX_VARIABLES], outputs[MAX_VARIABLES];
+    static double inputs[MAX_VARIABLES], outputs[MAX_VARIABLES];
     for (;;) {
         for (size_t i = 0; i < v.inputs; i++)
             if (scanf("%lf", &inputs[i]) != 1) {
