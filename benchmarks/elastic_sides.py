@@ -22,7 +22,7 @@ import numpy as np
 from jointfmu_fmu_src.native.build import build_fmi3
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
-from jointfmu_tools.fem.elastic_sides import Cells, States
+from jointfmu_tools.fem.reduction.states import Cells, States
 from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
 from jointfmu_tools.host import Instance, opened, unpacked
 from jointfmu_tools.joints.bolted_joint.new import NEW, computed

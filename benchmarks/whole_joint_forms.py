@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from elastic_sides import AXES, Joint, along
-from jointfmu_tools.fem.elastic_sides import elastic_bodies
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
+from jointfmu_tools.fem.reduction.elastic_bodies import elastic_bodies
 from jointfmu_tools.fem.whole_joint import Linear, WholeJoint
 from jointfmu_tools.joints.bolted_joint.new import NEW
 from lap_beam_reduction import patches

@@ -20,8 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 from coulomb_springs import Springs
 from elastic_sides import Joint, along, on_cells
-from jointfmu_tools.fem import elastic_sides as reduction
 from jointfmu_tools.fem.elasticity import Cholesky
+from jointfmu_tools.fem.reduction import elastic_bodies as reduction
+from jointfmu_tools.fem.reduction.states import closed_by
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from jointfmu_tools.joints.bolted_joint.new.computed import with_bodies
 from lap_beam_loops import Joint as Loops
@@ -127,7 +128,7 @@ class Elements:
     def clamped(cls, joint: Joint, wrench: Array) -> "Elements":
         """Of a joint under its bolts, to all friction."""
         spring = BoltedJointSpring.of(joint.rigid.values)
-        pressure = spring.curve.derivatives(reduction.closed_by(spring, joint.normal), 0)[0]
+        pressure = spring.curve.derivatives(closed_by(spring, joint.normal), 0)[0]
         return cls.of(joint.linear.joint, pressure, spring, joint.load()[0], wrench)
 
     def along(self, loads: Sequence[float]) -> tuple[Array, Array]:

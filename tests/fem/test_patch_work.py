@@ -2,7 +2,14 @@
 
 import numpy as np
 import pytest
-from jointfmu_tools.fem.patch_work import PatchWork, Shears, Surface, into_slip, rigid_shifts, work_of
+from jointfmu_tools.fem.reduction.patch_work import (
+    PatchWork,
+    Shears,
+    Surface,
+    into_slip,
+    rigid_shifts,
+    work_of,
+)
 
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default

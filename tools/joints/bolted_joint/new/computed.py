@@ -99,7 +99,7 @@ def whole_of(
     """
 
     with installed("the whole joint"):
-        from ....fem.elastic_sides import elastic_bodies
+        from ....fem.reduction.elastic_bodies import elastic_bodies
         from ....fem.whole_joint import WholeJoint
 
         step("members by finite elements")

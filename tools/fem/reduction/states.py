@@ -1,53 +1,54 @@
-"""Both bodies of a joint between their attachments, reduced to the modes that friction and opening need.
+"""States of a joint between its attachments, on its first way into slip and opening: what its modes are of.
 
 The contact is cut into the cells of the joint's points. Loads on cells and bolts move the bodies by finite
-elements; with the interface's law at each cell, the first way into slip and into opening, along and about all
-axes, gives states of the whole joint. The modes are the deformations that these need most, by their energy
-(proper orthogonal decomposition).
-
-What a mode does at a point of the joint is its mean over the point's cell, by the stiffness there. Few points
-miss what it does inside the cells; their means are changed in common, so that the tightened interface is as
-stiff against all modes as that of the finite elements. At the patches they are then fitted to the work of
-friction (`patch_work`).
+elements; with the interface's law at each cell, motions along and about all axes give states of the whole
+joint. Those that shear alone then come to equilibrium with the law at all points of the finite elements: what
+cells miss of the shift at the edges of slip would miss in the modes, and in the loss.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import scipy.linalg as la
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
-from jointfmu.joints.bolted_joint.law import pressures, working_preload
+from jointfmu.joints.bolted_joint.law import working_preload
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
-from .elasticity import Cholesky
-from .patch_work import TINY, PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
-from .whole_joint import AXES, Linear, WholeJoint
+from ..elasticity import Cholesky
+from ..whole_joint import AXES, Linear, WholeJoint
+from .patch_work import TINY
 
-LEAST = 1e-3
-"""Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
 SHEARED = (0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.3)
 """Motions along the surface, over that at which the linear joint would carry all friction [1]."""
 OPENED = (-0.6, -0.2, 0.3, 0.6, 0.9, 1.2)
 """Motions apart, over that at which the linear joint would lose its clamping force [1]."""
 MIXED = 12
 """Motions along and about all axes at once [1]."""
-OPENING = 0.3
-"""Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
-found: the loss in partial slip needs finer ones."""
 STEPS, CLOSE = 40, 1e-9
 """Of Newton's method [1], and its residual over the largest motion [1]."""
 SETTLED = 3
-"""Steps of the sheared ways to equilibrium at all points [1]."""
-GAIN = 10.0
-"""Most by which what a mode does at the points is changed [1]."""
-SAME = 1e-9
-"""Distances [m] that differ by less are the same: no choice hangs on the last bits."""
+"""Steps of the sheared states to equilibrium at all points [1]."""
+
+
+def states(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> tuple[Array, Array]:
+    """Motions (s, 6) [m, rad] of side 2 from the tightened joint, and the deformation (n, s) [m] under them,
+    less its sign.
+
+    linear : by finite elements
+    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
+
+    Raises RuntimeError if a body can move freely.
+    """
+    cells = Cells.of(linear.joint, spring, normal)
+    found = States.of(cells, linear.joint.bolts - linear.joint.interface.centroid, preload)
+    motions = np.array(list(found.motions()))
+    deformed = cells.moved @ np.stack([found.forces(motion) for motion in motions], axis=1)
+    sheared = ~np.any(motions[:, 2:5], axis=1)
+    deformed[:, sheared] = settled(linear, spring, normal, motions[sheared], deformed[:, sheared])
+    return motions, deformed
 
 
 @dataclass(frozen=True)
@@ -229,143 +230,3 @@ def settled(
 
 SPREAD = 0.8566748838545029 ** np.arange(1.0, 7.0)
 """An even sequence in six dimensions: powers of the inverse root of x^7 = x + 1."""
-
-
-def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
-    """The bodies' modes at the points, patches and bolts of a joint under a preload [N] of each bolt.
-
-    linear : by finite elements
-    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
-
-    Raises RuntimeError if a body can move freely.
-    """
-    joint = linear.joint
-    cells = Cells.of(joint, spring, normal)
-    at = joint.interface
-    bolts = joint.bolts - at.centroid
-    states = States.of(cells, bolts, preload)
-    motions = np.array(list(states.motions()))
-    deformed = cells.moved @ np.stack([states.forces(motion) for motion in motions], axis=1)
-    sheared = ~np.any(motions[:, 2:5], axis=1)
-    deformed[:, sheared] = settled(linear, spring, normal, motions[sheared], deformed[:, sheared])
-    fields = _modes(linear, deformed, motions)
-    stretch = cells.loads[3 * states.start.size :] @ fields
-    patches = spring.patches
-    tight = spring.curve.derivatives(states.start, 1)[1]
-    few = spring.curve.inverse(pressures(spring.joint, patches, preload, 0.0))
-    ratio = spring.foundation().ratio
-    shear = ratio * spring.curve.derivatives(few, 1)[1]
-    x, y = patches.position.T
-    traces = [joint.apart(axis) @ fields for axis in AXES]
-    area, weight = at.area * normal, spring.joint.A_0
-    opening = _matched(
-        cell_means(joint, spring.shape.position, normal) @ traces[2],
-        _planes(spring.shape.position),
-        weight * spring.shape.share * tight,
-        _planes(at.centred),
-        traces[2],
-        area,
-    )
-    slip = into_slip(motions)
-    bent = -(deformed @ slip.T)
-    shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
-    law, closed = spring.foundation(), closed_by(spring, normal)
-    every, along = Surface(at.area, closed, rigid_shifts(at.centred)), np.concatenate(traces[:2])
-    aim = work_of(law, shears, every, along)
-    means = cell_means(joint, patches.position, normal)
-    both = _matched(
-        np.concatenate([means @ traces[0], means @ traces[1]]),
-        rigid_shifts(patches.position),
-        np.tile(weight * patches.share * shear, 2),
-        every.rigid,
-        along,
-        np.tile(ratio * area, 2),
-    )
-    turns = turned(at.centred, patches, means, traces)
-    working = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim)
-    unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
-    both = working.held(working.fitted(both), unit, work_of(law, unit, every, along).stuck)
-    pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
-    moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
-    moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
-    moved["patch_around"] = patches.radius[:, None] * turns
-    most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
-    rounded: dict[str, Any] = {
-        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
-    }
-    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
-    rounded |= {name: _listed(each) for name, each in places.items()}
-    return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
-
-
-def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
-    """Opening of patches at (m, 2) [m] over that of the points (n, 2) [m] with a stiffness (n): (m, n).
-
-    The plane of the whole contact at the patch, and what points differ from theirs in the mean of those that
-    press it: those to which it is the nearest, or the nearest one, by their stiffness. So friction has no
-    pressure that no point has, however the bodies bend between points and patches.
-    """
-    distance = np.hypot(*(patches[:, None] - points).transpose(2, 0, 1))
-    nearest = distance < distance.min(axis=0) + SAME
-    alone = ~nearest.any(axis=1)
-    nearest[alone] = distance[alone] < distance[alone].min(axis=1, keepdims=True) + SAME
-    mean = nearest * np.maximum(stiffness, 1e-6 * stiffness.max())
-    mean = mean / mean.sum(axis=1, keepdims=True)
-    planes = _planes(points)
-    plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
-    return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
-
-
-def _listed(values: Array) -> tuple[float, ...]:
-    return tuple((values + 0.0).tolist())
-
-
-def _modes(linear: Linear, states: Array, motions: Array) -> Array:
-    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most, which
-    moved by (s, 6) [m, rad]."""
-    first = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
-    for _ in range(2):  # twice is enough
-        states = states - first @ (first.T @ (linear.bodies @ states))
-        states = _of_unit_energy(states, linear)
-    weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
-    rest = _unit(weight * states, linear)[:, : MODES - first.shape[1]]
-    return np.concatenate([first, rest], axis=1)
-
-
-def _of_unit_energy(fields: Array, linear: Linear) -> Array:
-    """Displacements (n, s) [m] over the root of twice their energy."""
-    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0)))
-
-
-def _unit(fields: Array, linear: Linear) -> Array:
-    """Displacements (n, k) of unit energy norm that span fields (n, s), those that they need most first."""
-    energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
-    energy, vectors = energy[::-1], vectors[:, ::-1]
-    count = int(np.sum(energy > LEAST**2 * energy[0]))
-    return np.asarray(fields @ (vectors[:, :count] / np.sqrt(energy[:count])))
-
-
-def _planes(place: Array) -> Array:
-    """Openings (n, 3) of places (n, 2) under motions without deformation."""
-    x, y = place.T
-    return np.stack([np.ones_like(x), y, -x], axis=1)
-
-
-def _matched(
-    means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array
-) -> Array:
-    """Means (n, k) of modes, changed in common: springs of weight (n) [N/m] become as stiff as all springs.
-
-    rigid     : (n, 3) motion of the points without deformation; all_rigid (q, 3) of all springs
-    trace     : (q, k) motion of all springs by the modes, which have a stiffness (q) [N/m]
-    """
-    along = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
-    given = np.linalg.solve(
-        all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace)
-    )
-    rest, bent = means - rigid @ along, trace - all_rigid @ given
-    target = bent.T @ (springs[:, None] * bent)
-    target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
-    has, vectors = la.eigh(rest.T @ (weight[:, None] * rest), target)
-    gain = np.minimum(1.0 / np.sqrt(np.maximum(has, GAIN**-2)), GAIN)
-    return np.asarray(rigid @ given + rest @ (vectors * gain) @ vectors.T @ target)

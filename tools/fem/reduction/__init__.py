@@ -1,0 +1,1 @@
+"""The bodies of a whole joint reduced to modes, for `BoltedJoint` with elastic sides."""

@@ -1,0 +1,167 @@
+"""Both bodies of a joint between their attachments, reduced to the modes that friction and opening need.
+
+The modes are the deformations that the `states` of the joint need most, by their energy (proper orthogonal
+decomposition). What a mode does at a point of the joint is its mean over the point's cell, by the stiffness
+there. Few points miss what it does inside the cells; their means are changed in common, so that the tightened
+interface is as stiff against all modes as that of the finite elements. At the patches they are then fitted to
+the work of friction (`patch_work`).
+"""
+
+from typing import Any
+
+import numpy as np
+import scipy.linalg as la
+
+from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
+from jointfmu.joints.bolted_joint.law import pressures
+from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
+from jointfmu.quantity import Array
+
+from ..whole_joint import AXES, Linear
+from .patch_work import PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
+from .states import cell_means, closed_by, states
+
+LEAST = 1e-3
+"""Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
+OPENING = 0.3
+"""Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
+found: the loss in partial slip needs finer ones."""
+GAIN = 10.0
+"""Most by which what a mode does at the points is changed [1]."""
+SAME = 1e-9
+"""Distances [m] that differ by less are the same: no choice hangs on the last bits."""
+
+
+def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
+    """The bodies' modes at the points, patches and bolts of a joint under a preload [N] of each bolt.
+
+    linear : by finite elements
+    normal : (q) [Pa/m] stiffness of the tightened interface at the points of the finite elements
+
+    Raises RuntimeError if a body can move freely.
+    """
+    joint = linear.joint
+    at = joint.interface
+    bolts = joint.bolts - at.centroid
+    motions, deformed = states(linear, spring, normal, preload)
+    fields = _modes(linear, deformed, motions)
+    stretch = joint.stretch.T @ fields
+    patches = spring.patches
+    tight = spring.curve.derivatives(spring.tightened(preload, 0.0), 1)[1]
+    few = spring.curve.inverse(pressures(spring.joint, patches, preload, 0.0))
+    ratio = spring.foundation().ratio
+    shear = ratio * spring.curve.derivatives(few, 1)[1]
+    x, y = patches.position.T
+    traces = [joint.apart(axis) @ fields for axis in AXES]
+    area, weight = at.area * normal, spring.joint.A_0
+    opening = _matched(
+        cell_means(joint, spring.shape.position, normal) @ traces[2],
+        _planes(spring.shape.position),
+        weight * spring.shape.share * tight,
+        _planes(at.centred),
+        traces[2],
+        area,
+    )
+    slip = into_slip(motions)
+    bent = -(deformed @ slip.T)
+    shears = Shears((slip @ motions)[:, (0, 1, 5)], (fields.T @ (linear.bodies @ bent)).T)
+    law, closed = spring.foundation(), closed_by(spring, normal)
+    every, along = Surface(at.area, closed, rigid_shifts(at.centred)), np.concatenate(traces[:2])
+    aim = work_of(law, shears, every, along)
+    means = cell_means(joint, patches.position, normal)
+    both = _matched(
+        np.concatenate([means @ traces[0], means @ traces[1]]),
+        rigid_shifts(patches.position),
+        np.tile(weight * patches.share * shear, 2),
+        every.rigid,
+        along,
+        np.tile(ratio * area, 2),
+    )
+    turns = turned(at.centred, patches, means, traces)
+    working = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim)
+    unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
+    both = working.held(working.fitted(both), unit, work_of(law, unit, every, along).stuck)
+    pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
+    moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
+    moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
+    moved["patch_around"] = patches.radius[:, None] * turns
+    most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
+    rounded: dict[str, Any] = {
+        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
+    }
+    places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
+    rounded |= {name: _listed(each) for name, each in places.items()}
+    return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
+
+
+def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
+    """Opening of patches at (m, 2) [m] over that of the points (n, 2) [m] with a stiffness (n): (m, n).
+
+    The plane of the whole contact at the patch, and what points differ from theirs in the mean of those that
+    press it: those to which it is the nearest, or the nearest one, by their stiffness. So friction has no
+    pressure that no point has, however the bodies bend between points and patches.
+    """
+    distance = np.hypot(*(patches[:, None] - points).transpose(2, 0, 1))
+    nearest = distance < distance.min(axis=0) + SAME
+    alone = ~nearest.any(axis=1)
+    nearest[alone] = distance[alone] < distance[alone].min(axis=1, keepdims=True) + SAME
+    mean = nearest * np.maximum(stiffness, 1e-6 * stiffness.max())
+    mean = mean / mean.sum(axis=1, keepdims=True)
+    planes = _planes(points)
+    plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
+    return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
+
+
+def _listed(values: Array) -> tuple[float, ...]:
+    return tuple((values + 0.0).tolist())
+
+
+def _modes(linear: Linear, states: Array, motions: Array) -> Array:
+    """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most, which
+    moved by (s, 6) [m, rad]."""
+    first = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
+    for _ in range(2):  # twice is enough
+        states = states - first @ (first.T @ (linear.bodies @ states))
+        states = _of_unit_energy(states, linear)
+    weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
+    rest = _unit(weight * states, linear)[:, : MODES - first.shape[1]]
+    return np.concatenate([first, rest], axis=1)
+
+
+def _of_unit_energy(fields: Array, linear: Linear) -> Array:
+    """Displacements (n, s) [m] over the root of twice their energy."""
+    return np.asarray(fields / np.sqrt(np.sum(fields * (linear.bodies @ fields), axis=0)))
+
+
+def _unit(fields: Array, linear: Linear) -> Array:
+    """Displacements (n, k) of unit energy norm that span fields (n, s), those that they need most first."""
+    energy, vectors = np.linalg.eigh(fields.T @ (linear.bodies @ fields))
+    energy, vectors = energy[::-1], vectors[:, ::-1]
+    count = int(np.sum(energy > LEAST**2 * energy[0]))
+    return np.asarray(fields @ (vectors[:, :count] / np.sqrt(energy[:count])))
+
+
+def _planes(place: Array) -> Array:
+    """Openings (n, 3) of places (n, 2) under motions without deformation."""
+    x, y = place.T
+    return np.stack([np.ones_like(x), y, -x], axis=1)
+
+
+def _matched(
+    means: Array, rigid: Array, weight: Array, all_rigid: Array, trace: Array, springs: Array
+) -> Array:
+    """Means (n, k) of modes, changed in common: springs of weight (n) [N/m] become as stiff as all springs.
+
+    rigid     : (n, 3) motion of the points without deformation; all_rigid (q, 3) of all springs
+    trace     : (q, k) motion of all springs by the modes, which have a stiffness (q) [N/m]
+    """
+    along = np.linalg.solve(rigid.T @ (weight[:, None] * rigid), rigid.T @ (weight[:, None] * means))
+    given = np.linalg.solve(
+        all_rigid.T @ (springs[:, None] * all_rigid), all_rigid.T @ (springs[:, None] * trace)
+    )
+    rest, bent = means - rigid @ along, trace - all_rigid @ given
+    target = bent.T @ (springs[:, None] * bent)
+    target += 1e-6 * np.trace(target) / len(target) * np.eye(len(target))
+    has, vectors = la.eigh(rest.T @ (weight[:, None] * rest), target)
+    gain = np.minimum(1.0 / np.sqrt(np.maximum(has, GAIN**-2)), GAIN)
+    return np.asarray(rigid @ given + rest @ (vectors * gain) @ vectors.T @ target)
