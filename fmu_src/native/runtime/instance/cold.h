@@ -2,9 +2,11 @@
 #ifndef JOINTFMU_COLD_H
 #define JOINTFMU_COLD_H
 
-#ifdef __clang__
-#define COLD _Pragma("clang attribute push(__attribute__((cold, minsize)), apply_to = function)")
-#define END_OF_COLD _Pragma("clang attribute pop")
+#ifdef __clang__ /* one attribute each, as older ones know no lists of them */
+#define COLD                                                                    \
+    _Pragma("clang attribute push(__attribute__((cold)), apply_to = function)") \
+    _Pragma("clang attribute push(__attribute__((minsize)), apply_to = function)")
+#define END_OF_COLD _Pragma("clang attribute pop") _Pragma("clang attribute pop")
 #else
 #define COLD
 #define END_OF_COLD

@@ -14,15 +14,21 @@
 #if defined __x86_64__ && defined __GNUC__
 #include <cpuid.h>
 
+#ifdef __clang__
+#define SELDOM __attribute__((cold, minsize))
+#else
+#define SELDOM __attribute__((cold))
+#endif
+
 /* `loop`, which is WITHIN, as `loop_any`, small rather than fast, and `loop_fours`. */
-#define COMPILED_TWICE(loop, parameters, arguments)               \
-    __attribute__((cold, minsize)) static void loop##_any parameters       \
-    {                                                             \
-        loop arguments;                                           \
-    }                                                             \
+#define COMPILED_TWICE(loop, parameters, arguments)                    \
+    SELDOM static void loop##_any parameters                           \
+    {                                                                  \
+        loop arguments;                                                \
+    }                                                                  \
     __attribute__((target("avx"))) static void loop##_fours parameters \
-    {                                                             \
-        loop arguments;                                           \
+    {                                                                  \
+        loop arguments;                                                \
     }
 
 /* Whether processor and operating system have them (Intel, Software Developer's Manual, 1-14.3). */
@@ -36,14 +42,14 @@ static inline bool vectors_of_four(void)
     return (low & XMM_AND_YMM) == XMM_AND_YMM;
 }
 #else
-#define COMPILED_TWICE(loop, parameters, arguments) \
-    static void loop##_any parameters               \
-    {                                               \
-        loop arguments;                             \
-    }                                               \
-    static inline void loop##_fours parameters      \
-    {                                               \
-        loop##_any arguments;                       \
+#define COMPILED_TWICE(loop, parameters, arguments)                    \
+    static void loop##_any parameters                                  \
+    {                                                                  \
+        loop arguments;                                                \
+    }                                                                  \
+    static inline void loop##_fours parameters                         \
+    {                                                                  \
+        loop##_any arguments;                                          \
     }
 
 static inline bool vectors_of_four(void)
