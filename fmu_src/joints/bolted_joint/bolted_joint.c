@@ -906,6 +906,7 @@ Shear patch_rate(const Joint *joint, int j, const double *inputs, const double *
 void patch_slopes(Joint *joint, const double *inputs, const double *memory, double step, Slopes *slope)
 {
     Kind *kind = &joint->kind;
+    double *const tried[2] = {kind->tried[0], kind->tried[1]};
     if (kind->moved == RESTING) { /* where it has hardly moved, the normal force hardly matters */
         for (int j = 0; j < n_patches(); j++)
             slopes_of(kind->tangent[j], slope[j]);
@@ -913,7 +914,7 @@ void patch_slopes(Joint *joint, const double *inputs, const double *memory, doub
     }
     for (int j = 0; j < n_patches(); j++) {
         const PatchPath path = path_of(joint, j, inputs, memory);
-        foundation_slopes(&kind->foundation[j], &path, step, &kind->work, slope[j]);
+        foundation_slopes(&kind->foundation[j], &path, step, tried, &kind->work, slope[j]);
     }
 }
 

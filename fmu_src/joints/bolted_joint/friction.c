@@ -435,6 +435,20 @@ static inline void gain(const Foundation *f, int i, const PatchPath *path, const
     x[X_SMALL] = small_on(f, i, path->from, at);
 }
 
+/* The next pair, that of a range which changes, from its start to an end; `gained` is of `carrying`. */
+static inline void add_range(PlaneSliders s, const Pair *start, const Pair *end, const double gained[2], Abreast *all)
+{
+    const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0, K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
+    const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
+    s.K = K;
+    s.per_K = per_K;
+    s.keeps = keeps;
+    s.carries = carries;
+    s.before = start->limit;
+    s.after = end->limit;
+    add_pair(all, &s, 0);
+}
+
 /* The sliders of a range that changes. */
 static void move_range(const Foundation *f, int i, const PatchPath *path, Middle *middle, double *const moved[2],
                        Work *work, Shear *shear)
@@ -453,18 +467,16 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     for (int at = 0; at < n; at++) {
         gain(f, i, path, &start, &ends[at], points[at], x);
         carrying(x, NULL, gained);
-        const double keeps[2] = {gained[0], gained[0]}, carries[2] = {gained[1], gained[1]};
-        const double K[2] = {ends[at].K, ends[at].K}, soft = K[0] > 0.0 ? 1.0 / K[0] : 0.0, per_K[2] = {soft, soft};
-        s.K = K;
-        s.per_K = per_K;
-        s.keeps = keeps;
-        s.carries = carries;
-        s.before = start.limit;
-        s.after = ends[at].limit;
-        add_pair(&work->abreast, &s, 0);
+        add_range(s, &start, &ends[at], gained, &work->abreast);
         for (int d = 0; d < 3; d++)
             s.shift[d] *= 0.5;
     }
+}
+
+/* Ranges whose springs all touch on the whole way, and those of which some do on it. */
+static int full_on_way(const PatchPath *path)
+{
+    return path->from->full < path->to->full ? path->from->full : path->to->full;
 }
 
 static int touched_on(const PatchPath *path)
@@ -474,7 +486,7 @@ static int touched_on(const PatchPath *path)
 
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)
 {
-    const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
+    const int full = full_on_way(path), touched = touched_on(path);
     const bool rests = path->from->approach == path->to->approach, along = !ELASTIC && rests && path->straight;
     Middle middle = {.known = false};
     *shear = (Shear){.loss = 0.0};
@@ -489,25 +501,25 @@ void foundation_move(const Foundation *f, const PatchPath *path, double *const m
 
 /* Slopes */
 
-/* The next pair, of a range from the first slider on: without more it comes apart as its limit grows. */
-static void add_sloped(const Foundation *f, const PlaneSliders *s, int first, int own, Work *work)
+/* The next pair comes apart: without more as its limits grow with stiffnesses K. */
+static void part_pair(const Foundation *f, int first, double K, Work *work)
 {
     for (int k = 0; k < 2; k++) {
         const int at = work->abreast.n + k;
-        work->apart.limit[at] = -f->mu / f->ratio * s->K[own];
+        work->apart.limit[at] = -f->mu / f->ratio * K;
         for (int d = 0; d < 2; d++) {
             work->apart.turning[d][at] = f->turning[d][first + k];
             work->apart.shift[d][at] = 0.0;
         }
     }
-    add_pair(&work->abreast, s, own);
 }
 
 /* That of a range that changes, with what it gains where the patch comes apart by a step, by differences. */
-static void add_changing(const Foundation *f, int i, const PatchPath *path, const Point *apart, double step, Work *work)
+static void add_parting(const Foundation *f, int i, const PatchPath *path, const Point *apart, double step, Work *work)
 {
     const Point *at[2] = {path->to, apart};
     const Pair start = pair_at(f, i, path->from);
+    const int first = work->abreast.n;
     Pair end[2];
     double gained[2][2];
     for (int k = 0; k < 2; k++) {
@@ -516,20 +528,11 @@ static void add_changing(const Foundation *f, int i, const PatchPath *path, cons
         gain(f, i, path, &start, &end[k], at[k], x);
         carrying(x, NULL, gained[k]);
     }
-    const double soft = end->K > 0.0 ? 1.0 / end->K : 0.0;
     const double per_gain = gained[0][1] > 0.0 ? 1.0 / (step * gained[0][1]) : 0.0;
-    const double keeps[2] = {gained[0][0], gained[0][0]}, carries[2] = {gained[0][1], gained[0][1]};
-    const double K[2] = {end->K, end->K}, per_K[2] = {soft, soft};
-    PlaneSliders s = sliders_on(f, path, 2 * i);
-    s.K = K;
-    s.per_K = per_K;
-    s.keeps = keeps;
-    s.carries = carries;
-    s.before = start.limit;
-    s.after = end->limit;
-    add_sloped(f, &s, 2 * i, 0, work);
+    part_pair(f, 2 * i, end->K, work);
+    add_range(sliders_on(f, path, 2 * i), &start, end, gained[0], &work->abreast);
     for (int k = 0; k < 2; k++) {
-        const int row = work->abreast.n - 2 + k;
+        const int row = first + k;
         work->apart.limit[row] = (end[1].limit[k] - end[0].limit[k]) / step;
         for (int d = 0; d < 2; d++)
             work->apart.shift[d][row] = per_gain * ((gained[1][0] - gained[0][0]) * work->abreast.force[d][row] +
@@ -537,23 +540,27 @@ static void add_changing(const Foundation *f, int i, const PatchPath *path, cons
     }
 }
 
-void foundation_slopes(const Foundation *f, const PatchPath *path, double step, Work *work, double slope[4][3])
+void foundation_slopes(const Foundation *f, const PatchPath *path, double step, double *const tried[2], Work *work,
+                       double slope[4][3])
 {
-    const int full = path->from->full < path->to->full ? path->from->full : path->to->full, touched = touched_on(path);
+    const int full = full_on_way(path), touched = touched_on(path);
     Abreast *all = &work->abreast;
-    double force[3], *const tried[2] = {work->apart.tried[0], work->apart.tried[1]};
+    double force[3];
     PlaneSliders s = full_on(f, path);
     const int first = sliders_stick(all->fours, 2 * full, &s, tried, force);
     const Point apart = foundation_point(f, path->to->approach - step, path->to->full);
-    for (int k = first; k < 2 * full; k += 2)
-        add_sloped(f, &s, k, k, work);
+    for (int k = first; k < 2 * full; k += 2) {
+        part_pair(f, k, f->K[k], work);
+        add_pair(all, &s, k);
+    }
     for (int i = full; i < touched; i++)
-        add_changing(f, i, path, &apart, step, work);
+        add_parting(f, i, path, &apart, step, work);
     if (all->n % 4 > 0) { /* two that have nothing */
         static const double none[2] = {0.0};
         s = (PlaneSliders){.force = {none, none}, .keeps = none, .turning = {none, none}, .K = none, .carries = none,
                            .per_K = none, .before = none, .after = none};
-        add_sloped(f, &s, 0, 0, work);
+        part_pair(f, 0, 0.0, work);
+        add_pair(all, &s, 0);
     }
     const SliderRates rates = {{work->apart.turning[0], work->apart.turning[1]},
                                work->apart.limit,
@@ -742,7 +749,7 @@ static void full_rates(const Foundation *f, int n, const PatchPath *path, const 
 void foundation_rates(const Foundation *f, const PatchPath *path, const double rates[2],
                       const double shift[3], Shear *rate)
 {
-    const int full = path->from->full < path->to->full ? path->from->full : path->to->full;
+    const int full = full_on_way(path);
     const double approach = fmax(path->from->approach, path->to->approach);
     const PathRate moves = {{rates[0], rates[1]}, {shift[0], shift[1], shift[2]}};
     int touched = touched_on(path);

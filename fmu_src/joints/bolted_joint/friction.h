@@ -76,7 +76,7 @@ typedef struct {
 
 /* Beside them, for slopes: shifts in a turn, and what coming apart is as a change of limit and shift. */
 typedef struct {
-    double turning[2][ABREAST], limit[ABREAST], shift[2][ABREAST], tried[2][SLIDERS];
+    double turning[2][ABREAST], limit[ABREAST], shift[2][ABREAST];
 } Apart;
 
 /* Pairs that may slip, of all patches. */
@@ -103,8 +103,9 @@ void foundation_move(const Foundation *foundation, const PatchPath *path, double
                      Shear *shear);
 void foundations_end(Work *work);
 /* Derivatives of the traction of a patch after a path by shifts along x, y and around the centre, and by coming apart;
- * what ranges that change gain by differences over a step. */
-void foundation_slopes(const Foundation *f, const PatchPath *path, double step, Work *work, double slope[4][3]);
+ * what ranges that change gain by differences over a step. `tried` is room for the forces. */
+void foundation_slopes(const Foundation *f, const PatchPath *path, double step, double *const tried[2], Work *work,
+                       double slope[4][3]);
 /* Stiffness of all sliders that touch at a point. */
 double foundation_stick(const Foundation *foundation, const Point *at);
 /* A patch after a path on which all sliders stick, from a traction before; false: it moves more than hardly. */

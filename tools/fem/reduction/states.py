@@ -72,7 +72,7 @@ class Cells:
     def of(cls, joint: WholeJoint, spring: BoltedJointSpring, normal: Array) -> "Cells":
         """Raises RuntimeError if a body can move freely."""
         means = cell_means(joint, spring.shape.position, normal)
-        stretch = sp.csr_matrix(np.concatenate([-joint.heads[0], joint.heads[1]]).T)
+        stretch = sp.csr_matrix(joint.stretch.T)
         loads = sp.vstack([*(means @ joint.apart(axis) for axis in (2, 0, 1)), stretch]).tocsr()
         moved, first = np.zeros(loads.shape[::-1]), 0
         for body, held in zip(joint.bodies, joint.held, strict=True):
@@ -222,8 +222,9 @@ def settled(
         secant = at.area[:, None] * law.backbone(now, size) / size
         loads = along[0].T @ (secant * u) + along[1].T @ (secant * v) + linear.bolt * (stretch @ pulled)
         loads -= along[2].T @ (at.area[:, None] * (curve.derivatives(now, 0)[0] - tight))
-        step = linear.solve(-(linear.bodies @ moved + loads))
-        size = np.sum(step * ((linear.bodies + linear.contact + linear.shanks) @ step), axis=0)
+        rest = -(linear.bodies @ moved + loads)
+        step = linear.solve(rest)
+        size = np.sum(step * rest, axis=0)
         moved, before = moved + np.where(size < before, step, 0.0), np.minimum(size, before)
     return -moved
 

@@ -153,8 +153,7 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
     values, shape, at = file.values, pressure_shape(file.values.pattern), joint.interface
     curve = approach_curve(values)
     normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
-    centred = at.position - at.area @ at.position / at.area.sum()
-    here = normal[cKDTree(shape.position).query(centred)[1]]
+    here = normal[cKDTree(shape.position).query(at.centred)[1]]
     here = here * (values.A_0 * (shape.share @ normal) / (at.area @ here))
     ratio = float(shear_ratio(values))
     return np.stack([ratio * here, ratio * here, here], axis=1)
