@@ -5,15 +5,19 @@ import shutil
 import sys
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from ctypes import c_double, c_uint
 from functools import lru_cache
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
+
+
+_LOADS = Lock()
 
 
 class Message(NamedTuple):
@@ -51,12 +55,13 @@ class Instance:
         self._lines = [] if lines is None else lines
         kinds = {2: (fmi2.FMU2Slave, fmi2.FMU2Model), 3: (fmi3.FMU3Slave, fmi3.FMU3Model)}
         interface = description.modelExchange if exchange else description.coSimulation
-        self.fmu: Any = kinds[self.version][exchange](
-            guid=description.guid,
-            unzipDirectory=folder,
-            modelIdentifier=interface.modelIdentifier,
-            instanceName=name,
-        )
+        with _LOADS, chdir("."):  # fmpy loads from the library's folder, and stays there if it fails
+            self.fmu: Any = kinds[self.version][exchange](
+                guid=description.guid,
+                unzipDirectory=folder,
+                modelIdentifier=interface.modelIdentifier,
+                instanceName=name,
+            )
 
     def instantiate(self, logging: bool = True) -> None:
         """Instantiate; errors and warnings are logged even if logging is off."""
@@ -162,11 +167,9 @@ def opened(
     Both errors are one line that begins with `source`: ValueError if the library cannot be loaded,
     RuntimeError if it does not instantiate.
     """
-    before = Path.cwd()
     try:
         instance = Instance(folder, described, "host", exchange, lines)
     except Exception as error:  # fmpy raises bare Exception, ctypes its own
-        os.chdir(before)  # where fmpy has left it
         reason = " ".join(str(error.__context__ or error).replace(f"{folder}{os.sep}", "").split())
         raise ValueError(f"{source}: its library cannot be loaded ({reason.rstrip('.')})") from None
     try:

@@ -111,12 +111,13 @@ def test_threads_with_their_own_instances_give_the_numbers_of_a_serial_run(fmus:
         instance.free()
         return found
 
-    path = list(sys.path)
+    path, here = list(sys.path), Path.cwd()
     serial = [work(job) for job in jobs]
     with ThreadPoolExecutor(4) as pool:
         parallel = list(pool.map(work, jobs))
     sys.path[:] = path
     assert parallel == serial
+    assert Path.cwd() == here  # fmpy goes to each library's folder as it loads
 
 
 def test_an_instance_may_move_between_threads(fmu: Host) -> None:
