@@ -100,7 +100,7 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
 
 @pytest.mark.slow
 def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
-    """To its slip, three times as far, and back: 1.7 % and 2.5 % of the force were measured, 0.5 % of the heat.
+    """To its slip, three times as far, and back: 1.7 and 2.5 % of the force were measured, 0.5 % of the heat.
     Coarse elements, of which the joint is made too, serve as well.
 
     Friction keeps the normal force of the bolts: patches that follow the bent bodies by themselves do not.
