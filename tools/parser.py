@@ -21,8 +21,15 @@ GROUPS = {
 """{heading: commands}; each is declared by `add` of the module of its name, which `commands` has."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 SHELLS = ("bash", "zsh")
-BESIDE = {"cache": "build", "catalogue": "new", "sweep": "uncertainty", "validate": "prove"}
-"""{command: that in whose module it is declared, by `add_COMMAND`}."""
+BESIDE = {
+    "cache": "build",
+    "catalogue": "new",
+    "footprint": "assembly.footprint",
+    "modes": "assembly.modes",
+    "sweep": "uncertainty",
+    "validate": "prove",
+}
+"""{command: the module that declares it, by `add_COMMAND`} where that is not of its name."""
 
 
 class CommandLine(Parser):

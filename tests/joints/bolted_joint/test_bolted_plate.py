@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
-from jointfmu_tools.commands.footprint.compute import with_assembly
+from jointfmu_tools.commands.assembly import with_assembly
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 
 from jointfmu.contact.surface import Elastic

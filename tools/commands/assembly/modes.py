@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 from jointfmu.files.writing import check_writable, write_bytes
 from jointfmu.mechanics.curve import approach_curve
 
-from ..command_line.common import Answer, Commands, argument, command
-from ..fem import installed
-from ..fields.clamped import clamping
-from .footprint.compute import assembly_arguments, joint_file, judge_assembly, with_assembly
+from ...command_line.common import Answer, Commands, argument, command
+from ...fem import installed
+from ...fields.clamped import clamping
+from . import assembly_arguments, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
-    from ..fem.modes import NaturalModes
+    from ...fem.modes import NaturalModes
 
 MOST = 40
 """Most modes that are asked for."""
 
 
-def add(commands: Commands) -> None:
+def add_modes(commands: Commands) -> None:
     """Declare the command."""
     text = "natural frequencies of a free bolted assembly on the stiffness of its contact"
     sub = command(commands, "modes", run, text)
@@ -34,10 +34,10 @@ def add(commands: Commands) -> None:
 def run(args: argparse.Namespace) -> Answer:
     """Run the command."""
     with installed("the finite-element analysis"):
-        from ..fem import modes as assembly_modes
-        from ..fem import results
-        from ..fem.assembly import load
-        from ..fem.bolted_contact import BoltedContact
+        from ...fem import modes as assembly_modes
+        from ...fem import results
+        from ...fem.assembly import load
+        from ...fem.bolted_contact import BoltedContact
     assembly = load(args.assembly)
     force = float(assembly.bolt_forces(args.preload, args.moment).sum())
     _check(args)

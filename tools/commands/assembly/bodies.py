@@ -13,7 +13,7 @@ from ...drawing.reading import number, numbers
 from ...drawing.tables import threads
 from ...fields.clamped import clamping
 from ...fields.nodal_result import ContactField
-from .compute import check_bolts
+from . import check_bolts
 
 if TYPE_CHECKING:
     from ...fem.geometry import Assembly

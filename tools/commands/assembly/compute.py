@@ -1,87 +1,23 @@
-"""`jointfmu footprint compute`: the pressure of a bolted joint by finite elements, and what `modes` shares
-with it.
-"""
+"""`jointfmu footprint compute`: the pressure of a bolted joint by finite elements."""
 
 import argparse
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from jointfmu.files.writing import write_text
-from jointfmu.joints import KINDS
-from jointfmu.mechanics.curve import Curve, approach_curve
-from jointfmu.parameters import ParameterFile, default, dump, load
+from jointfmu.mechanics.curve import approach_curve
+from jointfmu.parameters import ParameterFile, dump
 
 from ...command_line.common import Answer, Commands, argument, command
-from ...drawing.vdi2230 import proof_load
 from ...fem import installed
-from ...fields.clamped import clamped, clamping
-from ...judgement import Judgement, judge, known_height
-from ...pressure import overload
+from ...fields.clamped import clamping
 from .. import check_files
+from . import assembly_arguments, check_bolts, joint_file, judge_assembly, with_assembly
 
 if TYPE_CHECKING:
     from ...fem.bolted_contact import JointSolution
     from ...fem.convergence import MeshResult
-    from ...fem.geometry import Assembly
-
-
-def assembly_arguments(sub: argparse.ArgumentParser) -> None:
-    """Declare the assembly, `--preload` and `--params`."""
-    argument(sub, "assembly", Path, "bodies and bolts (TOML)", "ASSEMBLY")
-    argument(sub, "--preload", float, "per bolt [N]", "F", default=9e3)
-    argument(sub, "--params", Path, "parameters of the interface (default: box specimen)")
-
-
-def joint_file(path: Path | None) -> ParameterFile:
-    """Parameters of a joint with bolts: of a file, or the default of the first such joint."""
-    joints = list(clamped())
-    if path is None:
-        return default(joints[0])
-    file = load(path)
-    if file.joint not in joints:
-        allowed = " or ".join(repr(name) for name in joints)
-        raise ValueError(f"{path}: joint = {file.joint!r}, expected a parameter file of a {allowed}")
-    return file
-
-
-def check_bolts(option: str, file: ParameterFile) -> None:
-    """Refuse an option for the whole joint where the file has no bolts that bear."""
-    if not file.flat.get("bolt_stiffness", 0.0) > 0.0:
-        raise ValueError(
-            f"{option} without the stiffness of a bolt: expected bolt_stiffness above 0 N/m in the file of "
-            "--params"
-        )
-
-
-def judge_assembly(
-    file: ParameterFile, assembly: "Assembly", preload: float, mean: float, peak: float
-) -> Judgement:
-    """The judgement of an assembly's contact at a preload [N] per bolt, mean and greatest pressure [Pa]."""
-    found = judge(KINDS[file.joint].law_of(file.values), [mean], known_height(file), peak)
-    return found.with_warnings(overload("preload", preload, proof_load(assembly.bolts.hole_diameter)))
-
-
-def with_assembly(file: ParameterFile, assembly: "Assembly", whole: bool) -> ParameterFile:
-    """The joint's parameters with the area and the materials of an assembly; all of its bolts if `whole`.
-
-    Where the bolts are no two rows, the pressure under their heads carries a moment.
-    """
-    changes = {"A_0": assembly.contact_area}
-    for name in ("side1", "side2"):
-        body = getattr(assembly, name)
-        changes |= {f"{name}.E": body.E, f"{name}.nu": body.nu}
-    if whole:
-        rows = assembly.outer_rows()
-        changes |= {"n_bolts": float(len(assembly.bolts.positions))}
-        if rows is None:
-            changes |= {"row_bolts": 1.0, "row_distance": assembly.bolts.head_diameter}
-        else:
-            changes |= {"row_bolts": float(rows[0].sum()), "row_distance": assembly.row_distance}
-    old = file.flat
-    new = {name: v for name, v in changes.items() if not math.isclose(old[name], v, rel_tol=1e-12)}
-    return file.with_values(new, "derived", f"from the assembly {assembly.name}")
 
 
 FINEST = 5
@@ -126,7 +62,8 @@ def run(args: argparse.Namespace) -> Answer:
     file = with_assembly(file, assembly, whole=args.out is not None)
     levels = convergence.refinements(args.refine, args.refinement)
     with installed("the finite-element analysis"):
-        rows, solution = convergence.study(assembly, _law(file), args.preload, moment, levels)
+        curve = approach_curve(file.values)
+        rows, solution = convergence.study(assembly, curve, args.preload, moment, levels)
     written = _write(args, file, solution)
     facts = _findings(solution, moment, args.preload)
     found = judge_assembly(file, assembly, args.preload, facts["p_mean"], solution.peak)
@@ -134,10 +71,6 @@ def run(args: argparse.Namespace) -> Answer:
     document = facts | {"meshes": [_mesh(row) for row in rows], "written": written}
     lines = [*_lines(facts), *_table(rows)]
     return Answer(document=document, lines=lines, judgement=found, written=written)
-
-
-def _law(file: ParameterFile) -> Curve:
-    return approach_curve(file.values)
 
 
 def _check(args: argparse.Namespace) -> None:

@@ -13,15 +13,14 @@ from ...command_line.common import Answer, Commands, Parser, argument, command
 from ...fields.clamped import clamping
 from ...judgement import judge, known_height
 from .. import check_files
-from . import bodies, compute
-from .compute import joint_file
+from . import bodies, compute, joint_file
 
 if TYPE_CHECKING:
     from ...fields.nodal_result import ContactField
     from ...fields.reduction import Reduction
 
 
-def add(commands: Commands) -> None:
+def add_footprint(commands: Commands) -> None:
     """Declare the command and its sub-commands."""
     text = "the contact pressure of a bolted joint: from a file, or by finite elements"
     top = commands.add_parser("footprint", help=text, description=text)
