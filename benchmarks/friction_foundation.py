@@ -74,8 +74,7 @@ class Theorem:
 
     def area(self, size: float) -> float:
         """Loss of a loop of an amplitude [m], per area [J/m2]."""
-        work = float(self.share @ self.spring.foundation().work(self.approach, size))
-        return 8.0 * (work - 0.5 * self.force(size) * size)
+        return float(self.share @ self.spring.foundation().loop(self.approach, size)[0])
 
 
 def deviations(

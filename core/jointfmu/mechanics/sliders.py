@@ -127,22 +127,6 @@ class Carried:
     slope: Number
 
 
-@dataclass(frozen=True, slots=True)
-class Way:
-    """What sliders meet on a straight path.
-
-    shift  : [m] along the surface
-    change : [m] of the approach
-    rise   : [Pa] integral of the stiffness over it, ratio/friction times the mean rise of the limits
-    small  : whether the mean stiffness follows from the ends, to the fourth order, as the rise cancels
-    """
-
-    shift: Vector
-    change: Number
-    rise: Number
-    small: Number
-
-
 @dataclass(frozen=True)
 class Foundation:
     """The sliders of an interface.
@@ -208,12 +192,6 @@ class Foundation:
         now, then, _ = self.slipped(approach, shift)
         return np.asarray(self.friction * (now - then))
 
-    def work(self, approach: ArrayLike, shift: ArrayLike) -> Array:
-        """Integral (...) [J/m2] of the backbone over the shift from 0."""
-        now, _, energy = self.slipped(approach, shift)
-        size = np.asarray(shift, dtype=np.float64)
-        return np.asarray(slipping_work(self.friction, self.ratio, size, now, energy))
-
     def slipped(self, approach: ArrayLike, shift: ArrayLike) -> tuple[Array, Array, Array]:
         """Loads (...) [Pa] now and where springs have slipped, and the energy (...) [J/m2] in between.
 
@@ -239,10 +217,6 @@ class Foundation:
         loss, stored = (np.where(small, *each) for each in zip(near, far, strict=True))
         return loss, stored
 
-    def _ranges(self) -> tuple[Array, Array]:
-        """Lower and upper ends (..., n/2) [m] of the ranges of heights."""
-        return self.height[..., :-1], self.height[..., 1:]
-
     @cached_property
     def _ends(self) -> list[Array]:
         """Load [Pa] and stiffness [Pa/m] of the curve at the heights."""
@@ -251,17 +225,19 @@ class Foundation:
     def carried(self, approach: ArrayLike) -> Carried:
         """What the sliders have at approaches (...) [m]."""
         delta = np.asarray(approach, dtype=np.float64)[..., None]
-        low, high = self._ranges()
-        first, last = ([end[..., part] for end in self._ends] for part in (slice(-1), slice(1, None)))
-        touches, full = delta >= low, delta >= high
-        now = [delta, *self.curve.derivatives(delta, 2)]
-        pair = of_range(now, [low, *first], [high, *last], touches, full, self.ratio, self.friction)
-        limit = np.stack([one.limit for one in pair], axis=-1)
-        return Carried(
-            np.repeat(pair[0].stiffness, 2, axis=-1),
-            limit.reshape(*limit.shape[:-2], -1),
-            np.repeat(pair[0].slope, 2, axis=-1),
+        (low, p_low, k_low), (high, p_high, k_high) = (
+            [each[..., part] for each in (self.height, *self._ends)] for part in (slice(-1), slice(1, None))
         )
+        touches, full = delta >= low, delta >= high
+        p, k, slope = self.curve.derivatives(delta, 2)
+        width = np.where(touches, np.where(full, high, delta) - low, 0.0)
+        load = np.where(touches, np.where(full, p_high, p) - p_low - k_low * width, 0.0)
+        springs = np.where(touches, np.where(full, k_high, k) - k_low, 0.0)
+        bend = np.where(touches & ~full, slope, 0.0)
+        each, rate, early, late = touching(load, springs, bend, width, self.ratio, self.friction)
+        grown = self.friction / self.ratio * each * np.where(full, delta - high, 0.0)
+        limit = np.stack([early + grown, late + grown], axis=-1).reshape(*each.shape[:-1], -1)
+        return Carried(np.repeat(each, 2, axis=-1), limit, np.repeat(rate, 2, axis=-1))
 
     def moved(self, force: Array, before: ArrayLike, after: ArrayLike, shift: ArrayLike) -> Moved:
         """The sliders after a straight path, see `slide`.
@@ -275,12 +251,13 @@ class Foundation:
         """
         path, end = _Path.of(before, after, self._along(shift)), self.carried(after)
         start = self.carried(before) if np.any(path.change) else end
-        slid, loss = on_way(_parts(force), start, end, self._way(start, end, path)), None
-        if np.any(start.stiffness != end.stiffness):
-            across = ~self._stays(path)
+        slid, springs = self._slid(force, start, end, path), (start.stiffness, end.stiffness)
+        loss, stays = slid.loss, springs[0] == springs[1]
+        if not np.all(stays):
+            across = ~self._touches_alike(path)
             middle = self._halfway(force, start, path) if np.any(across) else [0.0, 0.0]
-            loss = heat(_parts(force), path.parts, start, end, slid, across, middle)
-        loss = slid.loss if loss is None else loss
+            ends = _parts(force), slid.force
+            loss = np.where(stays, loss, changing_loss(*ends, path.parts, springs, slid.slip, across, middle))
         return Moved(np.stack(slid.force, axis=-2), np.sum(loss, axis=-1), self._tangent(*slid.tangent))
 
     def _along(self, shift: ArrayLike) -> Array:
@@ -296,26 +273,29 @@ class Foundation:
         each = np.stack([xx, xy, yy, x_t, y_t, x_t * e_x + y_t * e_y])
         return np.asarray(np.moveaxis(np.sum(each, axis=-1), 0, -1))
 
-    def _way(self, start: Carried, end: Carried, path: "_Path") -> "Way":
-        """What the sliders (..., n) meet on a path."""
-        if start is end:
-            return Way(path.parts, 0.0, 0.0, True)
-        small = self._stays(path) & (
-            np.abs(path.change) < SMALL * np.repeat(np.diff(self.height), 2, axis=-1)
-        )
-        limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
-        rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
-        return Way(path.parts, path.change, rise, small | (path.change == 0.0))
+    def _slid(self, force: Array, start: Carried, end: Carried, path: "_Path") -> Slid:
+        """Sliders (..., n) after a path; the loss is right where the stiffness stays, else see `moved`."""
+        change: Number = path.change
+        rise: Number = 0.0
+        small: Number = True
+        if start is not end:
+            steps = np.repeat(np.diff(self.height), 2, axis=-1)
+            small = (self._touches_alike(path) & (np.abs(change) < SMALL * steps)) | (change == 0.0)
+            limits = (end.limit - start.limit).reshape(*end.limit.shape[:-1], -1, 2)
+            rise = 0.5 * self.ratio / self.friction * np.repeat(np.sum(limits, axis=-1), 2, axis=-1)
+        ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
+        keeps, carries = carrying(*ends, change, rise, small)
+        springs = end.stiffness, compliance(end.stiffness)
+        return slide(_parts(force), keeps, carries, path.parts, start.limit, end.limit, *springs)
 
     def _halfway(self, force: Array, start: Carried, path: "_Path") -> Vector:
         """Forces of the sliders in the middle of a path."""
         half = path.part(0.5)
-        there = self.carried(half.last[..., 0])
-        return on_way(_parts(force), start, there, self._way(start, there, half)).force
+        return self._slid(force, start, self.carried(half.last[..., 0]), half).force
 
-    def _stays(self, path: "_Path") -> NDArray[np.bool_]:
+    def _touches_alike(self, path: "_Path") -> NDArray[np.bool_]:
         """Whether all, some or none of the springs of sliders (..., n) touch at both ends of a path alike."""
-        low, high = (np.repeat(h, 2, axis=-1) for h in self._ranges())
+        low, high = (np.repeat(h, 2, axis=-1) for h in (self.height[..., :-1], self.height[..., 1:]))
         first, last = path.first, path.last
         return np.asarray(((first > low) == (last > low)) & ((first >= high) == (last >= high)))
 
@@ -351,11 +331,6 @@ class _Path:
 def _parts(vector: Array) -> tuple[Array, Array]:
     """Components (..., n) of vectors (..., 2, n)."""
     return vector[..., 0, :], vector[..., 1, :]
-
-
-def slipping_work(friction: Number, ratio: Number, shift: Number, load: Number, energy: Number) -> Number:
-    """Integral [J/m2] of the backbone over the shift [m] from 0, see `Foundation.slipped`."""
-    return friction * (load * shift - friction / ratio * energy)
 
 
 def _cycle(
@@ -409,57 +384,6 @@ def touching(
     apart = np.minimum(springs * (SPREAD * width), normal)  # else the springs begin at the lower height
     half = 0.5 * friction
     return 0.5 * ratio * springs, 0.5 * ratio * bend, half * (normal - apart), half * (normal + apart)
-
-
-def of_range(
-    now: Vector,
-    low: Vector,
-    high: Vector,
-    touches: Number,
-    full: Number,
-    ratio: Number,
-    friction: Number,
-) -> tuple[Carried, Carried]:
-    """The early and the late slider of a range of heights at an approach.
-
-    now           : approach [m], load [Pa] of the curve there, its stiffness [Pa/m] and slope [Pa/m2]
-    low, high     : heights [m] between which the springs are, load and stiffness of the curve there
-    touches, full : whether some, or all, of the springs touch
-    """
-    delta, load, springs, bend = now
-    width = where(touches, where(full, high[0], delta) - low[0], 0.0)
-    load = where(touches, where(full, high[1], load) - low[1] - low[2] * width, 0.0)
-    springs = where(touches, where(full, high[2], springs) - low[2], 0.0)
-    bend = where(touches, where(full, 0.0, bend), 0.0)
-    each, slope, early, late = touching(load, springs, bend, width, ratio, friction)
-    grown = friction / ratio * each * where(full, delta - high[0], 0.0)
-    return Carried(each, early + grown, slope), Carried(each, late + grown, slope)
-
-
-def on_way(force: Vector, start: Carried, end: Carried, way: Way) -> Slid:
-    """Sliders after a way; the loss is right where the stiffness stays, else see `heat`."""
-    ends = (start.stiffness, start.slope), (end.stiffness, end.slope)
-    keeps, carries = carrying(*ends, way.change, way.rise, way.small)
-    springs = end.stiffness, compliance(end.stiffness)
-    return slide(force, keeps, carries, way.shift, start.limit, end.limit, *springs)
-
-
-def heat(
-    force: Vector,
-    shift: Vector,
-    start: Carried,
-    end: Carried,
-    slid: Slid,
-    across: Number,
-    middle: Vector,
-) -> Number:
-    """Loss [J/m2] of sliders on a way.
-
-    across : whether the springs begin or cease to touch on it; then `middle` are the forces half way
-    """
-    stiffness = start.stiffness, end.stiffness
-    changing = changing_loss(force, slid.force, shift, stiffness, slid.slip, across, middle)
-    return where(start.stiffness == end.stiffness, slid.loss, changing)
 
 
 def rest_rule(stiff: Number, now: Number, falls: Number) -> tuple[Number, Number]:
