@@ -19,7 +19,7 @@ from unittest.mock import patch
 
 import native_fmus
 import numpy as np
-from jointfmu_fmu_src.native.build import build_fmi3
+from jointfmu_fmu_src.native.build import build
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
 from jointfmu_tools.fem.reduction.states import Cells, States
@@ -206,7 +206,7 @@ def times(joint: Joint, folder: Path) -> None:
 
 def closed(joint: Joint, folder: Path, paths: int) -> None:
     """Print the least work of closed paths over their heat."""
-    path = build_fmi3("BoltedJoint", joint.file, folder, "tunable")
+    path = build("BoltedJoint", joint.file, folder, "3")
     rng, unit, least = np.random.default_rng(1), 0.7 * joint.load() / stiffnesses(joint)[0], np.inf
     with unpacked(path) as (unzipped, described):
         for _ in range(paths):

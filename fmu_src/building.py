@@ -1,6 +1,6 @@
 """`jointfmu build`: names and flavours to FMU files."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
 from pathlib import Path
@@ -10,13 +10,13 @@ from jointfmu.parameters import ParameterFile, default
 from jointfmu.progress import each
 
 from .naming import checked_name
-from .native.build import build_fmi2, build_fmi3
+from .native.build import build as build_native
 from .python.build import build as build_python
 from .xml_parts import VARIABILITIES
 
-FLAVOURS: dict[str, Callable[[str, ParameterFile, Path, str, str], Path]] = {
-    "fmi2": build_fmi2,
-    "fmi3": build_fmi3,
+FLAVOURS: dict[str, Callable[..., Path]] = {
+    "fmi2": partial(build_native, version="2"),
+    "fmi3": partial(build_native, version="3"),
     "python": build_python,
 }
 
@@ -53,14 +53,15 @@ def build(
     for name in names:
         if parameters:
             MODELS[name].of(parameters.joint, parameters.values)
-    work = partial(_built, flavours, parameters, out, (variability, alias or ""))
+    how = {"variability": variability, "alias": alias or ""}
+    work = partial(_built, flavours, parameters, out, how)
     built = each(pool, work, "build", names)
     return [path for paths in zip(*built, strict=True) for path in paths]
 
 
 def _built(
-    flavours: Sequence[str], parameters: ParameterFile | None, out: Path, how: tuple[str, str], name: str
+    flavours: Sequence[str], parameters: ParameterFile | None, out: Path, how: Mapping[str, str], name: str
 ) -> list[Path]:
     """Build an FMU in some flavours, which share what is compiled; `how`: its variability and alias."""
     file = parameters or default(MODELS[name].joint)
-    return [FLAVOURS[flavour](name, file, out / flavour, *how) for flavour in flavours]
+    return [FLAVOURS[flavour](name, file, out / flavour, **how) for flavour in flavours]

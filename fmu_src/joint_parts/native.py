@@ -76,11 +76,6 @@ def named(numbers: Named, counts: Named = ()) -> Definitions:
     return Definitions(counted, real)
 
 
-def nothing(graph: Graph, model: Model) -> Definitions:
-    """No constants."""
-    return Definitions()
-
-
 @dataclass(frozen=True, slots=True)
 class NativePart:
     """How a joint becomes C.
@@ -93,7 +88,7 @@ class NativePart:
 
     functions: Callable[[Graph, Model], None]
     shared: Sequence[str]
-    definitions: Callable[[Graph, Model], Definitions] = nothing
+    definitions: Callable[[Graph, Model], Definitions] = lambda graph, model: Definitions()
     memory: Layout = Layout({})
 
     @property

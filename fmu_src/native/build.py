@@ -21,16 +21,6 @@ from .page import documentation
 from .terminals import terminals_and_icons
 
 
-def build_fmi2(name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "") -> Path:
-    """Write `out/name.fmu` of FMI 2.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "2", variability, alias)
-
-
-def build_fmi3(name: str, parameters: ParameterFile, out: Path, variability: str, alias: str = "") -> Path:
-    """Write `out/name.fmu` of FMI 3.0 for co-simulation and model exchange; see `build`."""
-    return build(name, parameters, out, "3", variability, alias)
-
-
 def build(
     name: str,
     parameters: ParameterFile,
@@ -39,8 +29,11 @@ def build(
     variability: str = VARIABILITIES[0],
     alias: str = "",
 ) -> Path:
-    """Write `out/name.fmu`; an existing file is replaced in one go. Equal content gives an equal file.
+    """Write `out/name.fmu` for co-simulation and model exchange; an existing file is replaced in one go.
 
+    Equal content gives an equal file.
+
+    version     : of FMI, "2" or "3"
     variability : of the parameters, one of VARIABILITIES
     alias       : the name that the FMU has instead of its own
 

@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element, SubElement
 
@@ -36,40 +37,6 @@ _TITLES = {
     "validation": "Load ramp, loop, shipped models, neighbours of refusals",
     "uncertainty-analysis": "Samples of all real parameters",
 }
-_PAGE = """\
-The proof inside this FMU
-
-The folder extra/{standard} holds experiments after FMI-LS-REF {version} with
-reference results. They were computed by the Python package jointfmu {own}, not by this FMU.
-
-{counts}
-
-How to run them
-  jointfmu prove FMU
-or by any importer: set the parameters of the experiment (SSV), apply its inputs (CSV), take steps of its
-stepSize and compare the outputs at the times of its results (CSV). Each input is held for a step before these
-times, so it does not matter whether an importer applies it at the begin or at the end of a step.
-In model exchange, where the FMU offers it: a solver with a relative tolerance of {solver:g} or less, inputs
-as straight lines between their rows, and a completed integrator step at each of these, by which a joint with
-memory accepts its path.
-
-Tolerance
-  |value - reference| <= {tolerance:g} max(|reference|, {floor:g} nominal value)
-An importer that prints six digits rounds by 5e-6. The compiled law and the package differ by far less: 1e-8
-at neighbours of refusals, 1e-9 elsewhere; a solver adds 4e-10 where there are states. Below a millionth of
-its nominal value an output is round-off.
-
-What the experiments are
-  smoke test: a few loads.
-  validation: the load ramp; of a joint with memory a loop; shipped models of the structure of this FMU;
-    neighbours of refusals: parameters, one at a time, just inside their intervals.
-  uncertainty analysis: all real parameters within 1 %. This is a test plan: it does not say how well the
-    numbers are known. parameters/study.toml has it for jointfmu uncertainty.
-
-Requirements
-  What the FMU takes and refuses: {page}.
-  Where each number comes from: parameters/{file}.toml beside the experiments.
-"""
 
 
 class RelatedFile(NamedTuple):
@@ -196,7 +163,8 @@ def _manifest(related: Sequence[RelatedFile]) -> bytes:
 
 def _text(own: str, experiments: Sequence[ReferenceExperiment], native: bool) -> str:
     counts = {p: sum(one.purpose == p for one in experiments) for p in standard.PURPOSES}
-    return _PAGE.format(
+    page = Path(__file__).with_name("page.txt").read_text(encoding="utf-8")
+    return page.format(
         standard=standard.NAME,
         version=standard.VERSION,
         own=__version__,

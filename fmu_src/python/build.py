@@ -21,41 +21,8 @@ from jointfmu.parameters import ParameterFile, dump
 
 _PRIVATE = "PRIVATE_PACKAGE"
 """Stands for the name that the digest of all sources gives."""
-_ENTRY = '''"""Entry point of {name} for pythonfmu; the code is in the package beside it."""
-
-import atexit
-import ctypes
-import sys
-from pathlib import Path
-
-# At exit pythonfmu 0.7 reads what it has freed, unless it is asked to tidy up before.
-for library in Path(__file__).resolve().parent.parent.glob("binaries/*/{name}.so"):
-    try:
-        atexit.register(ctypes.CDLL(str(library)).finalizePythonInterpreter)
-    except (OSError, AttributeError):
-        pass
-# pythonfmu 0.7 runs this file once per instance and gives back one reference to its globals too many
-# each time: without this one the second instance would find them freed.
-ctypes.pythonapi.Py_IncRef(ctypes.py_object(globals()))
-
-try:
-    import numpy  # noqa: F401
-except ImportError as error:
-    raise ImportError(
-        f"{name} needs the Python package numpy, which {{sys.executable}} lacks ({{error}}); "
-        f"install it with: {{sys.executable}} -m pip install numpy"
-    ) from None
-
-import {package}.fmus.python.slave as slave
-from {package}.{kind} import KIND
-
-
-class {name}(slave.JointSlave):
-    kind = KIND
-    fmu = "{fmu}"
-    content = "{digest}"
-    variability = "{variability}"
-'''
+_ENTRY = Path(__file__).with_name("entry.txt")
+"""Text of an FMU's own module, with places for its names."""
 
 
 def runtime_sources(kind: Kind) -> dict[str, str]:
@@ -113,7 +80,7 @@ def build(
         script = work / "src" / f"{title}_{digest}.py"
         entry = {"package": package, "kind": _inside(kind.package), "digest": digest}
         entry["variability"] = variability
-        _write(script, _ENTRY.format(name=title, fmu=name, **entry))
+        _write(script, _ENTRY.read_text(encoding="utf-8").format(name=title, fmu=name, **entry))
         for inside, text in sources.items():
             root = work / "src" if inside == "parameters.toml" else work / "src" / package
             _write(root / inside, text.replace(_PRIVATE, package) if inside.endswith(".py") else text)

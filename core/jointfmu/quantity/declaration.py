@@ -13,38 +13,26 @@ def quantity(
     unit: str,
     doc: str,
     *,
-    gt: float | None = None,
-    ge: float | None = None,
-    lt: float | None = None,
-    le: float | None = None,
     calibration: bool = False,
     whole: bool = False,
     default: float | None = None,
+    **ends: float,
 ) -> Any:
-    """Declare a number [unit] inside an interval, see `Interval.of`.
+    """Declare a number [unit] inside an interval with the ends gt, ge, lt, le of `Interval.of`.
 
     `calibration` marks a value that was fitted, `whole` one that counts; without `default` it must be given.
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
     meta |= {"calibration": calibration, "whole": whole}
     return field(metadata=meta, default=MISSING if default is None else default)
 
 
-def series(
-    unit: str,
-    doc: str,
-    *,
-    gt: float | None = None,
-    ge: float | None = None,
-    lt: float | None = None,
-    le: float | None = None,
-    optional: bool = False,
-) -> Any:
-    """Declare a tuple of numbers [unit], every one inside an interval, see `Interval.of`.
+def series(unit: str, doc: str, *, optional: bool = False, **ends: float) -> Any:
+    """Declare a tuple of numbers [unit], every one inside an interval, see `quantity`.
 
     optional : without any it is not stated
     """
-    meta = {"unit": unit, "doc": doc, "interval": Interval.of(gt=gt, ge=ge, lt=lt, le=le)}
+    meta = {"unit": unit, "doc": doc, "interval": Interval.of(**ends)}
     default: Any = () if optional else MISSING
     return field(default=default, metadata={**meta, "calibration": False, "whole": False, "series": True})
 

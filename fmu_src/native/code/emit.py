@@ -108,7 +108,7 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
             if form is None:
                 raise NotImplementedError(f"{name}: the operation {code} of CasADi has no C here")
             names = [place[a] for a in args]
-            simpler = _SIMPLER.get(code, _none)(names, made)
+            simpler = _SIMPLER[code](names, made) if code in _SIMPLER else None
             body.append(f"const double t{k} = {simpler or form.format(*names)};")
             place[out[0]] = f"t{k}"
             made[f"t{k}"] = (ca.OP_LE if code == ca.OP_DIV and simpler else code), names
@@ -121,10 +121,6 @@ def function(name: str, doc: str, x: ca.SX, c: ca.SX, y: Sequence[ca.SX], deriva
 
 _Made = Mapping[str, tuple[int, list[str]]]
 """{value: operation, what it is made of}."""
-
-
-def _none(names: Sequence[str], made: _Made) -> str | None:
-    return None
 
 
 def _first_of_equal(names: Sequence[str], made: _Made) -> str | None:
