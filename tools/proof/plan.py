@@ -69,6 +69,8 @@ class ExperimentPlan:
         except ValueError as error:
             return cls(experiment, interface, {}, {}, str(error))
         values |= {"times": times.tolist(), "outputs": outputs, "tolerance": SOLVER * _tolerance(experiment)}
+        if experiment.references:
+            values["due"] = experiment.references.time.tolist()
         nominal = {n: abs(float(getattr(variables[n], "nominal", None) or 1.0)) for n in outputs}
         return cls(experiment, interface, nominal, task(fmu, folder, interface, **values))
 

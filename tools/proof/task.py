@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ..host import Instance
 
 REAL = ("Real", "Float64")
@@ -22,6 +24,7 @@ class Task:
     outputs  : variables that are read
     kinds    : {variable: its kind} of inputs and outputs, see `jointfmu_tools.proof.values`
     tolerance : relative, of a solver [1]
+    due      : times [s] at which outputs are compared; none if all communication points are asked for
     """
 
     fmu: str
@@ -34,6 +37,7 @@ class Task:
     outputs: Sequence[str] = ()
     kinds: Mapping[str, str] = field(default_factory=dict)
     tolerance: float = 1e-5
+    due: Sequence[float] = ()
 
     def given(self, i: int) -> dict[str, float]:
         """Inputs at a communication point."""
@@ -51,6 +55,16 @@ class Task:
         if any(abs(time - i * size) > 1e-6 * size for i, time in enumerate(self.times)):
             raise ValueError("has steps of different size, this importer has one")
         return size
+
+    def compared(self, rows: "Rows") -> "Rows":
+        """None in place of what lies neither at nor beside a time that is due, but for the first and last."""
+        shown = np.array([i for i, row in enumerate(rows) if row is not None], dtype=int)
+        if not (len(self.due) and shown.size):
+            return rows
+        after = np.searchsorted(np.take(self.times, shown), self.due, side="right")
+        around = np.clip([after - 1, after], 0, shown.size - 1)
+        kept = {*shown[around.ravel()].tolist(), int(shown[0]), int(shown[-1])}
+        return [row if i in kept else None for i, row in enumerate(rows)]
 
 
 Rows = list[list[float] | None]

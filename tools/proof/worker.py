@@ -42,7 +42,8 @@ def _reply(execute: Any, task: dict[str, Any], log: TextIO) -> dict[str, Any]:
     error = ""
     rows: Any = []
     try:
-        rows = execute(Task(**task), messages)
+        asked = Task(**task)
+        rows = asked.compared(execute(asked, messages))
     except Exception as failure:  # importers raise bare Exception
         error = " ".join(str(failure).split()) or type(failure).__name__
     log.seek(begin)

@@ -93,8 +93,13 @@ def slide(
     return Slid(moved, tangent, mean * (slip * compliance), slip)
 
 
+def returned(force: Number, limit: Number) -> Number:
+    """A trial force along one direction, which returns to its limit."""
+    return np.minimum(np.maximum(force, -limit), limit)
+
+
 def _along(force: Vector, tried: Vector, before: Number, limit: Number, stiffness: Number) -> _Returned:
-    moved = np.minimum(np.maximum(tried[0], -limit), limit)
+    moved = returned(tried[0], limit)
     slip = np.abs(tried[0] - moved)
     slips = slip > 0.0
     margin = np.maximum(before - where(tried[0] < 0.0, -force[0], force[0]), 0.0)
@@ -187,6 +192,15 @@ class Sliders:
         moved = [np.asarray(shift)[..., None]]
         slid = slide([force], 1.0, self.stiffness, moved, before, after, self.stiffness, self.compliance)
         return Moved(np.asarray(slid.force[0]), np.sum(slid.loss, axis=-1), np.sum(slid.tangent[0], axis=-1))
+
+    def path(self, ways: Array, limit: Array) -> Array:
+        """Sums (m) of the forces after each of the ways (m) along a single direction, from rest, under limits
+        (n) that stay."""
+        force, found = np.zeros_like(limit), np.empty(ways.size)
+        for n, way in enumerate(ways):
+            force = returned(trial([force], 1.0, self.stiffness, [way])[0], limit)
+            found[n] = np.add.reduce(force)
+        return found
 
 
 def compliance(stiffness: Number) -> Number:

@@ -39,17 +39,16 @@ class Layout:
 
     def split(self, memory: Array) -> dict[str, Array]:
         """{name: part (..., *shape)} of memories (..., n)."""
-        return {
-            name: memory[..., at : at + prod(shape)].reshape((*memory.shape[:-1], *shape))
-            for (name, shape), at in zip(self.shapes.items(), self.places.values(), strict=True)
-        }
+        parts, begin = {}, 0
+        for name, own in self.shapes.items():
+            end = begin + prod(own)
+            parts[name] = memory[..., begin:end].reshape(memory.shape[:-1] + own)
+            begin = end
+        return parts
 
     def joined(self, parts: Mapping[str, ArrayLike], *shape: int) -> Array:
         """Memories (*shape, n) of parts (..., *own shape)."""
-        return np.concatenate(
-            [
-                np.broadcast_to(parts[name], (*shape, *own)).reshape(*shape, prod(own))
-                for name, own in self.shapes.items()
-            ],
-            axis=-1,
-        )
+        memory = np.empty((*shape, self.size))
+        for name, place in self.split(memory).items():
+            place[...] = parts[name]
+        return memory

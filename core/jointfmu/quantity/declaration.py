@@ -107,6 +107,10 @@ def _series_problem(name: str, values: object, item: Field[object]) -> str | Non
         return None
     if not isinstance(values, list | tuple) or not values:
         return f"{name} = {_shown(values)} is no list of numbers: {item.metadata['doc']}"
+    if all(type(value) is float for value in values) and np.all(
+        item.metadata["interval"].contains(np.array(values))
+    ):
+        return None
     number = field(metadata={key: value for key, value in item.metadata.items() if key != "series"})
     texts = (problem(f"{name}[{i}]", value, number) for i, value in enumerate(values))
     return next((text for text in texts if text), None)

@@ -19,7 +19,7 @@ import numpy as np
 from ...quantity import Array
 from .elimination import changes, solved
 from .patches import balanced, few_points, largest_moment
-from .reproducible import cleared, length, over, powers, product, ranks, root, rounded, to_digits, to_power
+from .reproducible import cleared, length, over, powers, ranks, root, rounded, squared, to_digits, to_power
 from .shape import FrictionPatches, PressureShape
 
 POWERS = (4.0, 8.0, 8.0, 16.0)
@@ -192,7 +192,7 @@ class _Motions:
         start = root(np.maximum(equal + self.moment * tilt, 0.0), self.power)
         now = np.maximum(start - (self.apart + self.about_x * y - self.about_y * x), 0.0)
         most, whole, turned = to_power(now, self.power), np.zeros((4, *now.shape)), np.zeros(now.shape)
-        places = CIRCLE if np.any(radius) else CIRCLE[:1]
+        places, stored = CIRCLE if np.any(radius) else CIRCLE[:1], now * most
         for along, across in places:
             there_x, there_y = x + along * radius, y + across * radius
             u, v = self.along[0] - self.along[2] * there_y, self.along[1] + self.along[2] * there_x
@@ -200,10 +200,11 @@ class _Motions:
             way = self.way * size
             then = np.maximum(now - way, 0.0)
             rest = to_power(then, self.power)
-            force, work = most - rest, most * way - (now * most - then * rest) / (self.power + 1.0)
+            force, work = most - rest, most * way - (stored - then * rest) / (self.power + 1.0)
             part = force / np.maximum(size, TINY)
             each = part * u, part * v, part * (there_x * v - there_y * u), 8.0 * (work - 0.5 * force * way)
-            whole += np.stack(each) / len(places)
+            for total, one in zip(whole, each, strict=True):
+                total += one / len(places)
             turned += most * size / len(places)
         return whole.reshape(-1, now.shape[1]), turned
 
@@ -253,6 +254,11 @@ class _Aim:
         friction = self.motions.friction(points)[0] * self.scale[:, None]
         return np.concatenate([friction, _exact(points, self.reach) * self.hold[:, None]])
 
+    def missed(self, points: Array) -> tuple[Array, Array]:
+        """These, and how far (m + 12) their sums are off."""
+        values = self.values(points)
+        return values, over(values, points[0]) - self.sums
+
 
 def _balanced(points: Array, reach: Array, sums: Array) -> Array:
     """Points (6, n) with the exact sums (12), by small changes of their shares, equal and tilt."""
@@ -291,18 +297,18 @@ class _Around:
     gradient: Array
 
     @classmethod
-    def of(cls, points: Array, aim: _Aim) -> "_Around":
-        """At points (6, n), whose radii stay."""
+    def of(cls, points: Array, aim: _Aim, values: Array, miss: Array) -> "_Around":
+        """At points (6, n), whose radii stay, with their values and what these miss of the aim."""
         share, *_, equal, _, _ = points
-        values, one = aim.values(points), np.ones_like(share)
+        one = np.ones_like(share)
         size = np.stack([share, *np.outer(aim.reach, one), equal, equal])
         slopes = [values * share]
         for place in range(1, 5):
             moved = points.copy()
             moved[place] += DIFFERENCE * size[place]
             slopes.append((aim.values(moved) - values) / DIFFERENCE * share)
-        slope, miss = np.concatenate(slopes, axis=1).T.copy(), over(values, share) - aim.sums
-        return cls(miss, size, product(slope, slope), over(slope, miss))
+        slope = np.concatenate(slopes, axis=1).T.copy()
+        return cls(miss, size, squared(slope), over(slope, miss))
 
     def step(self, damping: float) -> Array:
         """Change (6, n) of the points."""
@@ -315,13 +321,14 @@ class _Around:
 
 def _moved(points: Array, aim: _Aim) -> Array:
     """Points (6, n) after STEPS steps of Levenberg and Marquardt's method."""
-    here, damping = _Around.of(points, aim), FIRST_DAMPING
+    here, damping = _Around.of(points, aim, *aim.missed(points)), FIRST_DAMPING
     for _ in range(STEPS):
         trial = _balanced(points + here.step(damping), aim.reach, aim.held)
-        miss = over(aim.values(trial), trial[0]) - aim.sums
+        values, miss = aim.missed(trial)
         allowed = np.all(trial[0] > 0.0) and np.all(trial[3] >= 0.0)
         if allowed and length(miss) < length(here.miss):
-            points, here, damping = trial, _Around.of(trial, aim), max(LESS * damping, LEAST_DAMPING)
+            points, here = trial, _Around.of(trial, aim, values, miss)
+            damping = max(LESS * damping, LEAST_DAMPING)
         else:
             damping *= MORE
     return points

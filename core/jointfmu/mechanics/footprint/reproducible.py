@@ -17,6 +17,8 @@ DIGITS = 20
 and far below what a choice of points is accurate to."""
 NEARLY_HALF = 0.5 - 0.01 * np.sqrt(2.0)
 """What is added to a number of steps before it is cut off [1]."""
+TOGETHER = 22
+"""Rows of a symmetric matrix that are summed up to the same column [1]: all but half are found once."""
 NOTHING = 2.0**-46
 """Part of the largest number [1] below which another one is zero: what rounding leaves of it."""
 
@@ -79,6 +81,17 @@ def product(one: Array, other: Array) -> Array:
     return out
 
 
+def squared(rows: Array) -> Array:
+    """(m, m) the same of rows (m, n) with themselves."""
+    columns, out = rows.T.copy(), np.empty((len(rows), len(rows)))
+    for first in range(0, len(rows), TOGETHER):
+        last = first + TOGETHER
+        for one, row in zip(out[first:last], rows[first:last], strict=True):
+            one[:last] = np.add.reduce(row[:, None] * columns[:, :last], axis=0)
+        out[:first, first:last] = out[first:last, :first].T
+    return out
+
+
 def length(vector: Array) -> float:
     """Euclidean norm of a vector (n)."""
     return float(np.sqrt(np.add.reduce(vector * vector)))
@@ -91,15 +104,17 @@ def powers(base: float, count: int) -> Array:
 
 def root(values: Array, power: Array) -> Array:
     """(m, n) the roots of values >= 0 (m, n) or (m, 1), of 2, 4, 8, ... 64 (m, 1)."""
-    out = values
-    for k in range(6):
-        out = np.where(power > 2.0**k, np.sqrt(out), out)
-    return out
+    return _again(np.sqrt, values, power)
 
 
 def to_power(values: Array, power: Array) -> Array:
     """(m, n) values (m, n) to a power of 2, 4, 8, ... 64 (m, 1)."""
-    out = values
+    return _again(np.square, values, power)
+
+
+def _again(function: np.ufunc, values: Array, power: Array) -> Array:
+    """(m, n) the function of values, once, twice, ... for powers of 2, 4, ..."""
+    out = np.broadcast_to(values, np.broadcast_shapes(values.shape, power.shape)).copy()
     for k in range(6):
-        out = np.where(power > 2.0**k, out * out, out)
+        function(out, out=out, where=power > 2.0**k)
     return out

@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.joints.harmonic_drive import hysteresis
 from jointfmu.joints.harmonic_drive.drive import Drive
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
 from jointfmu.parameters import ParameterFile, default
@@ -208,11 +207,7 @@ def _friction(spring: HarmonicDriveSpring, path: Array) -> Array:
     if not sliders.acts:
         return np.zeros(path.size)
     places, sampled = _with_turns(path)
-    found, memory, none = np.empty(places.size), hysteresis.MEMORY.rest(), np.zeros(())
-    for n, place in enumerate(places):
-        slid = sliders.moved(memory, place)
-        memory, found[n] = sliders.after(slid, place, none), slid.traction
-    return found[sampled]
+    return sliders.path(np.diff(places, prepend=0.0), sliders.limit)[sampled]
 
 
 def _with_turns(path: Array) -> tuple[Array, NDArray[np.int_]]:
