@@ -345,13 +345,21 @@ def test_a_path_far_into_slip_and_opening_is_found_without_parts(made, monkeypat
     assert max(apart) < 0.01
 
 
-def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch):
+@pytest.mark.parametrize(
+    ("where", "name", "value"),
+    [
+        (equilibrium, "STEPS", 0),
+        (equilibrium.Whole, "_derivative", lambda whole, *given: np.zeros([len(whole.modes.stiffness)] * 2)),
+    ],
+    ids=["no step", "a singular derivative"],
+)
+def test_a_motion_without_equilibrium_is_told_and_the_next_goes_on(made, monkeypatch, where, name, value):
     spring = made(*FOUR, preload=15e3).spring
     with monkeypatch.context() as patch:
-        patch.setattr(equilibrium, "STEPS", 0)
-        told = r"preload = 15000, s_rel_x = 1e-07: the sides find no equilibrium beyond 0 .* residual is .* N"
+        patch.setattr(where, name, value)
+        told = r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0.* residual is .* N"
         with pytest.raises(ValueError, match=told):
-            at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)
+            at(spring, 1e-4, 0, 0, 0, 0, 0, preload=15e3)
     assert at(spring, 1e-7, 0, 0, 0, 0, 0, preload=15e3)[0]["f_x"] < 0.0
 
 

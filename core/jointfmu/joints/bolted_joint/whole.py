@@ -216,7 +216,10 @@ class Whole:
                 return amplitude, at
             if not left < CHORD * before:
                 J, steps = self._derivative(at.stiffness, trials.slopes(place, amplitude)), []
-            step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
+            try:
+                step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
+            except np.linalg.LinAlgError:  # the derivative is singular
+                break
             steps.append(step)
             size, falls, begin = 1.0, float(r @ step), amplitude
             for _ in range(PARTS):
