@@ -258,7 +258,7 @@ def swings(first: float, least: float) -> Array:
         return float(share @ law.backbone(approach, u))
 
     def idle(s: float, q: float) -> float:
-        return q * s - 2.0 * float(share @ law.work(approach, s))
+        return (q - force(s)) * s - 0.25 * float(share @ law.loop(approach, s)[0])  # which is 8 I - 4 B s
 
     found, s, q = [], first, force(first)
     while q > least * limit:
