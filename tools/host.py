@@ -16,8 +16,8 @@ from xml.etree import ElementTree
 if TYPE_CHECKING:
     from fmpy.model_description import ModelDescription
 
-
 _LOADS = Lock()
+"""Held while a library is loaded, as the working folder belongs to all threads."""
 
 
 class Message(NamedTuple):

@@ -68,7 +68,7 @@ class Task:
 
 
 Rows = list[list[float] | None]
-"""Outputs at each communication point; None where the importer does not show them."""
+"""Outputs at each communication point; None where the importer does not show them, or none is due."""
 Execute = Callable[[Task, list[str]], Rows]
 """(task, messages, to which those of the FMU are added) -> outputs."""
 

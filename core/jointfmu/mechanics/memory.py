@@ -39,12 +39,10 @@ class Layout:
 
     def split(self, memory: Array) -> dict[str, Array]:
         """{name: part (..., *shape)} of memories (..., n)."""
-        parts, begin = {}, 0
-        for name, own in self.shapes.items():
-            end = begin + prod(own)
-            parts[name] = memory[..., begin:end].reshape(memory.shape[:-1] + own)
-            begin = end
-        return parts
+        return {
+            name: memory[..., at : at + prod(shape)].reshape(memory.shape[:-1] + shape)
+            for (name, shape), at in zip(self.shapes.items(), self.places.values(), strict=True)
+        }
 
     def joined(self, parts: Mapping[str, ArrayLike], *shape: int) -> Array:
         """Memories (*shape, n) of parts (..., *own shape)."""

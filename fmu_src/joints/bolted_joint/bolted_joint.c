@@ -652,8 +652,7 @@ static void slide(Joint *joint, int j, const double *inputs, const double *memor
 {
     Kind *kind = &joint->kind;
     const PatchPath path = path_of(joint, j, inputs, memory);
-    const int touched = path.from->touched > path.to->touched ? path.from->touched : path.to->touched;
-    const int n = 2 * touched, n_y = kind->moved < FREE ? 0 : n;
+    const int n = 2 * touched_on(&path), n_y = kind->moved < FREE ? 0 : n;
     foundation_move(&kind->foundation[j], &path, moved, &kind->work, shear);
     memset(moved[0] + n, 0, (size_t)(SLIDERS - n) * sizeof *moved[0]);
     memset(moved[1] + n_y, 0, (size_t)(SLIDERS - n_y) * sizeof *moved[1]);

@@ -473,15 +473,10 @@ static void move_range(const Foundation *f, int i, const PatchPath *path, Middle
     }
 }
 
-/* Ranges whose springs all touch on the whole way, and those of which some do on it. */
+/* Ranges whose springs all touch on the whole way. */
 static int full_on_way(const PatchPath *path)
 {
     return path->from->full < path->to->full ? path->from->full : path->to->full;
-}
-
-static int touched_on(const PatchPath *path)
-{
-    return path->from->touched > path->to->touched ? path->from->touched : path->to->touched;
 }
 
 void foundation_move(const Foundation *f, const PatchPath *path, double *const moved[2], Work *work, Shear *shear)

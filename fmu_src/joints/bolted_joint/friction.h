@@ -49,6 +49,12 @@ typedef struct {
     bool onward;   /* for rates: sliders at their limits slip, as in a further motion */
 } PatchPath;
 
+/* Ranges of which some springs touch on the way. */
+static inline int touched_on(const PatchPath *path)
+{
+    return path->from->touched > path->to->touched ? path->from->touched : path->to->touched;
+}
+
 /* What the sliders of a patch give together, per area, as SliderSum; a rate is its derivative along a seed. */
 typedef struct {
     double traction[3], tangent[6], loss; /* the tangent of a further motion */
