@@ -155,11 +155,15 @@ class Linear:
         moved[self.free] = self.factor.solve(loads[self.free])
         return moved
 
+    @property
+    def stiffness(self) -> Array:
+        """Of the joint (6, 6) [N/m, N, N.m] about the centroid of its contact."""
+        return np.asarray(self.moved.T @ ((self.contact + self.bodies + self.shanks) @ self.moved))
+
     def compliances(self) -> Compliances:
         """Of the joint about the centroid of its contact."""
         parts = (self.contact, self.bodies, self.shanks)
-        forces = self.moved.T @ (sum(parts) @ self.moved)
-        shapes = self.moved @ np.linalg.inv(forces)
+        shapes = self.moved @ np.linalg.inv(self.stiffness)
         alone = np.linalg.inv(self.rigid.T @ (self.contact @ self.rigid))
         stored = np.stack([np.sum(shapes * (part @ shapes), axis=0) for part in parts])
         bolts = np.diag(self.rigid.T @ (self.shanks @ self.rigid))

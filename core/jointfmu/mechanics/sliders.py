@@ -380,7 +380,8 @@ def touching(
     Of each of the two sliders the stiffness along the surface [Pa/m], its derivative in the approach [Pa/m2];
     the limits of the early and the late one [Pa].
     """
-    springs, normal = np.maximum(stiffness, 0.0), np.maximum(load, 0.0)
+    normal = np.maximum(load, 0.0)
+    springs = where(load > 0.0, np.maximum(stiffness, 0.0), 0.0)  # with a load below its round-off, none
     apart = np.minimum(springs * (SPREAD * width), normal)  # else the springs begin at the lower height
     half = 0.5 * friction
     return 0.5 * ratio * springs, 0.5 * ratio * bend, half * (normal - apart), half * (normal + apart)

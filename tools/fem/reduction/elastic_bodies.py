@@ -18,12 +18,24 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
 from ..whole_joint import AXES, Linear
-from .patch_work import PatchWork, Shears, Surface, into_slip, on_circles, rigid_shifts, turned, work_of
+from .patch_work import (
+    PatchWork,
+    Shears,
+    Surface,
+    Tightened,
+    into_slip,
+    moved,
+    on_circles,
+    rigid_shifts,
+    stiffness,
+    turned,
+    work_of,
+)
 from .states import cell_means, closed_by, states
 
 LEAST = 1e-3
 """Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
-OPENING = 0.3
+OPENING = 0.4
 """Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
 found: the loss in partial slip needs finer ones."""
 GAIN = 10.0
@@ -78,16 +90,18 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         np.tile(ratio * area, 2),
     )
     turns = turned(at.centred, patches, means, traces)
-    working = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
-    both = working.held(working.fitted(both), unit, work_of(law, unit, every, along).stuck)
+    tightened = Tightened(
+        unit, stiffness(moved(law, unit, every, along)[1], at.area), linear.stiffness.diagonal()
+    )
+    both = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim, tightened).fitted(both)
     pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
-    moved = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
-    moved |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
-    moved["patch_around"] = patches.radius[:, None] * turns
-    most = np.max(np.abs(np.concatenate(list(moved.values()))), axis=0)
+    moves = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
+    moves |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
+    moves["patch_around"] = patches.radius[:, None] * turns
+    most = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
     rounded: dict[str, Any] = {
-        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moved.items()
+        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moves.items()
     }
     places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
     rounded |= {name: _listed(each) for name, each in places.items()}
@@ -120,9 +134,9 @@ def _modes(linear: Linear, states: Array, motions: Array) -> Array:
     """Displacements (n, k) of unit energy: those of the linear joint, and what states (n, s) need most, which
     moved by (s, 6) [m, rad]."""
     first = _unit(_of_unit_energy(linear.moved - linear.rigid, linear), linear)
+    states = _of_unit_energy(states, linear)
     for _ in range(2):  # twice is enough
         states = states - first @ (first.T @ (linear.bodies @ states))
-        states = _of_unit_energy(states, linear)
     weight = np.where(np.any(motions[:, 2:5], axis=1), OPENING, 1.0)
     rest = _unit(weight * states, linear)[:, : MODES - first.shape[1]]
     return np.concatenate([first, rest], axis=1)

@@ -23,15 +23,17 @@ PART = np.sqrt(0.5)
 """Part of each of two motions that are taken together [1]."""
 STAY = 0.1
 """Weight of staying where the patches are beside the forces [1]."""
-STEPS, LITTLE = 8, 1e-2
-"""Of Levenberg and Marquardt's method [1], and the gain of one, as part of what is missed, that ends it."""
+STEPS = 10
+"""Of Levenberg and Marquardt's method [1]."""
 FIRST_DAMPING, LESS, MORE, MOST_DAMPING = 1e-3, 0.2, 5.0, 1e6
 """Damping over the diagonal of the equations [1], its factors after a step that is better and one that is
 not, and where it ends."""
-HELD, EXACT = 40, 1e-6
-"""Most steps to what is held [1], and what may be missed of it [1]."""
+EXACT = 300.0
+"""Weight of the tightened stiffness, as part of the joint's, beside that of forces and losses [1]: so much
+that it is missed by 2e-4 at most; with more the steps keep to a valley too narrow."""
 TINY = 1e-15
 """Shift [m] that counts as one, and other least numbers."""
+_UPPER = np.triu_indices(6)
 LEAST = 0.03
 """Motion of patches by a mode, over that by the one that moves them most [1], from which changes count."""
 
@@ -127,6 +129,25 @@ class Friction:
 
 
 @dataclass(frozen=True)
+class Tightened:
+    """Stiffness of the contact in a joint of which nothing slips.
+
+    ways  : of the linear joint, each motion alone
+    shear : (6, 6) [N/m, N, N.m] what the shifts on these ways store in the contact, twice its energy
+    joint : (6) [N/m, N.m] stiffness of the joint along each motion
+    """
+
+    ways: Shears
+    shear: Array
+    joint: Array
+
+    @cached_property
+    def size(self) -> Array:
+        """(6, 6) what counts as one."""
+        return np.sqrt(np.outer(self.joint, self.joint))
+
+
+@dataclass(frozen=True)
 class PatchWork:
     """What all points (q) do on ways of the joint, and patches (m) that are to do the same.
 
@@ -135,6 +156,7 @@ class PatchWork:
     places : that carry the friction, several of each patch: all first ones, all second ones ...
     turned : (2 c m, k) what these c m places shift as modes turn the patches
     aim    : work of all points
+    tight  : what they are to be while nothing slips
     """
 
     law: Foundation
@@ -142,6 +164,7 @@ class PatchWork:
     places: Surface
     turned: Array
     aim: Work
+    tight: Tightened
 
     def moved(self, shears: Shears, rows: Array) -> tuple[Array, Friction]:
         """Shift (2 c m, 3 + k) of the places by motions and modes, those of the patches by modes (2 m, k)
@@ -151,54 +174,45 @@ class PatchWork:
         return moved(self.law, shears, self.places, by_modes)
 
     def fitted(self, rows: Array) -> Array:
-        """Rows (2 m, k) near given ones, by Levenberg and Marquardt's method."""
+        """Rows (2 m, k) near given ones, by Levenberg and Marquardt's method.
+
+        The tightened joint stays as stiff as its finite elements: at the equilibrium of the linear joint the
+        contact stores as much. Forces on the modes count there in second order only.
+        """
         typical = np.sqrt(np.mean(rows**2, axis=0))
         still = STAY * np.sqrt(len(self.aim.loss) / rows.size) / np.maximum(typical, LEAST * typical.max())
-        begin, damping = rows, FIRST_DAMPING
-        missed = self._missed(rows, still * (rows - begin))
+        still, begin, damping = np.broadcast_to(still, rows.shape), rows, FIRST_DAMPING
+        missed, apart = self._missed(rows, still * (rows - begin)), self._tightened(rows)
         for _ in range(STEPS):
-            slope = np.concatenate([self._slopes(rows), np.diag(np.broadcast_to(still, rows.shape).ravel())])
-            square, gradient, before = slope.T @ slope, slope.T @ missed, missed @ missed
+            slope = np.concatenate([self._slopes(rows), np.diag(still.ravel())])
+            square, stiff = slope.T @ slope, self._tightened_slopes(rows)
+            gradient, before = slope.T @ missed + stiff.T @ apart, missed @ missed + apart @ apart
             while damping < MOST_DAMPING:
-                step = np.linalg.solve(square + damping * np.diag(np.diag(square)), -gradient)
-                there = rows + step.reshape(rows.shape)
-                trial = self._missed(there, still * (there - begin))
-                if trial @ trial < before:
+                damped = square + stiff.T @ stiff + damping * np.diag(np.diag(square))
+                there = rows + np.linalg.solve(damped, -gradient).reshape(rows.shape)
+                trial = self._missed(there, still * (there - begin)), self._tightened(there)
+                if sum(part @ part for part in trial) < before:
                     break
                 damping *= MORE
             else:
                 return rows
-            rows, missed, damping = there, trial, LESS * damping
-            if before - missed @ missed < LITTLE * before:
-                break
+            rows, (missed, apart), damping = there, trial, LESS * damping
         return rows
 
-    def held(self, rows: Array, linear: Shears, aim: Array) -> Array:
-        """Rows (2 m, k) as near as can be with which the patches have the forces (w, 3 + k) of linear ways on
-        motions and modes while nothing slips: the tightened joint stays as stiff as its finite elements."""
-        typical, size = np.maximum(np.sqrt(np.mean(rows**2, axis=0)), TINY), _size(aim)
-        weight = np.broadcast_to(typical, rows.shape).ravel()
+    def _tightened(self, rows: Array) -> Array:
+        """What the patches miss of the tightened stiffness."""
+        _, at = self.moved(self.tight.ways, rows)
+        missed = (stiffness(at, self.places.area) - self.tight.shear) / self.tight.size
+        return np.asarray(EXACT * missed[_UPPER])
 
-        def missing(rows: Array) -> tuple[Array, Array, Friction]:
-            every, at = self.moved(linear, rows)
-            return ((work(at, self.places.area, every).stuck - aim) / size).ravel(), every, at
-
-        damping, (missed, every, at) = FIRST_DAMPING, missing(rows)
-        for _ in range(HELD):
-            if np.max(np.abs(missed)) < EXACT or damping > MOST_DAMPING:
-                break
-            slope = _of_patches(_by_rows(self.places.area * at.stick, at, every, linear.amplitude), rows)
-            slope = weight * (slope / size.reshape((*size.shape, 1, 1, 1))).reshape(missed.size, -1)
-            square = slope @ slope.T
-            square += damping * np.mean(np.diag(square)) * np.eye(missed.size)
-            step = weight * (slope.T @ np.linalg.solve(square, -missed))
-            there = rows + step.reshape(rows.shape)
-            trial = missing(there)
-            better = trial[0] @ trial[0] < missed @ missed
-            if better:
-                rows, (missed, every, at) = there, trial
-            damping *= LESS if better else MORE
-        return rows
+    def _tightened_slopes(self, rows: Array) -> Array:
+        """Derivatives of what is missed of the tightened stiffness by the rows."""
+        _, at = self.moved(self.tight.ways, rows)
+        force = (self.places.area * at.stick * np.stack([at.u, at.v])).swapaxes(0, 1)
+        force = force.reshape(6, 2, -1, len(rows) // 2).sum(axis=2).reshape(6, -1)
+        half = np.einsum("im,jk->ijmk", force, self.tight.ways.amplitude)
+        slope = (half + half.swapaxes(0, 1)) / self.tight.size[:, :, None, None]
+        return np.asarray(EXACT * slope[_UPPER].reshape(-1, rows.size))
 
     def _missed(self, rows: Array, change: Array) -> Array:
         """What the patches miss of forces and loss, and their change."""
@@ -293,6 +307,11 @@ def work(at: Friction, area: Array, every: Array) -> Work:
         for slope in (at.secant, at.stick)
     )
     return Work(forces, stuck, at.loss @ area)
+
+
+def stiffness(at: Friction, area: Array) -> Array:
+    """Of springs of areas (n) [m2] on ways (w) while nothing slips (w, w) [N/m, N, N.m]."""
+    return np.asarray(sum((area * at.stick * shift) @ shift.T for shift in (at.u, at.v)))
 
 
 def work_of(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> Work:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...quantity import Array, check, choice, quantity, series
 
-MODES = 24
+MODES = 16
 """Most modes of the bodies [1]."""
 DIGITS = 4
 """Decimals of what modes move [1]: at most 1, and as many as the reduction is worth."""
