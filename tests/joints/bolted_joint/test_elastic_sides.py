@@ -360,7 +360,7 @@ def test_a_singular_derivative_is_told_as_no_equilibrium(made, monkeypatch):
     nothing = np.zeros([len(spring.joint.bodies.stiffness)] * 2)
     monkeypatch.setattr(equilibrium.Whole, "_derivative", lambda *given: nothing)
     told = (
-        r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.000977 of the way, .* N"
+        r"preload = 15000, s_rel_x = 0.0001: the sides find no equilibrium beyond 0\.00061 of the way, .* N"
     )
     with pytest.raises(ValueError, match=told):
         at(spring, 1e-4, 0, 0, 0, 0, 0, preload=15e3)

@@ -33,7 +33,6 @@ EXACT = 300.0
 that it is missed by 2e-4 at most; with more the steps keep to a valley too narrow."""
 TINY = 1e-15
 """Shift [m] that counts as one, and other least numbers."""
-_UPPER = np.triu_indices(6)
 LEAST = 0.03
 """Motion of patches by a mode, over that by the one that moves them most [1], from which changes count."""
 
@@ -132,9 +131,9 @@ class Friction:
 class Tightened:
     """Stiffness of the contact in a joint of which nothing slips.
 
-    ways  : of the linear joint, each motion alone
-    shear : (6, 6) [N/m, N, N.m] what the shifts on these ways store in the contact, twice its energy
-    joint : (6) [N/m, N.m] stiffness of the joint along each motion
+    ways  : (w) of the linear joint, each motion alone
+    shear : (w, w) [N/m, N, N.m] twice the energy that the contact stores on any two of these ways
+    joint : (w) [N/m, N.m] stiffness of the joint along each motion
     """
 
     ways: Shears
@@ -143,7 +142,7 @@ class Tightened:
 
     @cached_property
     def size(self) -> Array:
-        """(6, 6) what counts as one."""
+        """(w, w) what counts as one."""
         return np.sqrt(np.outer(self.joint, self.joint))
 
 
@@ -203,16 +202,16 @@ class PatchWork:
         """What the patches miss of the tightened stiffness."""
         _, at = self.moved(self.tight.ways, rows)
         missed = (stiffness(at, self.places.area) - self.tight.shear) / self.tight.size
-        return np.asarray(EXACT * missed[_UPPER])
+        return np.asarray(EXACT * missed[np.triu_indices(len(missed))])
 
     def _tightened_slopes(self, rows: Array) -> Array:
         """Derivatives of what is missed of the tightened stiffness by the rows."""
         _, at = self.moved(self.tight.ways, rows)
         force = (self.places.area * at.stick * np.stack([at.u, at.v])).swapaxes(0, 1)
-        force = force.reshape(6, 2, -1, len(rows) // 2).sum(axis=2).reshape(6, -1)
+        force = force.reshape(len(force), 2, -1, len(rows) // 2).sum(axis=2).reshape(len(force), -1)
         half = np.einsum("im,jk->ijmk", force, self.tight.ways.amplitude)
         slope = (half + half.swapaxes(0, 1)) / self.tight.size[:, :, None, None]
-        return np.asarray(EXACT * slope[_UPPER].reshape(-1, rows.size))
+        return np.asarray(EXACT * slope[np.triu_indices(len(slope))].reshape(-1, rows.size))
 
     def _missed(self, rows: Array, change: Array) -> Array:
         """What the patches miss of forces and loss, and their change."""
