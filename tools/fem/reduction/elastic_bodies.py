@@ -35,7 +35,7 @@ from .states import cell_means, closed_by, states
 
 LEAST = 1e-3
 """Amplitude of the least mode over that of the largest [1], of states with as much energy each."""
-OPENING = 0.4
+OPENING = 0.5
 """Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
 found: the loss in partial slip needs finer ones."""
 GAIN = 10.0
