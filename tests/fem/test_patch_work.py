@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from jointfmu_tools.fem.reduction.patch_work import (
+    LinearContact,
     PatchWork,
     Shears,
     Surface,
-    Tightened,
     into_slip,
     moved,
     rigid_shifts,
@@ -53,11 +53,11 @@ def disc():
 LINEAR = Shears(np.eye(3), np.array([[0.7, 0.0], [0.0, 0.7], [0.0, 0.0]]))
 
 
-def tightened(disc) -> Tightened:
+def tightened(disc) -> LinearContact:
     """A joint twice as stiff as its contact against shifts."""
     law, points, rows = disc[:3]
     full = stiffness(moved(law, LINEAR, points, rows)[1], points.area)
-    return Tightened(LINEAR, full, 2.0 * full.diagonal())
+    return LinearContact(LINEAR, full, 2.0 * full.diagonal())
 
 
 def fit(disc) -> PatchWork:

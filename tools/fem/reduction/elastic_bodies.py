@@ -19,10 +19,10 @@ from jointfmu.quantity import Array
 
 from ..whole_joint import AXES, Linear
 from .patch_work import (
+    LinearContact,
     PatchWork,
     Shears,
     Surface,
-    Tightened,
     into_slip,
     moved,
     on_circles,
@@ -91,7 +91,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     )
     turns = turned(at.centred, patches, means, traces)
     unit = Shears(np.eye(6)[:, (0, 1, 5)], ((linear.bodies @ (linear.moved - linear.rigid)).T @ fields))
-    tightened = Tightened(
+    tightened = LinearContact(
         unit, stiffness(moved(law, unit, every, along)[1], at.area), linear.stiffness.diagonal()
     )
     both = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim, tightened).fitted(both)

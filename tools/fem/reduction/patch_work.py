@@ -128,8 +128,8 @@ class Friction:
 
 
 @dataclass(frozen=True)
-class Tightened:
-    """Stiffness of the contact in a joint of which nothing slips.
+class LinearContact:
+    """What the contact of the linear joint stores: nothing slips.
 
     ways  : (w) of the linear joint, each motion alone
     shear : (w, w) [N/m, N, N.m] twice the energy that the contact stores on any two of these ways
@@ -163,7 +163,7 @@ class PatchWork:
     places: Surface
     turned: Array
     aim: Work
-    tight: Tightened
+    tight: LinearContact
 
     def moved(self, shears: Shears, rows: Array) -> tuple[Array, Friction]:
         """Shift (2 c m, 3 + k) of the places by motions and modes, those of the patches by modes (2 m, k)
