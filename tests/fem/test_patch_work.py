@@ -90,10 +90,12 @@ def test_the_tightened_joint_stays_as_stiff(disc):
     """What linear ways store without slip, while the same fit meets the loss."""
     law, few, means = disc[0], disc[3], disc[4]
     working, full = fit(disc), tightened(disc).shear
-    found = [stiffness(moved(law, LINEAR, few, each)[1], few.area) for each in (means, working.fitted(means))]
+    fitted = working.fitted(means)
+    found = [stiffness(moved(law, LINEAR, few, each)[1], few.area) for each in (means, fitted)]
     missed = [np.max(np.abs(each - full)[:2]) / np.max(np.abs(full)) for each in found]
     assert missed[0] > 0.01
     assert missed[1] < 2e-4
+    assert np.max(np.abs(fitted - means)) < 0.5
 
 
 def test_slopes_of_the_tightened_stiffness_are_those_of_differences(disc):

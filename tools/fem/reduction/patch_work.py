@@ -227,7 +227,7 @@ class PatchWork:
         area, amplitude = self.places.area, self.shears.amplitude
         count, modes = area.size, rows.shape[1]
         shape = (len(amplitude), 3 + modes, 2, count, modes)
-        forces, stuck = np.zeros(shape), _by_rows(area * at.stick, at, all_rows, amplitude)
+        forces, stuck, springs = np.zeros(shape), np.zeros(shape), area * at.stick
         loss = np.zeros((shape[0], *shape[2:]))
         unit, halves = (at.u / at.size, at.v / at.size), np.split(all_rows, 2)
         own = np.arange(modes)
@@ -235,7 +235,9 @@ class PatchWork:
             for j in range(2):
                 slope = area * ((i == j) * at.secant + (at.tangent - at.secant) * along * unit[j])
                 forces[:, :, i] += np.einsum("sm,mh,sk->shmk", slope, halves[j], amplitude, optimize=True)
+            stuck[:, :, i] = np.einsum("sm,mh,sk->shmk", springs, halves[i], amplitude, optimize=True)
             forces[:, 3 + own, i, :, own] += area * at.secant * shift
+            stuck[:, 3 + own, i, :, own] += springs * shift
             loss[:, i] = (area * at.rate * along)[:, :, None] * amplitude[:, None]
         parts = zip((_of_patches(each, rows) for each in (forces, stuck, loss)), self.aim.scale, strict=True)
         return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
@@ -279,17 +281,6 @@ def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Ar
 def _of_patches(slopes: Array, rows: Array) -> Array:
     """Derivatives (..., 2, m, k) by rows (2 m, k) of patches, from those (..., 2, c m, k) by their places."""
     return np.asarray(slopes.reshape(*slopes.shape[:-2], -1, len(rows) // 2, rows.shape[1]).sum(axis=-3))
-
-
-def _by_rows(stick: Array, at: Friction, every: Array, amplitude: Array) -> Array:
-    """Derivatives (w, 3 + k, 2, m, k) of forces without slip, of stiffnesses (w, m) [N/m], by the rows."""
-    modes = amplitude.shape[1]
-    own, halves = np.arange(modes), np.split(every, 2)
-    out = np.zeros((len(amplitude), 3 + modes, 2, stick.shape[1], modes))
-    for i, shift in enumerate((at.u, at.v)):
-        out[:, :, i] = np.einsum("sm,mh,sk->shmk", stick, halves[i], amplitude, optimize=True)
-        out[:, 3 + own, i, :, own] += stick * shift
-    return out
 
 
 def moved(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> tuple[Array, Friction]:
