@@ -8,12 +8,13 @@ import measured_beam
 import numpy as np
 import pytest
 from coulomb_springs import Springs
-from elastic_sides import Joint
+from elastic_sides import Joint, stiffnesses
 from jointfmu_tools.fem.whole_joint import WholeJoint
 from lap_beam_reduction import patches
 from whole_joint_forms import PRESS, Lap, by_hand
 from whole_joint_nodes import JOINTS, STEPS, Elements, along_motion, way
 
+from jointfmu.joints.bolted_joint.contact import Place
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.sliders import Foundation
 
@@ -100,13 +101,14 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
 
 @pytest.mark.slow
 def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
-    """To its slip, three times as far, and back: 2.8 and 3.0 % of the force were measured, 1.7 % of the heat.
+    """To its slip, three times as far, and back: 1.3 and 1.9 % of the force were measured, 0.9 % of the heat.
     Coarse elements, of which the joint is made too, serve as well.
 
-    Friction keeps the normal force of the bolts: patches that follow the bent bodies by themselves do not.
+    Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
+    and find no equilibrium on the wide way of six directions at the end.
     """
     fine = WholeJoint.of
-    monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.6))
+    monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.8))
     attached, drawing, wrench = JOINTS["bracket"]
     joint = Joint.of(attached, drawing, elements=True)
     elements = Elements.clamped(joint, wrench)
@@ -114,6 +116,19 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     force, heat = elements.along(loads)
     found, lost = along_motion(joint.spring, joint.preload, elements.motion, loads)
     assert force[1] < 0.7 * elements.stiffness  # it slips
-    np.testing.assert_allclose(found[:2], force[:2], atol=0.03 * force[1])
-    np.testing.assert_allclose(found, force, atol=0.04 * force[3])
-    np.testing.assert_allclose(lost[3:], heat[3:], rtol=0.03)
+    np.testing.assert_allclose(found[:2], force[:2], atol=0.02 * force[1])
+    np.testing.assert_allclose(found, force, atol=0.025 * force[3])
+    np.testing.assert_allclose(lost[3:], heat[3:], rtol=0.015)
+
+    spring, rng = joint.spring, np.random.default_rng(5)
+    unit = 0.7 * joint.load() / stiffnesses(joint)[0]
+    there, back = rng.uniform(-1.0, 1.0, (6, 2, 6))[5] * unit
+    angles = np.linspace(0.0, 2.0 * np.pi, 25)
+    memory, start = spring.at_rest(), spring.tightened(joint.preload, 0.0)
+    for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
+        place = Place.of(six)
+        memory = spring.evolve(joint.preload, 0.0, place, (0.0,) * 6, memory)[1]
+        after = spring.memory.split(memory)
+        opened = place.apart(spring.shape) + spring.modes.opening @ after["amplitude"]
+        points, few = (spring.curve.derivatives(x, 0)[0] for x in (start - opened, after["approach"]))
+        assert spring.patches.share @ few == pytest.approx(spring.shape.share @ points, rel=2e-4)

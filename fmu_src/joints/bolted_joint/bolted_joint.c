@@ -129,8 +129,10 @@ static void tighten(Joint *joint, const double *inputs)
         for (int d = 0; d < 3; d++)
             kind->sums[d] += kind->weight[i][d] * kind->tightened[i];
     }
-    for (int j = 0; j < n_patches(); j++)
+    for (int j = 0; j < n_patches() && !ELASTIC; j++)
         kind->patch_start[j] = tighten_point(joint, data.patches[j], bolts, &segment, &carried);
+    if (ELASTIC)
+        whole_approach(joint, kind->tightened, NULL, kind->patch_start);
     kind->preload = inputs[PRELOAD];
     kind->moment = inputs[MOMENT];
     kind->tight = true;
@@ -455,7 +457,7 @@ static void find_points(Joint *joint, const double *inputs, const double *memory
     const bool begun = (int)memory[AT_STATE] != UNKNOWN;
     for (int j = 0; j < n_patches(); j++) {
         Point *from = &kind->from[j], *to = &kind->to[j];
-        const double end = kind->patch_start[j] - (apart_at(data.patches[j], inputs) + kind->patch_opened[j]);
+        const double end = ELASTIC ? kind->patch_now[j] : kind->patch_start[j] - apart_at(data.patches[j], inputs);
         const double start = begun ? memory[AT_APPROACH + j] : end;
         if (kind->moved != RESTING)
             lay_from(kind, j, memory, start);
@@ -740,7 +742,11 @@ static bool as_tightened(const Kind *kind, const double *inputs)
 bool joint_press(Joint *joint, const double *inputs, Text *why)
 {
     tighten(joint, inputs);
-    return press_nodes(joint, inputs, why);
+    if (!press_nodes(joint, inputs, why))
+        return false;
+    if (ELASTIC)
+        whole_approach(joint, joint->kind.p, inputs, joint->kind.patch_now);
+    return true;
 }
 
 bool joint_forces(Joint *joint, const double *inputs, const double *memory, Text *why)
@@ -771,6 +777,8 @@ bool joint_try(Joint *joint, const double *inputs, const double *memory, double 
     if (remembers(joint)) {
         if (!press(joint, inputs, why))
             return false;
+        if (ELASTIC)
+            whole_approach(joint, kind->p, inputs, kind->patch_now);
         memcpy(x, kind->normal, sizeof kind->normal);
     } else if (!press_elastic(joint, inputs, x, why)) {
         return false;
@@ -818,7 +826,7 @@ COLD
 
 /* Derivatives */
 
-/* Rates of the sums over the nodes; of the patches' come from the sliders with memory. */
+/* Rates of the sums over the nodes; those of the patches come from the sliders with memory. */
 static bool node_rates(Joint *joint, const double *inputs, const double *seed, const double *bolts, double *dx,
                        Text *why)
 {
@@ -846,6 +854,7 @@ static bool node_rates(Joint *joint, const double *inputs, const double *seed, c
         }
         add_normal(dx, node, y[1] * rate, y[2] * rate, e[LIFTED], e[STIFFER]);
         kind->pressing[i] = y[1] * rate - carried[1] * tightening;
+        kind->p_rate[i] = y[1] * rate;
         kind->stiffening[i] = y[2] * rate;
         for (int q = 0; q < N_LAW_STATE; q++)
             dx[SUM_PLASTIC + q] += node[SHARE] * slopes[q] * rate;
@@ -922,10 +931,14 @@ static void patch_rates(Joint *joint, const double *inputs, const double *memory
 {
     Kind *kind = &joint->kind;
     Further sum = {.stick = {0.0}};
+    double pressed[MOST_PATCHES];
+    if (ELASTIC)
+        whole_pressed(kind, kind->p_rate, pressed);
     for (int j = 0; j < n_patches(); j++) {
-        const double *patch = data.patches[j];
-        const double rate = tightening_rate(joint, patch, bolts, kind->patch_start[j]) -
-                            (apart_at(patch, seed) + kind->patch_opened_rate[j]);
+        const double *patch = data.patches[j], stiffness = kind->to[j].y[1];
+        const double rate = !ELASTIC          ? tightening_rate(joint, patch, bolts, kind->patch_start[j]) - apart_at(patch, seed)
+                            : stiffness > 0.0 ? pressed[j] / stiffness
+                                              : 0.0;
         const double shift[3] = {along_x(patch, seed) + kind->bent_rate[j][0],
                                  along_y(patch, seed) + kind->bent_rate[j][1],
                                  patch[RADIUS] * seed[THETA + 2] + kind->bent_rate[j][2]};
@@ -949,7 +962,6 @@ static bool amplitude_rates(Joint *joint, const double *inputs, const double *me
     Kind *kind = &joint->kind;
     double unused[N_X] = {0.0};
     memset(kind->opened_rate, 0, sizeof kind->opened_rate);
-    memset(kind->patch_opened_rate, 0, sizeof kind->patch_opened_rate);
     memset(kind->bent_rate, 0, sizeof kind->bent_rate);
     if (!node_rates(joint, inputs, seed, bolts, unused, why))
         return false;

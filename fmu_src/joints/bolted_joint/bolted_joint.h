@@ -37,6 +37,7 @@ typedef struct {
     double start[MOST_NODES];           /* approach of each node at tightening */
     double tightened[MOST_NODES];       /* its pressure */
     double patch_start[MOST_PATCHES];   /* approach of each patch */
+    double patch_now[MOST_PATCHES];     /* the same at the last pressures, of elastic sides */
     double sums[3];                  /* of the pressures at tightening: alone, times x, times y */
     bool pressed;                    /* the normal sums below are those at tightening and this displacement */
     double apart[3], normal[N_SUMS], p_max;
@@ -50,15 +51,17 @@ typedef struct {
     /* Elastic sides: stiffness of the modes; what modes and motions move, at points, patches (along x, y, around their centres and apart)
      * and bolts. */
     double bolt, bodies[MODES], opening[MOST_OPENING][WIDE], patch[4][MOST_PATCH_X][WIDE], stretch[MOST_STRETCH][WIDE];
+    double presses[MOST_PRESSING]; /* pressure of a patch over that of a point, of the pairs in `data` */
+    int press_end[MOST_PATCHES];   /* of the pairs of each patch */
     /* In the last evaluation, zero of rigid sides: amplitudes, what they open and shift; what they shifted before. */
-    double amplitude[MODES], opened[MOST_NODES], patch_opened[MOST_PATCHES], bent[MOST_PATCHES][3];
+    double amplitude[MODES], opened[MOST_NODES], bent[MOST_PATCHES][3];
     double bent_before[MOST_PATCHES][3];
     double p[MOST_NODES], k[MOST_NODES], tangent[MOST_PATCHES][6]; /* pressures, and the tangents of a further motion */
     Followed begin, end; /* at the memory before the last evaluation, and after it */
     double whole[6];     /* the stiffness of the whole after it */
     /* Rates along the last seed, zero of rigid sides; of pressure less that at tightening, stiffness and patches. */
-    double amplitude_rate[MODES], opened_rate[MOST_NODES], patch_opened_rate[MOST_PATCHES], bent_rate[MOST_PATCHES][3];
-    double pressing[MOST_NODES], stiffening[MOST_NODES];
+    double amplitude_rate[MODES], opened_rate[MOST_NODES], bent_rate[MOST_PATCHES][3];
+    double pressing[MOST_NODES], p_rate[MOST_NODES], stiffening[MOST_NODES];
     Shear shears[MOST_PATCHES];
     /* Room, as large frames need more on Windows: weights, weighted rows, stiffness by normal motions and shear beside
      * the modes, slopes of the patches, factors of a derivative by the amplitudes, forces of a patch that is tried, steps since it. */

@@ -8,6 +8,7 @@ import numpy as np
 
 from jointfmu.joints.bolted_joint import spring
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
+from jointfmu.joints.bolted_joint.contact import MOST_PARTS, PART_DIGITS, parts
 from jointfmu.joints.bolted_joint.law import Bolted
 from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
 from jointfmu.mechanics.sliders import SLIDERS, offsets, turning
@@ -53,19 +54,29 @@ def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
     A joint with rigid sides has room for one row.
     """
     modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
+    pressing, pairs = np.zeros((0, 4)), 1
     if joint.elastic:
-        places = spring.patches(joint.pattern).position
-        modes = Modes.of(joint.bodies, len(spring.points(joint.pattern).share), places)
-        lever = modes.lever
+        points, patches = spring.points(joint.pattern), spring.patches(joint.pattern)
+        modes = Modes.of(joint.bodies, len(points.share), patches.position)
+        lever, pressing = modes.lever, _pressing(parts(points, patches))
+        pairs = MOST_PARTS * spring.POINTS + PATCHES
         most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
     patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch, strict=True))
-    moved = {"opening": modes.opening, **patch, "patch_z": modes.apart, "stretch": modes.stretch}
-    room = dict(zip(moved, (most[1], *(most[2],) * 4, most[3]), strict=True))
+    moved = {"opening": modes.opening, **patch, "stretch": modes.stretch}
+    room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
     return {
         "modes": DataTable(modes.stiffness[:, None], most[0]),
         "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
         **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
+        "pressing": DataTable(pressing, pairs, digits=True),
     }
+
+
+def _pressing(part: Any) -> Any:
+    """Patch, point, and its part in units of the last digit (n, 4)."""
+    patch, point = np.nonzero(part)
+    digits = np.round(part[patch, point] * 10.0**PART_DIGITS)
+    return np.column_stack([patch, point, digits, 0 * patch])
 
 
 def _padded(rows: Any) -> Any:

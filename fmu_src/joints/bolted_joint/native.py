@@ -101,7 +101,7 @@ def _definitions(g: Graph, model: Model) -> Definitions:
         "NEWTON_PARTS": whole.PARTS,
     }
     counts["N_INTERFACE_OUTPUTS"] = len([o for o in model.outputs if not o.name.startswith("F_bolt")])
-    numbers["MODE_DIGITS"] = 10.0**bodies.DIGITS
+    numbers["MODE_DIGITS"], numbers["PART_DIGITS"] = 10.0**bodies.DIGITS, 10.0**contact.PART_DIGITS
     numbers |= {
         f"WHOLE_{name}": getattr(whole, name) for name in ("CLOSE", "CANCELS", "ROUGH", "LEAST_PART", "CHORD")
     }

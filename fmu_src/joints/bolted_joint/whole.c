@@ -6,9 +6,71 @@
 #include "cold.h"
 #include "tabulated.h"
 
-COLD
-
 enum { MOTIONS = 6 };
+
+/* How far patches come apart by modes and motions in the last trial: as the points that press on them do. */
+static void open_patches(Kind *kind)
+{
+    for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
+        const double stiffness = kind->to[j].y[1], per = stiffness > 0.0 ? 1.0 / stiffness : 0.0;
+        double sum[WIDE] = {0.0};
+        for (; e < kind->press_end[j]; e++) {
+            const int i = data.pressing[e][PAIR_POINT];
+            const double by = kind->presses[e] * kind->k[i] * per;
+            for (int k = 0; k < WIDE; k++)
+                sum[k] += by * kind->opening[i][k];
+        }
+        memcpy(kind->patch[3][j], sum, sizeof sum);
+    }
+}
+
+void whole_pressed(const Kind *kind, const double *points, double *patches)
+{
+    for (int j = 0, e = 0; j < (int)data.n_patches; j++) {
+        double even = 0.0, odd = 0.0;
+        for (; e + 1 < kind->press_end[j]; e += 2) {
+            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
+            odd += kind->presses[e + 1] * points[data.pressing[e + 1][PAIR_POINT]];
+        }
+        for (; e < kind->press_end[j]; e++)
+            even += kind->presses[e] * points[data.pressing[e][PAIR_POINT]];
+        patches[j] = even + odd;
+    }
+}
+
+/* How far a point comes apart by the motions alone. */
+static inline double apart_by(const double *inputs, int i)
+{
+    const double *turn = inputs + INPUT_THETA_X;
+    return inputs[INPUT_S_REL_X + 2] + turn[0] * data.nodes[i][PLACE_Y] - turn[1] * data.nodes[i][PLACE_X];
+}
+
+/* The approach of a patch whose points are all open: that of the nearest one. */
+static double open_approach(const Joint *joint, int j, const double *inputs)
+{
+    const Kind *kind = &joint->kind;
+    double nearest = -INFINITY;
+    for (int e = 0; e < (int)data.n_pressing; e++) {
+        const int i = data.pressing[e][PAIR_POINT];
+        if (data.pressing[e][PAIR_PATCH] == j)
+            nearest = fmax(nearest, kind->start[i] - (apart_by(inputs, i) + kind->opened[i]));
+    }
+    return fmin(nearest, joint->curve.first.x);
+}
+
+void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach)
+{
+    double pressed[MOST_PATCHES], carried;
+    int segment[MOST_PATCHES];
+    whole_pressed(&joint->kind, pressure, pressed);
+    for (int j = 0; j < (int)data.n_patches; j++) /* first, so that one does not wait for another */
+        segment[j] = pressed[j] < joint->curve.end.y ? curve_segment_of_load(&joint->curve, pressed[j]) : 0;
+    for (int j = 0; j < (int)data.n_patches; j++)
+        approach[j] = !inputs || pressed[j] > 0.0 ? curve_inverse(&joint->curve, pressed[j], &segment[j], &carried)
+                                                  : open_approach(joint, j, inputs);
+}
+
+COLD
 
 /* Places of the motions of side 2 in the inputs: s_x, s_y, s_z, theta_x, theta_y, theta_z. */
 static inline int motion_of(int d)
@@ -40,10 +102,14 @@ void whole_begin(Kind *kind)
         lay_row(data.patch_x[j], 1.0, 0.0, -y, kind->patch[0][j]);
         lay_row(data.patch_y[j], 0.0, 1.0, x, kind->patch[1][j]);
         lay_row(data.patch_around[j], 0.0, 0.0, data.patches[j][RADIUS], kind->patch[2][j]);
-        lay_row(data.patch_z[j], 1.0, y, -x, kind->patch[3][j]);
     }
     for (int b = 0; b < (int)data.n_bolts; b++)
         lay_row(data.stretch[b], 1.0, data.bolts[b][1], -data.bolts[b][0], kind->stretch[b]);
+    for (int e = 0; e < (int)data.n_pressing; e++) {
+        const int16_t *pair = data.pressing[e];
+        kind->presses[e] = pair[PAIR_PART] / PART_DIGITS * data.nodes[pair[PAIR_POINT]][SHARE] / data.patches[pair[PAIR_PATCH]][SHARE];
+        kind->press_end[pair[PAIR_PATCH]] = e + 1;
+    }
 }
 
 static inline void add_scaled(double by, const double *restrict row, double *restrict sum)
@@ -52,7 +118,7 @@ static inline void add_scaled(double by, const double *restrict row, double *res
         sum[k] += by * row[k];
 }
 
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[3])
+void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3])
 {
     if (!ELASTIC)
         return;
@@ -60,10 +126,8 @@ void whole_deform(const double *amplitude, const Kind *kind, double *opened, dou
     const int patches = (int)data.n_patch_x;
     for (int d = 0; d < 3; d++)
         dense_dots(fours, patches, kind->patch[d], amplitude, 3, &bent[0][d]);
-    if (opened) {
+    if (opened)
         dense_dots(fours, (int)data.n_opening, kind->opening, amplitude, 1, opened);
-        dense_dots(fours, patches, kind->patch[3], amplitude, 1, patch_opened);
-    }
 }
 
 /* The stiffness by normal motions beside the modes, up to a size, of points and bolts. */
@@ -141,8 +205,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
         r[k] = kind->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
         const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
-        const double moved = fabs(inputs[INPUT_S_REL_X + 2] + inputs[INPUT_THETA_X] * data.nodes[i][PLACE_Y] -
-                                  inputs[INPUT_THETA_X + 1] * data.nodes[i][PLACE_X]);
+        const double moved = fabs(apart_by(inputs, i));
         normal[i] = -weight * (p - tight);
         forces += weight * (p + tight);
         stiffness += weight * kind->k[i];
@@ -176,6 +239,7 @@ static void exact(Joint *joint, const double *inputs, const double *memory, cons
             const Shear rate = patch_rate(joint, j, inputs, memory, after, units[c][0], units[c] + 1);
             memcpy(kind->slope[j][c], rate.traction, sizeof kind->slope[j][c]);
         }
+    open_patches(kind);
     differentiate(kind, MODES, true, &kind->factors);
 }
 
@@ -187,6 +251,7 @@ static void jacobian(Joint *joint, const double *inputs, const double *memory)
     for (int j = 0; j < (int)data.n_patches; j++)
         deepest = fmax(deepest, kind->patch_start[j] - joint->curve.first.x);
     patch_slopes(joint, inputs, memory, WHOLE_DIFFERENCE * deepest, kind->slope);
+    open_patches(kind);
     differentiate(kind, MODES, true, &kind->factors);
 }
 
@@ -231,7 +296,7 @@ static void place(const double *inputs, const double *memory, double part, doubl
 static void deform(Kind *kind, const double *amplitude)
 {
     memcpy(kind->amplitude, amplitude, sizeof kind->amplitude);
-    whole_deform(amplitude, kind, kind->opened, kind->patch_opened, kind->bent);
+    whole_deform(amplitude, kind, kind->opened, kind->bent);
 }
 
 /* Amplitudes at the end of the way in the tangent of its beginning; less those there are their rate. */
@@ -379,7 +444,7 @@ bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, do
     Way way = {inputs, memory, after, x, false};
     double done = 0.0, step = 1.0, missed = 0.0, amplitude[MODES], rate[MODES], trial[MODES];
     memcpy(amplitude, memory + AT_AMPLITUDE, sizeof amplitude);
-    whole_deform(amplitude, kind, NULL, NULL, kind->bent_before);
+    whole_deform(amplitude, kind, NULL, kind->bent_before);
     if (!predict(joint, inputs, memory, rate, why))
         return false;
     for (;;) {
@@ -489,7 +554,7 @@ void whole_rates(Joint *joint, const double *inputs, const double *memory, const
     exact(joint, inputs, memory, after);
     dense_solve(kind->work.abreast.fours, &kind->factors, r);
     memcpy(kind->amplitude_rate, r, sizeof r);
-    whole_deform(r, kind, kind->opened_rate, kind->patch_opened_rate, kind->bent_rate);
+    whole_deform(r, kind, kind->opened_rate, kind->bent_rate);
 }
 
 void whole_sum_rates(const Joint *joint, const double *inputs, const double *seed, double *dx)

@@ -7,10 +7,16 @@
 #include "bolted_joint.h"
 #include "joint.h"
 
+enum { PAIR_PATCH, PAIR_POINT, PAIR_PART }; /* of `data.pressing` */
+
 /* The modes as numbers, once for a parameter set. */
 void whole_begin(Kind *kind);
-/* What amplitudes (n_modes) move: openings of points and patches, shifts of the patches. */
-void whole_deform(const double *amplitude, const Kind *kind, double *opened, double *patch_opened, double (*bent)[3]);
+/* What amplitudes (n_modes) move: openings of points, shifts of patches. */
+void whole_deform(const double *amplitude, const Kind *kind, double *opened, double (*bent)[3]);
+/* Sums over what presses on the patches of values at the points. */
+void whole_pressed(const Kind *kind, const double *points, double *patches);
+/* Approaches of the patches under pressures of the points, at inputs and what the modes open or, NULL, tightened. */
+void whole_approach(const Joint *joint, const double *pressure, const double *inputs, double *approach);
 /* Amplitudes in equilibrium at the inputs, with the sums and the memory there; false: refused, with the reason. */
 bool whole_evaluate(Joint *joint, const double *inputs, const double *memory, double *after, double *x, Text *why);
 /* Sums that elastic sides change, and the forces of the bolts. */

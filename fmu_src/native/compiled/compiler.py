@@ -108,7 +108,9 @@ def _options(platform: str, name: str) -> tuple[str, ...]:
     """Everything that zig is told besides the files."""
     import ziglang
 
-    common = ("-target", TARGETS[platform], *_OPTIONS)
+    # In an order that suits processors with vectors of four numbers, on any.
+    tuned = ("-mtune=haswell",) if platform.startswith("x86_64") else ()
+    common = ("-target", TARGETS[platform], *_OPTIONS, *tuned)
     # The system's libraries alone: zig would compile its own runtime at first, of which nothing is linked.
     # No tables for exceptions, which pass through no C; Windows' ABI asks for them.
     own = ("-nostdlib", "-lc", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables")

@@ -8,6 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from jointfmu.joints import MODELS
+from jointfmu.joints.bolted_joint.contact import parts
 from jointfmu.joints.bolted_joint.law import pressures, shear_ratio
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.parameters import default
@@ -74,6 +75,24 @@ def stiffness(spring, place, step, **inputs):
 
 
 # Friction
+
+
+def test_points_press_on_the_patches_around_them_with_all_their_force(spring):
+    """To the decimals that are kept; each patch has its own force within 2 % of the mean one, as points and
+    patches that do not touch have their parts, too."""
+    points, patches = spring.shape, spring.patches
+    part = parts(points, patches)
+    np.testing.assert_allclose(part.sum(axis=0), 1.0, rtol=1e-3)
+    assert np.all(part.max(axis=1) > 0.0)
+    force = part @ (points.share * points.equal)
+    np.testing.assert_allclose(force, patches.share * patches.equal, atol=0.02 / patches.share.size)
+    distance = np.hypot(*(patches.position[:, None] - points.position).transpose(2, 0, 1))
+    reach = np.sqrt(points.share @ np.min(distance, axis=0) ** 2)
+    assert np.max(distance[part > 0.1] - np.min(distance, axis=0)[np.nonzero(part > 0.1)[1]]) < 3.0 * reach
+    one = replace(
+        patches, **{name: getattr(patches, name)[:1] for name in ("share", "position", "equal", "tilt")}
+    )
+    np.testing.assert_array_equal(parts(points, one), np.ones((1, points.share.size)))
 
 
 def test_shear_does_not_lift(spring):

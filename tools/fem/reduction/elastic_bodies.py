@@ -13,7 +13,6 @@ import numpy as np
 import scipy.linalg as la
 
 from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies
-from jointfmu.joints.bolted_joint.law import pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.quantity import Array
 
@@ -40,8 +39,6 @@ OPENING = 0.5
 found: the loss in partial slip needs finer ones."""
 GAIN = 10.0
 """Most by which what a mode does at the points is changed [1]."""
-SAME = 1e-9
-"""Distances [m] that differ by less are the same: no choice hangs on the last bits."""
 
 
 def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, preload: float) -> ElasticBodies:
@@ -59,8 +56,8 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     fields = _modes(linear, deformed, motions)
     stretch = joint.stretch.T @ fields
     patches = spring.patches
-    tight = spring.curve.derivatives(spring.tightened(preload, 0.0), 1)[1]
-    few = spring.curve.inverse(pressures(spring.joint, patches, preload, 0.0))
+    start = spring.tightened(preload, 0.0)
+    tight, few = spring.curve.derivatives(start, 1)[1], spring.pressed(start)
     ratio = spring.foundation().ratio
     shear = ratio * spring.curve.derivatives(few, 1)[1]
     x, y = patches.position.T
@@ -95,8 +92,7 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
         unit, stiffness(moved(law, unit, every, along)[1], at.area), linear.stiffness.diagonal()
     )
     both = PatchWork(law, shears, *on_circles(patches, weight, few, turns), aim, tightened).fitted(both)
-    pressing = pressed_by(spring.shape.position, weight * spring.shape.share * tight, patches.position)
-    moves = {"opening": opening, "patch_z": pressing @ opening, "stretch": stretch}
+    moves = {"opening": opening, "stretch": stretch}
     moves |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
     moves["patch_around"] = patches.radius[:, None] * turns
     most = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
@@ -106,24 +102,6 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
     rounded |= {name: _listed(each) for name, each in places.items()}
     return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
-
-
-def pressed_by(points: Array, stiffness: Array, patches: Array) -> Array:
-    """Opening of patches at (m, 2) [m] over that of the points (n, 2) [m] with a stiffness (n): (m, n).
-
-    The plane of the whole contact at the patch, and what points differ from theirs in the mean of those that
-    press it: those to which it is the nearest, or the nearest one, by their stiffness. So friction has no
-    pressure that no point has, however the bodies bend between points and patches.
-    """
-    distance = np.hypot(*(patches[:, None] - points).transpose(2, 0, 1))
-    nearest = distance < distance.min(axis=0) + SAME
-    alone = ~nearest.any(axis=1)
-    nearest[alone] = distance[alone] < distance[alone].min(axis=1, keepdims=True) + SAME
-    mean = nearest * np.maximum(stiffness, 1e-6 * stiffness.max())
-    mean = mean / mean.sum(axis=1, keepdims=True)
-    planes = _planes(points)
-    plane = np.linalg.solve(planes.T @ (stiffness[:, None] * planes), planes.T * stiffness)
-    return np.asarray(mean + (_planes(patches) - mean @ planes) @ plane)
 
 
 def _listed(values: Array) -> tuple[float, ...]:

@@ -17,7 +17,7 @@ DIGITS = 4
 """Decimals of what modes move [1]: at most 1, and as many as the reduction is worth."""
 BESIDE = 1e-6
 """Distance [m] by which patches may lie beside those that the modes were computed for."""
-_MOVED = ("opening", "patch_x", "patch_y", "patch_around", "patch_z", "stretch")
+_MOVED = ("opening", "patch_x", "patch_y", "patch_around", "stretch")
 _PLACES = ("x", "y", "bolt_x", "bolt_y")
 
 
@@ -44,7 +44,6 @@ class ElasticBodies:
     patch_around: tuple[float, ...] = series(
         "1", "the same of their sliders around the centre of each, on its circle", ge=-1.0, le=1.0
     )
-    patch_z: tuple[float, ...] = series("1", "how far they come apart", ge=-1.0, le=1.0)
     stretch: tuple[float, ...] = series(
         "1", "how far the seats of the bolts come apart, of each all modes", ge=-1.0, le=1.0
     )
@@ -86,7 +85,6 @@ class Modes:
     stiffness : (k) [N/m]
     opening   : (n, k) [1] of the points
     patch     : (3, m, k) [1] `shifts` of the patches, along x, along y and around their centres
-    apart     : (m, k) [1] how far they come apart
     stretch   : (b, k) [1] of the bolts
     bolts     : (b, 2) [m] their places
     """
@@ -94,7 +92,6 @@ class Modes:
     stiffness: Array
     opening: Array
     patch: Array
-    apart: Array
     stretch: Array
     bolts: Array
 
@@ -108,8 +105,8 @@ class Modes:
     @classmethod
     def none(cls, points: int, patches: int) -> "Modes":
         """Of rigid bodies."""
-        shear, apart = np.zeros((3, patches, 0)), np.zeros((patches, 0))
-        return cls(np.zeros(0), np.zeros((points, 0)), shear, apart, np.zeros((0, 0)), np.zeros((0, 2)))
+        shear = np.zeros((3, patches, 0))
+        return cls(np.zeros(0), np.zeros((points, 0)), shear, np.zeros((0, 0)), np.zeros((0, 2)))
 
     @classmethod
     def of(cls, bodies: RigidBodies | ElasticBodies, points: int, patches: Array) -> "Modes":
@@ -135,7 +132,6 @@ class Modes:
             each["stiffness"],
             moved["opening"],
             np.stack([moved[f"patch_{way}"] for way in ("x", "y", "around")]),
-            moved["patch_z"],
             moved["stretch"],
             np.stack([each["bolt_x"], each["bolt_y"]], axis=1),
         )

@@ -6,7 +6,6 @@ import numpy as np
 
 from ...quantity import Array
 from .contact import STICKS
-from .law import pressures
 
 if TYPE_CHECKING:
     from .spring import BoltedJointSpring
@@ -37,7 +36,7 @@ class Compliances(NamedTuple):
     def of(cls, spring: "BoltedJointSpring", preload: float, moment: float = 0.0) -> "Compliances":
         """Of a joint with elastic sides, tightened by the force of each bolt [N] and a moment [N.m]."""
         whole, modes, bolt = spring.whole, spring.modes, spring.joint.bolt_stiffness
-        there = spring.curve.inverse(pressures(spring.joint, spring.patches, preload, moment))
+        there = spring.tightened_patches(preload, moment)
         stick = spring.foundation().stick(there)[:, None] * STICKS
         normal = spring.curve.derivatives(spring.tightened(preload, moment), 1)[1]
         H = whole.slope(normal, stick)

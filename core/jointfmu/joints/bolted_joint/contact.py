@@ -66,6 +66,42 @@ def about(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
     return {f"{name}about_x": each @ y**2, f"{name}about_y": each @ x**2}
 
 
+IDLE = 0.01
+"""Pressure over the mean one [1] that counts beside a point's own where its force is shared: what does not touch
+has its parts, too."""
+ROUNDS = 100
+"""How often the parts are balanced [1], once of all patches and once of those that are kept."""
+LEAST_PART, MOST_PARTS = 0.02, 8
+"""Least part of a point that a patch has [1], and to how many patches a point presses at most."""
+PART_DIGITS = 4
+"""Decimals of these parts."""
+FAR = 300.0
+"""Square distance over the mean one [1] beyond which a patch is as far as any."""
+
+
+def parts(points: PressureShape, patches: FrictionPatches) -> Array:
+    """Parts (m, n) [1] of the normal force of points that press on patches: all of it, to the last decimal.
+
+    Each patch has the force that it stands for under equal bolts, each point presses on the patches around
+    it: the transport of force from points to patches over a short way (entropic, by Sinkhorn's iteration),
+    with the mean square distance of the force from the nearest patch as its width.
+    """
+    square = np.sum((patches.position[:, None] - points.position) ** 2, axis=2)
+    nearest, (force, aim) = np.min(square, axis=0), (at.share * (at.equal + IDLE) for at in (points, patches))
+    width = force @ nearest / np.sum(force)
+    near = np.exp(-np.minimum((square - nearest) / np.maximum(width, np.finfo(float).tiny), FAR))
+    pull = np.ones_like(aim)
+    for _ in range(2):
+        for _ in range(ROUNDS):
+            part = pull[:, None] * near
+            part = part / np.sum(part, axis=0)
+            pull = pull * aim / (part @ force)
+        least = np.maximum(np.sort(part, axis=0)[-MOST_PARTS:][0], LEAST_PART)
+        near = np.where((part >= least) | (part == np.max(part, axis=1, keepdims=True)), near, 0.0)
+    rounded = np.maximum(np.round(part, PART_DIGITS), 10.0**-PART_DIGITS)
+    return np.asarray(np.where(near > 0.0, rounded, 0.0))
+
+
 _TRACTIONS, _TANGENTS = ("traction_x", "traction_y", "torsion"), ("tangent_x", "tangent_y", "tangent_z")
 STICKS = np.array([1.0, 0.0, 1.0, 0.0, 0.0, 1.0])
 """Tangent of sliders that stick, over their stiffness [1]."""

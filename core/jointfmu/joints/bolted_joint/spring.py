@@ -26,6 +26,7 @@ from .contact import (
     loop_sums,
     normal_sums,
     over_plane,
+    parts,
     shifts,
     tangent_sums,
     traction_sums,
@@ -124,6 +125,12 @@ class BoltedJointSpring:
         """Approach (n) [m] of the nodes at tightening."""
         return self.curve.inverse(pressures(self.joint, self.shape, preload, moment))
 
+    def tightened_patches(self, preload: float, moment: float) -> Array:
+        """The same (m) [m] of the patches."""
+        if self.joint.elastic:
+            return self.pressed(self.tightened(preload, moment))
+        return self.curve.inverse(pressures(self.joint, self.patches, preload, moment))
+
     @cached_property
     def _tightened(self) -> Callable[[float, float], tuple[Array, ...]]:
         """Approach [m] at tightening of the points, the pressure [Pa] there, and the approach of the patches;
@@ -131,10 +138,25 @@ class BoltedJointSpring:
 
         def build(preload: float, moment: float) -> tuple[Array, ...]:
             start = self.tightened(preload, moment)
-            patches = self.curve.inverse(pressures(self.joint, self.patches, preload, moment))
+            patches = self.tightened_patches(preload, moment)
             return start, self.curve.derivatives(start, 0)[0], patches
 
         return lru_cache(maxsize=2)(build)
+
+    @cached_property
+    def pressing(self) -> Array:
+        """(m, n) [1] pressure of the patches over that of the points, where sides are elastic."""
+        return parts(self.shape, self.patches) * self.shape.share / self.patches.share[:, None]
+
+    def pressed(self, approach: Array) -> Array:
+        """Approach (m) [m] of the patches to points at approaches (n) [m]: that at which they have the
+        normal force of their points, so that friction has no normal force beside that of the contact.
+
+        Where all points of a patch are open it is as far open as the nearest of them.
+        """
+        p = self.pressing @ self.curve.derivatives(approach, 0)[0]
+        nearest = np.max(np.where(self.pressing > 0.0, approach, -np.inf), axis=1)
+        return np.where(p > 0.0, self.curve.inverse(p), np.minimum(nearest, self.curve.displacement[0]))
 
     def within_law(self, preload: float, moment: float) -> Array:
         """As `tightened`; ValueError if nothing is in contact or the hardness is reached."""

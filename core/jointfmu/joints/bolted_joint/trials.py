@@ -98,10 +98,10 @@ class Trials:
     def approaches(self, place: Place, amplitude: Array) -> tuple[Array, Array]:
         """Approaches [m] of points (n) and patches (m)."""
         spring, (points, patches) = self.spring, self.starts
-        return (
-            points - (place.apart(spring.shape) + spring.modes.opening @ amplitude),
-            patches - (place.apart(spring.patches) + spring.modes.apart @ amplitude),
-        )
+        there = points - (place.apart(spring.shape) + spring.modes.opening @ amplitude)
+        if spring.joint.elastic:
+            return there, spring.pressed(there)
+        return there, patches - place.apart(spring.patches)
 
     def at(self, place: Place, amplitude: Array) -> Trial:
         """At a place with amplitudes (k) [m]."""
@@ -115,6 +115,13 @@ class Trials:
         shift = spring.shift(rigid - before["rigid"], amplitude - before["amplitude"][: amplitude.size])
         shift += further
         return spring.way(before, approach, shift, rigid)
+
+    def apart(self, at: Trial) -> Array:
+        """How far the patches come apart by the modes (m, k) [1], as the points that press on them do."""
+        spring, stiffness = self.spring, self.spring.curve.derivatives(at.approach, 1)[1][:, None]
+        touches = stiffness > 0.0
+        rows = (spring.pressing * at.stiffness) @ spring.modes.opening
+        return np.asarray(np.where(touches, rows / np.where(touches, stiffness, 1.0), 0.0))
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
         """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by

@@ -57,7 +57,7 @@ class Forces(Protocol):
         """(m, 6) [Pa/m], see `Moved`."""
 
 
-T = TypeVar("T", bound=Forces, covariant=True)
+T = TypeVar("T", bound=Forces)
 
 
 class Trials(Protocol[T]):
@@ -72,6 +72,9 @@ class Trials(Protocol[T]):
 
     def at(self, place: Place, amplitude: Array) -> T:
         """Forces there at amplitudes (k) [m]."""
+
+    def apart(self, at: T) -> Array:
+        """How far the patches come apart by the modes (m, k) [1]."""
 
     def slopes(self, place: Place, amplitude: Array) -> Array:
         """Derivatives (m, 3, 4) [Pa/m] of the traction by shifts along x, y and around the centres, and by
@@ -187,15 +190,16 @@ class Whole:
             rate = (found[0] - amplitude) / (part - done)
             amplitude, done, step = found[0], part, 2.0 * step
 
-    def _derivative(self, stiffness: Array, slopes: Array) -> Array:
+    def _derivative(self, stiffness: Array, apart: Array, slopes: Array) -> Array:
         """Of the residual by the amplitudes: (k, k) [N/m].
 
-        stiffness (n) [Pa/m] of the points, slopes (m, 3, 4) [Pa/m] of the tractions.
+        stiffness (n) [Pa/m] of the points, slopes (m, 3, 4) [Pa/m] of the tractions by shifts and by coming
+        apart, which the modes do by (m, k) [1].
         """
         modes = self.modes
         J = np.diag(modes.stiffness) + self.bolt * modes.stretch.T @ modes.stretch
         J += modes.opening.T @ ((self.weight * stiffness)[:, None] * modes.opening)
-        every = np.concatenate([modes.patch, modes.apart[None]])
+        every = np.concatenate([modes.patch, apart[None]])
         for axis in range(3):
             J += modes.patch[axis].T @ np.einsum("m,mc,cmk->mk", self.patch, slopes[:, axis], every)
         return np.asarray(J)
@@ -215,7 +219,8 @@ class Whole:
             if left <= close * least:
                 return amplitude, at
             if not left < CHORD * before:
-                J, steps = self._derivative(at.stiffness, trials.slopes(place, amplitude)), []
+                J = self._derivative(at.stiffness, trials.apart(at), trials.slopes(place, amplitude))
+                steps = []
             try:
                 step, before = _broyden(np.asarray(-np.linalg.solve(J, r)), steps), left
             except np.linalg.LinAlgError:  # the derivative is singular

@@ -148,7 +148,7 @@ static inline double curve_guess(const Curve *curve, int i, double load)
  * begins flat. By Newton steps that cannot leave the segment. */
 double curve_inverse_safe(const Curve *curve, double load);
 
-/* The same, and the load at the displacement as it is rounded: one step of third order from the cubic, where
+/* The same, and the load at the displacement as it is rounded: one step of third order from the cubic, or two, where
  * that is near enough for round-off. The search begins at a segment, 0 if none is known, and leaves its own. */
 static inline double curve_inverse(const Curve *curve, double load, int *segment, double *carried)
 {
@@ -157,14 +157,20 @@ static inline double curve_inverse(const Curve *curve, double load, int *segment
         if (!(load >= curve->a[i][0] && load < curve->a[i + 1][0]))
             *segment = i = curve_segment_of_load(curve, load);
         const double *a = curve->a[i];
-        const double t = curve_guess(curve, i, load), s = curve_slope(a, t);
-        const double bend = (a[2] + t * 3.0 * a[3]) + t * t * (6.0 * a[4] + t * 10.0 * a[5]); /* half of it */
-        const double per = 1.0 / s, step = (load - curve_value(a, t)) * per;
-        const double next = t + step * (1.0 - step * bend * per);
-        if (fabs(step) <= CURVE_NEAR && fabs(bend) <= 0.25 * s && next >= 0.0 && next <= 1.0) {
-            const double x = curve->x[i] + next * (curve->x[i + 1] - curve->x[i]);
-            *carried = load + s * ((x - curve->x[i]) * curve->per[i] - next);
-            return x;
+        double t = curve_guess(curve, i, load);
+        for (int n = 0; n < 2; n++) {
+            const double s = curve_slope(a, t);
+            const double bend = (a[2] + t * 3.0 * a[3]) + t * t * (6.0 * a[4] + t * 10.0 * a[5]); /* half of it */
+            const double per = 1.0 / s, step = (load - curve_value(a, t)) * per;
+            const double next = t + step * (1.0 - step * bend * per);
+            if (!(fabs(bend) <= 0.25 * s && next >= 0.0 && next <= 1.0))
+                break;
+            if (fabs(step) <= CURVE_NEAR) {
+                const double x = curve->x[i] + next * (curve->x[i + 1] - curve->x[i]);
+                *carried = load + s * ((x - curve->x[i]) * curve->per[i] - next);
+                return x;
+            }
+            t = next;
         }
     }
     double y[2];
