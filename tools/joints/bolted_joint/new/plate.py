@@ -15,7 +15,7 @@ from ....drawing.part import Given, NewJoint, Sheet
 from ....drawing.reading import number, numbers
 from ....drawing.tables import Thread, classes, thread_source
 from ....pressure import overload
-from ..loss import friction_band
+from ..report import friction_band
 from . import computed, layout
 from .computed import Plates, with_computed_field
 
