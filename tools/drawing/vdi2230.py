@@ -36,7 +36,7 @@ def stress_area(thread: Thread) -> float:
 
 
 def bolt_compliance(
-    thread: Thread, grip: float, shank: float, head: str, tapped: float | None = None, E: float = E_BOLT
+    thread: Thread, grip: float, shank: float, head: str, tapped: float | None = None
 ) -> float:
     """delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
@@ -48,8 +48,9 @@ def bolt_compliance(
     nominal = 0.25 * np.pi * thread.d**2
     minor = 0.25 * np.pi * minor_diameter(thread) ** 2
     length = {"hexagon": 0.5, "socket": 0.4}[head] * thread.d
-    nut = 0.4 * thread.d / (E * nominal) if tapped is None else 0.33 * thread.d / (tapped * nominal)
-    return float((length + shank) / (E * nominal) + (grip - shank + 0.5 * thread.d) / (E * minor) + nut)
+    nut = 0.4 * thread.d / (E_BOLT * nominal) if tapped is None else 0.33 * thread.d / (tapped * nominal)
+    free = grip - shank + 0.5 * thread.d
+    return float((length + shank) / (E_BOLT * nominal) + free / (E_BOLT * minor) + nut)
 
 
 def cone_slope(grip: float, bearing: float, outer: float, tapped: bool) -> float:
@@ -105,10 +106,10 @@ def members_compliance(
     return total
 
 
-def assembly_preload(thread: Thread, yield_strength: float, friction: float = FRICTION) -> float:
+def assembly_preload(thread: Thread, yield_strength: float) -> float:
     """F_M [N] that uses USE of the yield strength under tension and torsion (Table A1), shank bolt."""
     d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
-    twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * friction)
+    twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * FRICTION)
     return float(stress_area(thread) * USE * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
 
 
