@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread, classes, threads
+from .tables import Thread, strength, threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
@@ -134,8 +134,6 @@ def shank_length(thread: Thread, grip: float, head: str, tapped: bool) -> float:
 
 STRONGEST = "12.9"
 """The strongest property class of ISO 898-1."""
-LARGE = 16e-3
-"""Diameter [m] above which a property class has its second proof stress."""
 
 
 def proof_load(hole: float) -> tuple[float, str] | None:
@@ -145,6 +143,6 @@ def proof_load(hole: float) -> tuple[float, str] | None:
     if not fitting or hole > 1.2 * largest.d:
         return None
     bolt = max(fitting, key=lambda thread: thread.d)
-    load = classes()[STRONGEST]["proof"][int(bolt.d > LARGE)] * stress_area(bolt)
+    load = strength(STRONGEST, "proof", bolt) * stress_area(bolt)
     name = f"{bolt.name}, class {STRONGEST} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"
