@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from band_of_waves import periodic
 from boundary_element import bonded, press, refined, slope
 from jointfmu_tools.fractal import areal_roughness
-from jointfmu_tools.surfaces.synthesis import periodic
 
 from jointfmu.contact.interface import at_pressure, largest_spot, stiffness_curve
 from jointfmu.contact.laws import yu2022

@@ -3,6 +3,7 @@
 Gaussian self-affine surfaces that go on beyond the scan, read as `jointfmu surface` reads them.
 """
 
+import band_of_waves
 import numpy as np
 from jointfmu_tools import fractal
 from jointfmu_tools.surfaces import form
@@ -20,8 +21,8 @@ def ratios(heights, D, G):
     for share in SHARES:
         longest = share * heights.lengths[0]
         found = form.of_scan(flat, flat, longest)
-        h = fractal.rms_height(H, G, longest, 2.0 * heights.dx)
-        slope = fractal.rms_slope(H, G, longest, found.shortest_wave)
+        h = band_of_waves.rms_height(H, G, longest, 2.0 * heights.dx)
+        slope = band_of_waves.rms_slope(H, G, longest, found.shortest_wave)
         rows.append((found.h / h, found.slope / slope))
     return np.transpose(rows)
 

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+import band_of_waves
 import numpy as np
 import slip_theory as theory
-from jointfmu_tools.surfaces import synthesis
 from scipy.interpolate import PchipInterpolator
 from slip_solver import Contact, lone, periodic
 
@@ -89,7 +89,7 @@ class Loop:
 def heights(hurst, roll_off, seed, points=POINTS, stretch=1):
     """Rough square: waves from its side/roll_off to FINEST spacings; `stretch` times shorter along x."""
     band = (1.0 / roll_off, FINEST * stretch / points)
-    z = synthesis.periodic(1.0, points, 3.0 - hurst, 1e-6, band, seed).z
+    z = band_of_waves.periodic(1.0, points, 3.0 - hurst, 1e-6, band, seed).z
     return z[(stretch * np.arange(points)) % points]
 
 

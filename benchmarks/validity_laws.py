@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import interface_laws as compare
 import numpy as np
-from jointfmu_tools.fractal import rms_height
+from band_of_waves import rms_height
 from measured_joints import measured
 from validity_pictures import GAMMA
 from validity_tables import heading, row

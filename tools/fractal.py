@@ -1,5 +1,5 @@
-"""What the Weierstrass-Mandelbrot functions of this package have in common, and their constants; height and
-slope of a surface of D and G.
+"""What the Weierstrass-Mandelbrot functions of this package have in common, and their constants; height of a
+surface of D and G.
 
 All lengths are SI. H is the Hurst exponent: H = 2 - D of a profile, H = 3 - D of a surface.
 The derivations are in docs/surfaces.md.
@@ -57,17 +57,6 @@ def zhao_roughness(G: Number, H: Number, gamma: Number) -> Number:
     return G * np.log(gamma) ** (0.5 / (1.0 - H))
 
 
-def rms_height(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
-    """h_rms [m] of the waves between two wavelengths [m]: the integral of Phi over ln(frequency)."""
-    return np.sqrt((wave_power(1.0 / longest, H, G) - wave_power(1.0 / shortest, H, G)) / (2.0 * H))
-
-
-def rms_slope(H: Number, G: Number, longest: Number, shortest: Number) -> Number:
-    """h'_rms [1], root mean square gradient: the integral of (2 pi frequency)^2 Phi over ln(frequency)."""
-    high, low = (wave_power(1.0 / wave, H, G) / wave**2 for wave in (shortest, longest))
-    return 2.0 * np.pi * np.sqrt((high - low) / (2.0 - 2.0 * H))
-
-
 def hurst(D: Number, areal: bool = False) -> Number:
     """Hurst exponent H [1] of a profile's dimension D, 2 - D, or of a surface's, 3 - D."""
     return (3.0 if areal else 2.0) - D
@@ -89,12 +78,6 @@ def height(D: Number, G: Number, longest: Number, areal: bool = False, gamma: Nu
     power = wave_power(1.0 / longest, H, _surface(G, H, areal))
     share = 0.5 / H if gamma is None else np.log(gamma) / (1.0 - gamma ** (-2.0 * H))
     return np.sqrt(power * share)
-
-
-def slope(D: Number, G: Number, longest: Number, shortest: Number, areal: bool = False) -> Number:
-    """Rms slope [1] of the isotropic surface of D [1] and G [m] between two wavelengths [m]; as `height`."""
-    H = hurst(D, areal)
-    return rms_slope(H, _surface(G, H, areal), longest, shortest)
 
 
 def _surface(G: Number, H: Number, areal: bool) -> Number:

@@ -207,7 +207,7 @@ def entries(
     values: dict[str, Any] = {}
     origins: dict[str, str] = {}
     sources: dict[str, str] = {}
-    for name, entry in _leaves(body, ""):
+    for name, entry in leaves(body):
         if not isinstance(entry, Mapping):
             raise ValueError(f"{path}: {name} = {entry!r}, expected a table {{ value, unit, kind, source }}")
         if unknown := set(entry) - set(keys):
@@ -234,7 +234,7 @@ def _ranges(
 ) -> dict[str, tuple[float, float]]:
     """{structured name: least and greatest value} of the parameters whose entries state a range."""
     found: dict[str, tuple[float, float]] = {}
-    for name, entry in _leaves(body, ""):
+    for name, entry in leaves(body):
         if "range" not in entry:
             continue
         ends, value = entry["range"], entry.get("value")
@@ -248,14 +248,15 @@ def _ranges(
     return found
 
 
-def _leaves(table: Mapping[str, object], prefix: str) -> list[tuple[str, Any]]:
-    leaves: list[tuple[str, Any]] = []
+def leaves(table: Mapping[str, object], prefix: str = "") -> list[tuple[str, Any]]:
+    """Entries by structured name: those with a value, and whatever is no table."""
+    found: list[tuple[str, Any]] = []
     for key, value in table.items():
         if isinstance(value, Mapping) and value and "value" not in value:
-            leaves += _leaves(value, f"{prefix}{key}.")
+            found += leaves(value, f"{prefix}{key}.")
         else:
-            leaves.append((prefix + key, value))
-    return leaves
+            found.append((prefix + key, value))
+    return found
 
 
 def _input_fields(joint: str) -> dict[str, Field[Any]]:

@@ -22,31 +22,26 @@ class Terminal(NamedTuple):
     y: float = 0.0
 
 
+def _members(kind: str, position: str, rate: str, load: str) -> dict[str, tuple[str, str]]:
+    """Variables of a flange that takes motion, by the names that Modelica has for its members."""
+    names = ("phi", "w", "tau") if kind == ROTATIONAL else ("s", "v", "f")
+    pairs = ((position, "signal"), (rate, "signal"), (load, "outflow"))
+    return dict(zip(names, pairs, strict=True))
+
+
 def axis(axis: str, y: float) -> Terminal:
     """Flange of a joint that takes the relative motion of its two sides along an axis."""
-    members = {
-        "s": (f"s_rel_{axis}", "signal"),
-        "v": (f"v_rel_{axis}", "signal"),
-        "f": (f"f_{axis}", "outflow"),
-    }
+    members = _members(TRANSLATIONAL, f"s_rel_{axis}", f"v_rel_{axis}", f"f_{axis}")
     return Terminal(f"flange_{axis}", TRANSLATIONAL, "b", f"side 2 along {axis}, side 1 fixed", members, y)
 
 
 def rotation(axis: str, y: float) -> Terminal:
     """Flange of a joint that takes the small turn of its two sides against each other about an axis."""
-    members = {
-        "phi": (f"theta_{axis}", "signal"),
-        "w": (f"omega_{axis}", "signal"),
-        "tau": (f"m_{axis}", "outflow"),
-    }
+    members = _members(ROTATIONAL, f"theta_{axis}", f"omega_{axis}", f"m_{axis}")
     return Terminal(f"flange_turn_{axis}", ROTATIONAL, "b", f"side 2 about {axis}, side 1 fixed", members, y)
 
 
 def shaft(number: int, side: str, doc: str) -> Terminal:
     """Flange of a joint that takes the motion of each of its shafts."""
-    members = {
-        "phi": (f"phi{number}", "signal"),
-        "w": (f"w{number}", "signal"),
-        "tau": (f"tau{number}", "outflow"),
-    }
+    members = _members(ROTATIONAL, f"phi{number}", f"w{number}", f"tau{number}")
     return Terminal(f"flange{number}", ROTATIONAL, side, doc, members)

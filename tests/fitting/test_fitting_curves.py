@@ -174,7 +174,7 @@ def test_written_file_says_where_it_comes_from(loops, tmp_path, monkeypatch, cap
 # Preload
 
 
-@pytest.mark.parametrize("direction", preload.DIRECTIONS)
+@pytest.mark.parametrize("direction", ["normal", "tangential"])
 def test_joint_stiffness_is_the_exported_one(direction):
     """Also at 20 N of preload, where most nodes are still closing."""
     joint = default("bolted_joint").values

@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from jointfmu_tools import fractal
-from jointfmu_tools.surfaces.synthesis import periodic
+from band_of_waves import periodic, rms_height, rms_slope
 
 from jointfmu.contact.interface import at_pressure, stiffness_curve
 
@@ -165,9 +164,9 @@ def test_a_periodic_surface_has_the_height_and_slope_of_its_band():
     surface = periodic(1e-3, 256, D, G, band, 7)
     assert np.array_equal(surface.z, periodic(1e-3, 256, D, G, band, 7).z)
     # the waves of a band are whole numbers per side: 8 to 32 of them, the ends weigh by half a ring, 1/16
-    assert surface.z.std() == pytest.approx(fractal.rms_height(3.0 - D, G, *band), rel=1 / 16)
+    assert surface.z.std() == pytest.approx(rms_height(3.0 - D, G, *band), rel=1 / 16)
     slope = boundary_element.slope(surface.z / 1e-3)
-    assert slope == pytest.approx(fractal.rms_slope(3.0 - D, G, *band), rel=1 / 16)
+    assert slope == pytest.approx(rms_slope(3.0 - D, G, *band), rel=1 / 16)
 
 
 @pytest.mark.parametrize("band", [(2e-3, 1e-4), (1e-4, 1e-4), (1e-3, 1e-6)])

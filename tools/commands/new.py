@@ -110,11 +110,10 @@ def _rows(name: str, heads: Mapping[str, tuple[str, float]], source: str) -> Ite
 
 
 def _bolts() -> Iterator[dict[str, object]]:
-    from ..drawing.tables import classes, threads
+    from ..drawing.tables import classes, strength, threads
     from ..drawing.vdi2230 import assembly_preload, stress_area
 
     for thread in threads().values():
-        large = int(thread.d > 16e-3)
         yield {
             "name": thread.name,
             "pitch [mm]": thread.pitch * 1e3,
@@ -123,8 +122,8 @@ def _bolts() -> Iterator[dict[str, object]]:
             "socket [mm]": thread.socket * 1e3,
             "A_s [mm2]": stress_area(thread) * 1e6,
             **{
-                f"preload {name} [kN]": assembly_preload(thread, strength["yield"][large]) / 1e3
-                for name, strength in classes().items()
+                f"preload {name} [kN]": assembly_preload(thread, strength(name, "yield", thread)) / 1e3
+                for name in classes()
             },
         }
 

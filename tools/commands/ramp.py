@@ -178,7 +178,7 @@ def _draw(figure: "Figure", found: loops.HysteresisLoops, swing: loops.Swing) ->
     amplitude, stiffness, loss = (
         np.array([row[name] for row in rows]) for name in ("motion", "secant_stiffness", "loss")
     )
-    unit, size = plots.shown("N/m" if found.units[0] == "m" else "N.m/rad", stiffness)
+    unit, size = plots.shown(found.row_units["secant_stiffness"], stiffness)
     for axes, y, label in (
         (middle, loss, "loss of a cycle [J]"),
         (right, size * stiffness, f"secant stiffness [{unit}]"),

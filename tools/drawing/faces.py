@@ -12,10 +12,11 @@ from jointfmu.quantity import Number
 
 from .. import fractal
 from ..catalogue import Printed
+from ..command_line.common import flag
 from ..joint_parts import Option
 from ..surfaces import form, reading
 from .part import Given, Sheet
-from .reading import both, flag, number
+from .reading import both, number
 from .tables import TableRow, row
 
 OPTIONS = (

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 
 from jointfmu.quantity.units import KELVIN_AT_ZERO, LUBRICANTS, factor
 
+from ..command_line.common import flag
+
 _TEMPERATURE = re.compile(r"([+-]?\d+(?:\.\d*)?)\s*(K|degC|°C|C|)")
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)", re.IGNORECASE)
-
-
-def flag(name: str) -> str:
-    """The option of a name."""
-    return "--" + name.replace("_", "-")
 
 
 def number(name: str, text: str, unit: str, to: str, least: float | None = 0.0) -> float:

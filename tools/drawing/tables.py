@@ -119,6 +119,15 @@ def classes() -> dict[str, dict[str, tuple[float, float]]]:
     }
 
 
+LARGE = 16e-3
+"""Diameter [m] above which a property class has its second stresses."""
+
+
+def strength(name: str, key: str, thread: Thread) -> float:
+    """Stress [Pa] of a property class, yield or proof, for a thread."""
+    return classes()[name][key][int(thread.d > LARGE)]
+
+
 def _document(name: str) -> tuple[Path, dict[str, Any]]:
     path = Path(str(files("jointfmu_models") / "tables" / f"{name}.toml"))
     document = read_document(path, "a table")

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from . import tables
-from .tables import Thread, classes, threads
+from .tables import Thread, strength, threads
 
 E_BOLT = 205e9
 """Young's modulus [Pa] of a steel bolt."""
@@ -36,7 +36,7 @@ def stress_area(thread: Thread) -> float:
 
 
 def bolt_compliance(
-    thread: Thread, grip: float, shank: float, head: str, tapped: float | None = None, E: float = E_BOLT
+    thread: Thread, grip: float, shank: float, head: str, tapped: float | None = None
 ) -> float:
     """delta_S [m/N] of a bolt: head, shank, free thread, engaged thread and nut (section 5.1.1).
 
@@ -48,8 +48,9 @@ def bolt_compliance(
     nominal = 0.25 * np.pi * thread.d**2
     minor = 0.25 * np.pi * minor_diameter(thread) ** 2
     length = {"hexagon": 0.5, "socket": 0.4}[head] * thread.d
-    nut = 0.4 * thread.d / (E * nominal) if tapped is None else 0.33 * thread.d / (tapped * nominal)
-    return float((length + shank) / (E * nominal) + (grip - shank + 0.5 * thread.d) / (E * minor) + nut)
+    nut = 0.4 * thread.d / (E_BOLT * nominal) if tapped is None else 0.33 * thread.d / (tapped * nominal)
+    free = grip - shank + 0.5 * thread.d
+    return float((length + shank) / (E_BOLT * nominal) + free / (E_BOLT * minor) + nut)
 
 
 def cone_slope(grip: float, bearing: float, outer: float, tapped: bool) -> float:
@@ -105,10 +106,10 @@ def members_compliance(
     return total
 
 
-def assembly_preload(thread: Thread, yield_strength: float, friction: float = FRICTION) -> float:
+def assembly_preload(thread: Thread, yield_strength: float) -> float:
     """F_M [N] that uses USE of the yield strength under tension and torsion (Table A1), shank bolt."""
     d_2, d_0 = pitch_diameter(thread), 0.5 * (pitch_diameter(thread) + minor_diameter(thread))
-    twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * friction)
+    twist = 1.5 * d_2 / d_0 * (thread.pitch / (np.pi * d_2) + 1.155 * FRICTION)
     return float(stress_area(thread) * USE * yield_strength / np.sqrt(1.0 + 3.0 * twist**2))
 
 
@@ -133,8 +134,6 @@ def shank_length(thread: Thread, grip: float, head: str, tapped: bool) -> float:
 
 STRONGEST = "12.9"
 """The strongest property class of ISO 898-1."""
-LARGE = 16e-3
-"""Diameter [m] above which a property class has its second proof stress."""
 
 
 def proof_load(hole: float) -> tuple[float, str] | None:
@@ -144,6 +143,6 @@ def proof_load(hole: float) -> tuple[float, str] | None:
     if not fitting or hole > 1.2 * largest.d:
         return None
     bolt = max(fitting, key=lambda thread: thread.d)
-    load = classes()[STRONGEST]["proof"][int(bolt.d > LARGE)] * stress_area(bolt)
+    load = strength(STRONGEST, "proof", bolt) * stress_area(bolt)
     name = f"{bolt.name}, class {STRONGEST} (ISO 898-1)"
     return load, f"the proof load of {name}, the largest bolt that passes the hole"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointfmu.quantity import Array, check, choice, quantity, series
+from jointfmu.quantity import Array, Checked, check, choice, quantity, series
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +98,7 @@ class Layer:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Plate:
+class Plate(Checked):
     """A rectangular plate; all of it but the holes is in contact."""
 
     length: float = quantity("m", "length along x", gt=0.0)
@@ -107,9 +107,6 @@ class Plate:
     E: float = quantity("Pa", "Young's modulus", gt=0.0)
     nu: float = quantity("1", "Poisson's ratio", gt=-1.0, lt=0.5)
     density: float = quantity("kg/m3", "density", gt=0.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def clamped(self) -> float:

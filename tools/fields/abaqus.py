@@ -16,12 +16,11 @@ import numpy as np
 
 from jointfmu.quantity.refusal import Refusal
 
-from .mesh import FiniteElementMesh
-from .nodal_result import NodalResult, read_lines
+from .mesh import NODES, FiniteElementMesh
+from .nodal_result import NUMBER, NodalResult, read_lines
 
 PRESSURE, AREA = "CPRESS", "CNAREA"
 _PLACE = ("COOR1", "COOR2", "COOR3")
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 _COLUMN = re.compile(r"[A-Z]+\d*(?:\..*)?")
 _SUMMARIES = ("MINIMUM", "MAXIMUM", "TOTAL")
 
@@ -142,7 +141,7 @@ def _report(path: Path, lines: list[str]) -> Iterator[ListingRow]:
             columns, head = [*columns, *_columns(where, head)], []
         elif not text or text.upper().startswith(_SUMMARIES):
             columns = [] if text else columns
-        elif columns and _NUMBER.fullmatch(text.split()[0]):
+        elif columns and NUMBER.fullmatch(text.split()[0]):
             words += text.split()
             head = None
             if len(words) > len(columns):
@@ -183,7 +182,7 @@ def _known(name: str) -> str:
 
 def _row(where: str, frame: str, part: str, columns: Sequence[str], words: Sequence[str]) -> ListingRow:
     numbers = words[-len(columns) :]
-    if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(_NUMBER.fullmatch, numbers)):
+    if not words[0].isdigit() or len(words) != len(columns) + 1 or not all(map(NUMBER.fullmatch, numbers)):
         raise ValueError(f"{where}: {' '.join(words)!r} is no row with a node and {' '.join(columns)}")
     values = [float(word.upper().replace("D", "E")) for word in numbers]
     return ListingRow(where, frame, part, int(words[0]), dict(zip(columns, values, strict=True)))
@@ -223,7 +222,6 @@ SOLIDS = {
 }
 SHELLS = {3: "triangle", 4: "quad", 6: "triangle6", 65: "triangle6", 8: "quad8"}
 """Kinds of meshio by the number in the name of an element; their nodes are in the same order."""
-COUNT = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8} | {kind: n for n, kind in SOLIDS.items()}
 REFUSED = ("INSTANCE", "INCLUDE", "NGEN", "NCOPY", "NFILL", "ELGEN", "ELCOPY", "SYSTEM", "NMAP")
 """Keywords that make or move nodes and elements elsewhere."""
 
@@ -246,7 +244,7 @@ def read_deck(path: Path) -> FiniteElementMesh:
             row = [*open_row, *(int(word) for word in words if word)]
         except ValueError:
             row = []
-        size = 1 + COUNT.get(kind, 0)
+        size = 1 + NODES.get(kind, 0)
         open_row = row if words[-1] == "" and 0 < len(row) < size else []
         if not open_row and len(row) != size:
             raise ValueError(

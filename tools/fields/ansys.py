@@ -6,7 +6,6 @@ headers may interrupt it anywhere. Only lines with a number for every column are
 extreme values at the end is passed over.
 """
 
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,12 +15,10 @@ import numpy as np
 from jointfmu.quantity.refusal import Refusal
 
 from .mesh import FiniteElementMesh, no_reader
-from .nodal_result import NodalResult, Nodes, read_lines
+from .nodal_result import NUMBER, NodalResult, read_lines
 
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 _ELEMENT_HEAD = 6
 """Columns before the nodes of an element: its number, material, type, constants, system, section."""
-_FACES = (3, 4, 6, 8)
 PRESSURE = "PRES"
 
 
@@ -85,33 +82,25 @@ def _result(
         loaded = [node for node in stray if values[node] != 0.0]
         if loaded:
             raise ValueError(f"{path}: node {loaded[0]} has a pressure and is in no listed element (ELIST)")
-    index = {name: i for i, name in enumerate(used)}
-    return NodalResult(
-        path=path,
-        word="node",
-        names=np.array(used, dtype=np.int64),
-        place=np.array([places[name] for name in used]) * length,
-        pressure=np.array([values.get(name, np.nan) for name in used]) * pressure,
-        faces=_faces(path, elements, index),
-    )
-
-
-def _faces(path: Path, elements: Sequence[Sequence[int]], index: dict[int, int]) -> list[Nodes]:
-    """Elements of one size together; a quadrilateral whose third and fourth node agree is a triangle."""
-    blocks: dict[int, list[list[int]]] = {}
+    faces: dict[str, list[list[int]]] = {}
     for element in elements:
-        nodes = [node for node in element if node]
-        if len(nodes) == 8 and nodes[2] == nodes[3]:
-            nodes = [nodes[i] for i in (0, 1, 2, 4, 5, 7)]
-        elif len(nodes) == 4 and nodes[2] == nodes[3]:
-            nodes = nodes[:3]
-        if len(nodes) not in _FACES:
+        kind, nodes = _face([node for node in element if node])
+        if not kind:
             raise ValueError(
                 f"{path}: an element has {len(nodes)} nodes, expected contact elements with 3, 4, 6 or 8: "
                 "select them before ELIST"
             )
-        blocks.setdefault(len(nodes), []).append([index[node] for node in nodes])
-    return [np.array(rows, dtype=np.intp) for rows in blocks.values()]
+        faces.setdefault(kind, []).append(nodes)
+    names = np.array(used, dtype=np.int64)
+    mesh = FiniteElementMesh.of(path, names, np.array([places[name] for name in used]), faces)
+    return NodalResult(
+        path=path,
+        word="node",
+        names=names,
+        place=mesh.place * length,
+        pressure=mesh.values(values) * pressure,
+        faces=mesh.faces(),
+    )
 
 
 def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
@@ -138,14 +127,14 @@ def _rows(path: Path) -> Iterator[tuple[str, str, list[float]]]:
 
 
 def _is_number(word: str) -> bool:
-    return _NUMBER.fullmatch(word) is not None
+    return NUMBER.fullmatch(word) is not None
 
 
 def _numbers(line: str) -> list[float] | None:
     """Numbers of a line that has nothing else; they may touch, as in 12-0.5E-003-0.1E-003."""
-    if _NUMBER.sub("", line).strip():
+    if NUMBER.sub("", line).strip():
         return None
-    return [float(x.replace("D", "E").replace("d", "e")) for x in _NUMBER.findall(line)]
+    return [float(x.replace("D", "E").replace("d", "e")) for x in NUMBER.findall(line)]
 
 
 def _content(head: list[str], numbers: list[float], where: str, before: str) -> tuple[str, list[float]]:

@@ -4,7 +4,7 @@ The format is that of CalculiX GraphiX (cgx, appendix "Result Format"): nodes in
 3C, and per result a block of lines -4 (its name), -5 (its components), -1 (a node), -3 (the end).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
 
@@ -13,24 +13,14 @@ from numpy.typing import NDArray
 
 from jointfmu.quantity import Array
 
-from .mesh import bodies, boundary
-from .nodal_result import NodalResult, Nodes
+from .mesh import NODES, FiniteElementMesh
+from .nodal_result import NodalResult
 
-TYPES: dict[int, tuple[str, int]] = {
-    1: ("hexahedron", 8),
-    2: ("wedge", 6),
-    3: ("tetra", 4),
-    4: ("hexahedron20", 20),
-    5: ("wedge15", 15),
-    6: ("tetra10", 10),
-    7: ("triangle", 3),
-    8: ("triangle6", 6),
-    9: ("quad", 4),
-    10: ("quad8", 8),
-    11: ("line", 2),
-    12: ("line3", 3),
+TYPES = {
+    **dict(enumerate(("hexahedron", "wedge", "tetra", "hexahedron20", "wedge15", "tetra10"), 1)),
+    **dict(enumerate(("triangle", "triangle6", "quad", "quad8", "line", "line3"), 7)),
 }
-"""Names of meshio and number of nodes of the element types of the format."""
+"""Names of meshio of the element types of the format."""
 ORDER = {
     "hexahedron20": [*range(12), *range(16, 20), *range(12, 16)],
     "wedge15": [*range(9), *range(12, 15), *range(9, 12)],
@@ -45,25 +35,11 @@ def read(path: Path, length: float, pressure: float) -> NodalResult:
     Raises ValueError naming file and line: no ASCII .frd, no contact result, a line that is none.
     """
     lines = _text(path).splitlines()
-    names, place = _nodes(path, lines)
-    index = {name: i for i, name in enumerate(names.tolist())}
-    cells = _cells(path, lines, index)
+    cells = _cells(path, lines)
     if not cells:
         raise ValueError(f"{path}: has no elements, expected those of the bodies in contact")
-    values = np.full(names.size, np.nan)
-    for name, value in _pressures(path, lines):
-        if name in index:
-            values[index[name]] = value
-    return NodalResult(
-        path=path,
-        word="node",
-        names=names,
-        place=place * length,
-        pressure=values * pressure,
-        faces=boundary(cells),
-        body=bodies(cells, names.size),
-        left_out=True,
-    )
+    mesh = FiniteElementMesh.of(path, *_nodes(path, lines), cells)
+    return mesh.result(path, dict(_pressures(path, lines)), length, pressure, left_out=True)
 
 
 def _text(path: Path) -> str:
@@ -118,28 +94,23 @@ def _row(path: Path, number: int, line: str, least: int) -> tuple[int, list[floa
     return name, values
 
 
-def _cells(path: Path, lines: list[str], index: Mapping[int, int]) -> dict[str, Nodes]:
+def _cells(path: Path, lines: list[str]) -> dict[str, list[list[int]]]:
+    """Nodes of the cells by their kind; lines are passed over."""
     cells: dict[str, list[list[int]]] = {}
-    cell_type, count = "", 0
-    nodes: list[int] = []
+    kind, nodes = "", list[int]()
     for number, line in _block(lines, _start(path, lines, "    3C", "elements")):
         try:
             if line.startswith(" -1"):
-                cell_type, count = TYPES[int(line[13:18])]
-                nodes = []
+                kind, nodes = TYPES[int(line[13:18])], []
                 continue
-            nodes += [index[int(line[i : i + 10])] for i in range(3, len(line.rstrip()), 10)]
+            nodes += [int(line[i : i + 10]) for i in range(3, len(line.rstrip()), 10)]
         except (ValueError, KeyError):
             raise ValueError(
                 f"{path}: line {number + 1}: {line[:60]!r} is no element of the format"
             ) from None
-        if len(nodes) == count:
-            cells.setdefault(cell_type, []).append([nodes[i] for i in ORDER.get(cell_type, range(count))])
-    return {
-        cell_type: np.array(rows, dtype=np.intp)
-        for cell_type, rows in cells.items()
-        if not cell_type.startswith("line")
-    }
+        if len(nodes) == NODES.get(kind):
+            cells.setdefault(kind, []).append([nodes[i] for i in ORDER.get(kind, range(len(nodes)))])
+    return cells
 
 
 def _pressures(path: Path, lines: list[str]) -> Iterator[tuple[int, float]]:

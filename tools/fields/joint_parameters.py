@@ -14,7 +14,7 @@ from jointfmu.mechanics.footprint.shape import (
     growing,
     means,
 )
-from jointfmu.parameters import ORIGINS, ParameterFile
+from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array, build
 from jointfmu.quantity.refusal import Refusal
 
@@ -36,7 +36,6 @@ def with_field(
     field: ContactField,
     preload: float,
     source: str,
-    origin: str = "derived",
     tilted: ContactField | None = None,
     moment: float | None = None,
     bolts: Array | None = None,
@@ -50,7 +49,6 @@ def with_field(
               their meaning
     preload : [N] of each bolt, at which the field was computed
     source  : where the field comes from, for the file
-    origin  : of the values, one of parameters.ORIGINS
     tilted  : the field at the same nodes under a bending moment too; without it the pressure grows in
               proportion to the distance from its centre
     moment  : [N.m] of `tilted`, positive if it raises the pressure at y > 0
@@ -62,8 +60,6 @@ def with_field(
     is far from the stated one.
     """
     pressures = clamping(file.joint).pressures
-    if origin not in ORIGINS:
-        raise ValueError(f"origin = {origin!r} is not one of {', '.join(ORIGINS)}")
     shape = pressure_shape(file.values, field, preload, tilted, moment, tolerance)
     reduction = reduce(replace(file.values, A_0=float(np.sum(field.area))), shape, preload, pressures)
     begin = reduction.shape if shape.share.size > MOST else None
@@ -80,7 +76,7 @@ def with_field(
         file,
         values=build(type(file.values), kept | given),
         origins={n: k for n, k in file.origins.items() if not n.startswith(_REPLACED)}
-        | dict.fromkeys(given, origin),
+        | dict.fromkeys(given, "derived"),
         sources={n: s for n, s in file.sources.items() if not n.startswith(_REPLACED)}
         | dict.fromkeys(given, text)
         | {"A_0": f"{source}, sum of the nodal areas", "field.tilt": f"{text}; {_rule(tilted, moment)}"},

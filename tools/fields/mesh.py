@@ -87,6 +87,8 @@ VOLUMES: dict[str, tuple[int, _Pairs, _Pairs]] = {
 }
 """Corners, faces by corners, and the edges whose middles follow the corners."""
 SURFACES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
+NODES = SURFACES | {name: corners + len(edges) for name, (corners, _, edges) in VOLUMES.items()}
+"""Nodes of a cell."""
 PASSED = ("vertex", "line", "line3")
 """Cells that have no area."""
 

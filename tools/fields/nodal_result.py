@@ -4,6 +4,7 @@ CSV has x [m], y [m], area [m2], pressure [Pa], one node per line. The heading s
 others (COLUMNS). x runs along the bolt rows, y across them.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,9 @@ from jointfmu.quantity import Array
 from jointfmu.quantity.units import Sizes, sizes
 
 from .. import columns
+
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+"""A number of a listing, Fortran's exponents among them."""
 
 
 def read_lines(path: Path, what: str) -> list[str]:

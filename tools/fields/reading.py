@@ -22,9 +22,9 @@ SUFFIXES = {
     ".rpt": "abaqus",
     ".dat": "abaqus",
 }
+"""Format by the end of a file's name; others are meshes."""
 LISTINGS = {"ansys": ansys.read, "abaqus": abaqus.read}
 """Formats in which several files belong together."""
-"""Format by the end of a file's name; others are meshes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -98,7 +98,6 @@ def solve(
     noise: float | None = None,
     nuisances: int = 0,
     tolerance: float = TOLERANCE,
-    steps: int = MOST_STEPS,
 ) -> Solution:
     """The values with the least sum of squared residuals.
 
@@ -111,7 +110,7 @@ def solve(
     Raises
     ------
     ValueError   : the model refuses the starting values, or there are too few data
-    RuntimeError : no solution after `steps` steps
+    RuntimeError : no solution after MOST_STEPS steps
     """
     from scipy.optimize import least_squares
 
@@ -136,10 +135,10 @@ def solve(
             xtol=tolerance,
             ftol=tolerance,
             gtol=1e-15,
-            max_nfev=steps,
+            max_nfev=MOST_STEPS,
         )
         if result.status == 0:
-            raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {steps} steps")
+            raise RuntimeError(f"the fit of {', '.join(model.names)} found no end within {MOST_STEPS} steps")
         place, rest = result.x, result.fun[: first.size]
     jacobian = result.jac[: first.size]
     if noise is None:

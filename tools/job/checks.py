@@ -1,12 +1,15 @@
 """The load ramps through the FMUs, and what must hold of them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from scipy.integrate import quad
 
 from jointfmu.joints import KINDS, MODELS
+from jointfmu.quantity import Array
 
 from ..joint_parts import part
 from ..published.computed import published
@@ -91,6 +94,11 @@ def check_decays(systems: Mapping[str, Sequence[Decay]]) -> list[Check]:
         checks.append(Check(name, "ring-down, frequency against loops", frequency, FREQUENCY_TOLERANCE))
         checks.append(Check(name, "ring-down, damping against loops", damping, LOOP_DAMPING_TOLERANCE))
     return checks
+
+
+def integrals(rate: Callable[[float], float], ends: Iterable[float]) -> Array:
+    """Of a rate between neighbouring ends, by scipy's quad."""
+    return np.array([quad(rate, *pair, epsabs=0.0, epsrel=1e-9, limit=400)[0] for pair in pairwise(ends)])
 
 
 def deviation(value: object, expected: object) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 from jointfmu.joints import KINDS
 from jointfmu.parameters import ParameterFile, default
 
+from ..shown import aligned
 from .computed import published
 from .reference import PROVES_NOTHING, ROLES, Point, guesses, points
 
@@ -138,12 +139,7 @@ def counts(rows: Sequence[ValidatedPoint]) -> Counts:
 
 def table(rows: Sequence[ValidatedPoint]) -> str:
     """The comparison as text."""
-    lines = [_HEAD, *(_cells(row) for row in rows)]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(_HEAD))]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
-        for line in lines
-    )
+    return "\n".join(aligned([_HEAD, *map(_cells, rows)]))
 
 
 def _cells(row: ValidatedPoint) -> tuple[str, ...]:

@@ -136,16 +136,20 @@ class HysteresisLoops:
     def messages(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(text for loop in self.loops for text in loop.result.messages))
 
+    @property
+    def row_units(self) -> dict[str, str]:
+        """Of what a row gives with a unit."""
+        stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
+        return {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
+
     def rows(self) -> list[dict[str, float]]:
         return [loop.row() for loop in self.loops]
 
     def table(self) -> str:
         """The rows as CSV text, six digits."""
         rows = self.rows()
-        stiffness = "N/m" if self.units[0] == "m" else "N.m/rad"
-        heads = {"motion": self.units[0], "force": self.units[1], "secant_stiffness": stiffness, "loss": "J"}
         own = dict(zip(("motion", "force"), self.names, strict=True))
-        given = {"E_loss": "J", "loss_factor": "1"} | heads
+        given = {"E_loss": "J", "loss_factor": "1"} | self.row_units
         return columns.text(
             [(own.get(name, name), given[name]) for name in rows[0]],
             [np.array([row[name] for row in rows]) for name in rows[0]],

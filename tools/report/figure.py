@@ -67,12 +67,12 @@ class Figure(NamedTuple):
     table: Sequence[Sequence[str]] = ()
 
 
-def published(points: Sequence[Point], over: str, factor: float = 1.0) -> list[Series]:
+def published(points: Sequence[Point], over: str) -> list[Series]:
     """Published numbers over an argument, by role; what proves nothing is empty."""
     found = []
     for role in dict.fromkeys(point.role for point in points):
         some = [point for point in points if point.role == role]
-        x, y = [p.where[over] for p in some], [factor * float(p.value) for p in some]
+        x, y = [p.where[over] for p in some], [float(p.value) for p in some]
         marks = "empty" if role in PROVES_NOTHING else "full"
         found.append(Series(f"published: {ROLES[role]}", x, y, marks, titles=[p.id for p in some]))
     return found

@@ -234,8 +234,7 @@ def looped(course: Course, loops: HysteresisLoops) -> Figure:
 
 def _loop_rows(loops: HysteresisLoops) -> list[tuple[str, ...]]:
     """What the loops lose, in display units."""
-    stiffness = "N/m" if loops.units[0] == "m" else "N.m/rad"
-    units = {"motion": loops.units[0], "force": loops.units[1], "secant_stiffness": stiffness, "loss": "J"}
+    units = loops.row_units
 
     def shown(row: dict[str, float], name: str) -> str:
         value, unit = _scale(row[name], units[name])

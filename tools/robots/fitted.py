@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
+from jointfmu.mechanics.jenkins import Sliders
 from jointfmu.quantity import Array
 
 from .transmission import LOOP, RAMP, Transmission, area
@@ -38,12 +39,7 @@ class FittedTendons:
 
 def slider(wind_up: Array, limit: float) -> Array:
     """Force (n) of a spring of stiffness 1 that yields at a limit, along wind-ups (n) from rest."""
-    force, before, forces = 0.0, 0.0, []
-    for x in wind_up.tolist():
-        force = min(max(force + x - before, -limit), limit)
-        forces.append(force)
-        before = x
-    return np.array(forces)
+    return Sliders(np.ones(1)).path(np.diff(wind_up, prepend=0.0), np.array([limit]))
 
 
 def fit(drive: Transmission, torque: float) -> FittedTendons:

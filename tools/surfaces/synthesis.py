@@ -1,21 +1,18 @@
-"""Seeded surfaces of given D and G.
-
-Weierstrass-Mandelbrot: isotropic (Hu 2023, Eq. 1), textured (Yu 2022, Eq. 3), profiles. Periodic: every wave
-of a band.
+"""Seeded Weierstrass-Mandelbrot surfaces of given D and G: isotropic (Hu 2023, Eq. 1), textured (Yu 2022,
+Eq. 3), profiles.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from jointfmu.quantity import Array, Interval, Limit, check, quantity
+from jointfmu.quantity import Array, Checked, Interval, Limit, quantity
 
-from ..fractal import wave_power
 from .heights import Areal, Profile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Waves:
+class Waves(Checked):
     """Waves of a Weierstrass-Mandelbrot function over a length.
 
     size : longest wavelength and length of the sample; points : along that length. The shortest wavelength
@@ -25,9 +22,6 @@ class Waves:
     size: float = quantity("m", "side length of the surface, and its longest wave", gt=0.0)
     points: int = quantity("1", "points along a side", ge=2.0, whole=True)
     gamma: float = quantity("1", "frequency ratio of the Weierstrass-Mandelbrot function", gt=1.0)
-
-    def __post_init__(self) -> None:
-        check(self)
 
     @property
     def positions(self) -> Array:
@@ -100,35 +94,6 @@ def textured(waves: Waves, D: tuple[float, float], G: tuple[float, float], seed:
     spacing = waves.size / waves.points
     z = along_x[None, :] + along_y[:, None]
     return Areal(z=z, dx=spacing, dy=spacing, name="synthetic textured surface")
-
-
-def periodic(size: float, points: int, D: float, G: float, band: tuple[float, float], seed: int) -> Areal:
-    """Isotropic surface with all the waves of a band that fit a periodic square, and no others.
-
-    size   : [m]  side of the square; points : along a side
-    D      : 1    fractal dimension of the surface, 2 < D < 3
-    G      : [m]  fractal roughness in the sense of `isotropic`
-    band   : [m]  longest and shortest wave, size >= longest > shortest >= 2 spacings
-    seed   : of the phases; the amplitudes are those of `fractal.wave_power` without scatter
-
-    Raises ValueError if D is outside its interval or the band does not fit the square and its grid.
-    """
-    _interval("D", D, 2.0, 3.0, "fractal dimension of the surface")
-    longest, shortest = band
-    spacing = size / points
-    if not size >= longest > shortest >= 2.0 * spacing * (1.0 - 1e-9):
-        raise ValueError(
-            f"band = {longest:g} to {shortest:g} m is not allowed: the longest wave is at most the side "
-            f"{size:g} m, the shortest below it and at least two spacings, {2.0 * spacing:g} m"
-        )
-    f = np.hypot(np.fft.fftfreq(points, spacing)[:, None], np.fft.rfftfreq(points, spacing))
-    inside = (f >= (1.0 - 1e-9) / longest) & (f <= (1.0 + 1e-9) / shortest)
-    f[~inside] = np.inf
-    cell = 1.0 / (2.0 * np.pi * f**2 * size**2)  # share of ln f of one mode
-    noise = np.fft.rfft2(np.random.default_rng(seed).standard_normal((points, points)))
-    waves = noise / np.abs(noise) * np.sqrt(wave_power(f, 3.0 - D, G) * cell)
-    z = np.fft.irfft2(waves, s=(points, points)) * points**2
-    return Areal(z=z, dx=spacing, dy=spacing, name="synthetic periodic surface")
 
 
 def _interval(name: str, value: float, low: float, high: float, doc: str) -> None:

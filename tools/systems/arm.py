@@ -33,8 +33,8 @@ from jointfmu.joints import MODELS
 from jointfmu.parameters import default, entries
 from jointfmu.quantity import (
     Array,
+    Checked,
     build,
-    check,
     flat_fields,
     problem,
     quantity,
@@ -48,7 +48,7 @@ AXES: Mapping[str, Array] = {"y": np.array([0.0, 1.0, 0.0]), "z": np.array([0.0,
 
 
 @dataclass(frozen=True, kw_only=True)
-class Link:
+class Link(Checked):
     """One link behind its axis."""
 
     length: float = quantity("m", "from this axis to the next one, or to the tip", ge=0.0)
@@ -57,9 +57,6 @@ class Link:
     J_along: float = quantity("kg.m2", "moment of inertia about the link's own line", gt=0.0)
     J_across: float = quantity("kg.m2", "the same across it, about the centre of mass", gt=0.0)
     travel: float = quantity("rad", "angle of the motion")
-
-    def __post_init__(self) -> None:
-        check(self)
 
 
 @dataclass(frozen=True)

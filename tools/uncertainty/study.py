@@ -30,7 +30,7 @@ import numpy as np
 from scipy import stats
 from scipy.stats import qmc
 
-from jointfmu.parameters import read_document
+from jointfmu.parameters import leaves, read_document
 from jointfmu.quantity import Array
 
 FORMS = (
@@ -203,18 +203,11 @@ def read(path: str | Path) -> dict[str, object]:
     table = document.get("parameters")
     if not isinstance(table, dict) or not table:
         raise ValueError(f"{path}: parameters = {table!r}, expected a table of NAME = VALUE or DISTRIBUTION")
-    entries = dict(_leaves(table, ""))
+    entries = dict(leaves(table))
     for name, value in entries.items():
         if not isinstance(value, str | bool | int | float):
             raise ValueError(f"{path}: {name} = {value!r}, expected a number or a text")
     return {name: float(value) if type(value) is int else value for name, value in entries.items()}
-
-
-def _leaves(table: Mapping[str, object], prefix: str) -> list[tuple[str, object]]:
-    leaves: list[tuple[str, object]] = []
-    for key, value in table.items():
-        leaves += _leaves(value, f"{prefix}{key}.") if isinstance(value, Mapping) else [(prefix + key, value)]
-    return leaves
 
 
 def settings(path: Path | None, given: Sequence[tuple[str, object]]) -> dict[str, object]:

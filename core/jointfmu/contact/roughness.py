@@ -49,13 +49,13 @@ def together(first: Number, second: Number) -> Number:
     return np.sqrt(first**2 + second**2)
 
 
-def level(pressure: Number, h: Number, gamma: Number = GAMMA) -> Number:
-    """Normal stiffness per area k [N/m3] under a nominal pressure [Pa]: p/(gamma h).
+def level(pressure: Number, h: Number) -> Number:
+    """Normal stiffness per area k [N/m3] under a nominal pressure [Pa]: p/(GAMMA h).
 
     Elastic contact of many spots (Persson 2007; Akarapu, Sharp and Robbins 2011); h [m] is the rms height of
     both surfaces together.
     """
-    return pressure / (gamma * h)
+    return pressure / (GAMMA * h)
 
 
 def excluded(name: str) -> tuple[str, ...]:

@@ -1,11 +1,139 @@
-"""What the builders know of the bolted joint."""
+"""What the builders know of the bolted joint: its points as data, and what the page shows of its friction.
 
+Whatever gives the pressure, its C has a field of points.
+"""
+
+from collections.abc import Mapping
+from dataclasses import MISSING, fields
 from pathlib import Path
+from typing import Any
 
-from ...joint_parts import Parts, native_of
+import numpy as np
+
+from jointfmu.joints.bolted_joint import spring
+from jointfmu.joints.bolted_joint.bodies import DIGITS, MODES, ElasticBodies, Modes, RigidBodies
+from jointfmu.joints.bolted_joint.contact import MOST_PARTS, PART_DIGITS, loop_sums, parts
+from jointfmu.joints.bolted_joint.law import Bolted
+from jointfmu.mechanics.footprint.shape import BOLT_MEANS, PATCHES, PressureShape
+from jointfmu.mechanics.sliders import SLIDERS, offsets, turning
+from jointfmu.quantity import Array, flatten
+
+from ...joint_parts import Parts, RampPanel, chart, native_of
+from ...joint_parts.data import DataPart, DataTable
 from ...joint_parts.terminals import axis, rotation
-from .data import DATA
-from .page import DRAWINGS, PANELS
+
+_SECTIONS = ("pattern.", "plate.", "field.", "bodies.")
+_ONE = {"share": (1.0,), "x": (0.0,), "y": (0.0,), "equal": (1.0,), "tilt": (0.0,)}
+"""A field of one point."""
+
+
+def _stands(joint: Bolted) -> Mapping[str, object]:
+    """The joint with one point, as its C is generated, and the place of its bolts."""
+    own = {name: value for name, value in flatten(joint).items() if not name.startswith(_SECTIONS)}
+    spread = dict(zip(BOLT_MEANS, joint.pattern.bolt_means, strict=True))
+    points: dict[str, object] = {f"field.{name}": value for name, value in (_ONE | spread).items()}
+    return own | points | (_one_mode(round(joint.n_bolts)) if joint.elastic else {})
+
+
+def _one_mode(bolts: int) -> dict[str, object]:
+    """Bodies of one mode, one patch and so many bolts."""
+    stated = [item.name for item in fields(ElasticBodies) if item.default is MISSING]
+    values: dict[str, tuple[float, ...]] = dict.fromkeys(stated, (0.0,))
+    values |= {"stiffness": (1.0,), **dict.fromkeys(("stretch", "bolt_x", "bolt_y"), (0.0,) * bolts)}
+    return {f"bodies.{name}": value for name, value in values.items()}
+
+
+def _tables(joint: Bolted) -> Mapping[str, DataTable]:
+    patches = spring.patches(joint.pattern)
+    return {
+        "nodes": DataTable(_rows(spring.points(joint.pattern)), spring.POINTS),
+        "patches": DataTable(np.column_stack([_rows(patches), patches.radius]), PATCHES),
+        "turning": DataTable(turning(SLIDERS), 2),
+        "offsets": DataTable(offsets(patches.equal)[:, None], PATCHES),
+        **_bodies(joint),
+    }
+
+
+def _bodies(joint: Bolted) -> Mapping[str, DataTable]:
+    """Modes in rows of all of them, as whole numbers of two bytes.
+
+    A joint with rigid sides has room for one row.
+    """
+    modes, lever, most = Modes.of(RigidBodies(), 0, np.zeros((0, 2))), np.zeros(0), (1, 1, 1, 1)
+    pressing, pairs = np.zeros((0, 4)), 1
+    if joint.elastic:
+        points, patches = spring.points(joint.pattern), spring.patches(joint.pattern)
+        modes = Modes.of(joint.bodies, len(points.share), patches.position)
+        lever, pressing = modes.lever, _pressing(parts(points, patches))
+        pairs = MOST_PARTS * spring.POINTS + PATCHES
+        most = MODES, spring.POINTS, PATCHES, len(modes.bolts)
+    patch = dict(zip(("patch_x", "patch_y", "patch_around"), modes.patch, strict=True))
+    moved = {"opening": modes.opening, **patch, "stretch": modes.stretch}
+    room = dict(zip(moved, (most[1], *(most[2],) * 3, most[3]), strict=True))
+    return {
+        "modes": DataTable(modes.stiffness[:, None], most[0]),
+        "bolts": DataTable(np.column_stack([modes.bolts, lever]), most[3]),
+        **{name: DataTable(_padded(rows), room[name], digits=True) for name, rows in moved.items()},
+        "pressing": DataTable(pressing, pairs, digits=True),
+    }
+
+
+def _pressing(part: Any) -> Any:
+    """Patch, point, and its part in units of the last digit (n, 4)."""
+    patch, point = np.nonzero(part)
+    digits = np.round(part[patch, point] * 10.0**PART_DIGITS)
+    return np.column_stack([patch, point, digits, 0 * patch])
+
+
+def _padded(rows: Any) -> Any:
+    """Of all MODES, in units of the last digit."""
+    return np.pad(np.round(rows * 10.0**DIGITS), ((0, 0), (0, MODES - rows.shape[1])))
+
+
+def _rows(shape: PressureShape) -> Any:
+    """Share, x, y, equal, tilt (n, 5)."""
+    return np.column_stack([shape.share, shape.position, shape.equal, shape.tilt])
+
+
+PART = 0.3
+"""Preload of the loops over the end of the load ramp [1]."""
+AMPLITUDES = (0.06, 0.12, 0.22, 0.4)
+"""Of the loops that are drawn, over the shift at which the mean spot slips [1]."""
+_POINTS = 13
+
+
+def _loops(spring: Any, end: float) -> list[chart.Panel]:
+    """Loops of several amplitudes, and their loss factor over the amplitude; `end` of the ramp [N]."""
+    preload = PART * end
+    approach = spring.tightened(preload, 0.0)
+    foundation, share = spring.foundation(), spring.shape.share
+    mean = share @ np.maximum(approach - spring.curve.displacement[0], 0.0)
+    slips = foundation.friction / foundation.ratio * float(mean)
+
+    def force(shift: Array) -> Array:
+        """Of first shear [N]."""
+        return np.asarray(spring.joint.A_0 * (foundation.backbone(approach, shift[:, None]) @ share))
+
+    lines = []
+    for part in reversed(AMPLITUDES):
+        u = part * slips * np.linspace(-1.0, 1.0, 2 * _POINTS + 1)
+        top = force(u[-1:])
+        back = top - 2.0 * force(0.5 * (u[-1] - u))
+        shift, loop = np.concatenate([u, u[::-1]]), np.concatenate([back, -back])
+        lines.append(chart.Series(f"amplitude {u[-1] * 1e6:.3g} µm", shift * 1e6, loop / 1e3))
+    u = AMPLITUDES[-1] * slips * np.linspace(0.0, 1.0, _POINTS)
+    lines.append(chart.Series("first shear", u * 1e6, force(u) / 1e3, dashed=True))
+    size = slips * np.geomspace(0.01, 2.0, _POINTS)
+    sums = [loop_sums(foundation, share, approach, np.full(approach.size, a)) for a in size]
+    loss = [s["loop_work"] / (2.0 * np.pi * s["loop_energy"]) for s in sums]
+    over = chart.Series("eta_loop", size * 1e6, loss)
+    return [
+        chart.Panel(f"Loops at preload = {preload / 1e3:g} kN", "s_rel_x [um]", "-f_x [kN]", lines),
+        chart.Panel(
+            "Loss factor over the amplitude", "amplitude of s_rel_x [um]", "eta_loop [1]", [over], True
+        ),
+    ]
+
 
 _AXES = zip("xyz", (75.0, 45.0, 15.0), strict=True)
 _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
@@ -13,8 +141,8 @@ _TURNS = zip("xyz", (-15.0, -45.0, -75.0), strict=True)
 PARTS = Parts(
     folder=Path(__file__).parent,
     native=native_of(__name__),
-    data=DATA,
-    drawings=DRAWINGS,
-    panels=PANELS,
+    data=DataPart(_stands, tables=_tables),
+    drawings={"BoltedJoint": {"loops": _loops}},
+    panels={"BoltedJoint": (RampPanel("preload", ("K_zz", "K_xx")), RampPanel("preload", ("C_zz", "C_xx")))},
     terminals={"BoltedJoint": (*(axis(*row) for row in _AXES), *(rotation(*row) for row in _TURNS))},
 )

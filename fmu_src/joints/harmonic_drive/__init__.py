@@ -1,10 +1,60 @@
-"""What the builders know of the harmonic drive."""
+"""What the builders know of the harmonic drive; the nodes of a measured midline are data."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.given import MOST_POINTS, Measured, Node, TableDrive
+from jointfmu.quantity import Number, flatten, quantity
 
 from ...joint_parts import Parts, RampPanel, native_of
+from ...joint_parts.data import NO_TABLES, DataPart, DataTable
 from ...joint_parts.terminals import ROTATIONAL, Terminal, shaft
-from .data import DATA
+
+
+@dataclass(frozen=True, kw_only=True)
+class MidlineDrive(Measured):
+    """A drive with a measured midline whose nodes are data."""
+
+    end: float = quantity("N.m", "torque at the last point", gt=0.0)
+    stiffest: float = quantity("N.m/rad", "twice the largest stiffness of the midline", gt=0.0)
+
+    @property
+    def reach(self) -> Number:
+        """Torque [N.m] at the last point."""
+        return self.end
+
+    @property
+    def K_FTS(self) -> Number:
+        """Twice the largest stiffness of the midline [N.m/rad]."""
+        return self.stiffest
+
+    def nodes(self) -> list[Node]:
+        """None that the code knows."""
+        return []
+
+
+def _of(drive: Drive) -> type[Drive]:
+    return MidlineDrive if isinstance(drive, TableDrive) else type(drive)
+
+
+def _stands(drive: Drive) -> Mapping[str, Any]:
+    own = flatten(drive)
+    if not isinstance(drive, TableDrive):
+        return own
+    midline = {"end": drive.reach, "stiffest": drive.K_FTS}
+    return {name: value for name, value in own.items() if not name.startswith("table.")} | midline
+
+
+def _tables(drive: Drive) -> Mapping[str, DataTable]:
+    if not isinstance(drive, TableDrive):
+        return NO_TABLES
+    return {"midline": DataTable(np.array(drive.nodes(), dtype=np.float64), MOST_POINTS + 1)}
+
 
 _STIFFNESS = RampPanel("tau", ("K_WTS", "K_TS"))
 _LOCKED = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
@@ -12,7 +62,7 @@ _LOCKED = {"phi": ("phi_rel", "signal"), "tau": ("tau", "inflow")}
 PARTS = Parts(
     folder=Path(__file__).parent,
     native=native_of(__name__),
-    data=DATA,
+    data=DataPart(_stands, _of, _tables),
     panels={
         "HarmonicDriveSpring": (RampPanel("phi_rel", ("tau",)), _STIFFNESS),
         "HarmonicDriveCompliance": (RampPanel("tau", ("phi_rel",)), _STIFFNESS),

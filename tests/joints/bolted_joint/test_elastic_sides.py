@@ -319,7 +319,7 @@ def test_what_does_not_go_with_elastic_sides_is_refused(made, tmp_path, capsys):
 
 
 def test_a_path_far_into_slip_and_opening_is_found_with_few_parts(made, monkeypatch):
-    """By the derivative of the residual, which is that of its differences: one step of 15 goes in two parts."""
+    """By the derivative of the residual, which is that of its differences: one step of 15 goes in parts."""
     spring, rng = made(*FOUR, preload=15e3).spring, np.random.default_rng(2)
     unit = np.array([1.2e-5, 1.2e-5, 4e-6, 8e-5, 8e-5, 2e-4])
     newton, found, apart = equilibrium.Whole._newton, [], []

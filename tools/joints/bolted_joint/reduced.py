@@ -24,7 +24,7 @@ from jointfmu.quantity import Array, flatten
 
 from ...batch.approach import columns, discrete_gauss, held, tabulate
 from ...uncertainty.problem import Reduced
-from .loss import SHEAR, loss_factor, loss_factors, shear_at
+from .report import loss_factor
 
 EQUAL = 6
 """Gauss points of the distribution of the pressure over the nodes [1]."""
@@ -38,6 +38,13 @@ FEW = 7
 """Loads at which the loss factor is computed [1]."""
 _BELOW = 1e-6
 """Where the table begins, over the pressure at which the closing ends [1]: K is a power of p there."""
+SHEAR = 0.05
+"""Shear over the force of all bolts [1] at which `uncertainty` tells the loss factor: half of what the least
+usual mu carries."""
+MOST = 0.8
+"""Most shear over that at which all slips [1]: of less friction the loss factor is told there."""
+STEPS = 6
+"""Of the integration up to the shear [1]."""
 
 
 @lru_cache(maxsize=64)
@@ -183,6 +190,46 @@ def _pressed(log_k: Array, places: Places, ramp: Array) -> Callable[[Array], Arr
         return np.asarray(np.exp(low + (at - i) * (high - low) + _POWER * x))
 
     return stiffness
+
+
+def shear_at(joint: Bolted, left: float) -> float:
+    """Shear [N] of `uncertainty` under the force [N] of each bolt."""
+    return joint.n_bolts * left * min(SHEAR, MOST * joint.mu)
+
+
+def loss_factors(
+    stiffness: Callable[[Array], Array], pressure: Array, share: Array, mu: Array, shape: tuple[int, int]
+) -> Array:
+    """`report.loss_factor` at SHEAR for samples and loads (n, m).
+
+    stiffness : (n, m, e) [1] of pressures over mean pressure (n, m, e), up to a factor of each (n, m)
+    pressure  : (e) [1] over mean pressure, with shares (e) of the area
+    mu        : (n, 1)
+
+    Shear falls short of the friction by what the pressure p - S of an earlier approach has: at each place
+    p(delta - v) falls with v = u K_T/(K_N mu), and the mean fall S carries the shear mu S. With dv/dS = c the
+    loss is 4 mu^2 K_N/K_T times the integral of (2 S - S_end) c, the stored energy half of mu^2 K_N/K_T S_end
+    times that of c.
+    """
+    end = np.minimum(SHEAR / mu, MOST) + np.zeros(shape)
+    step = end / STEPS
+    now = np.broadcast_to(pressure, (*shape, pressure.size))
+
+    def rate(there: Array) -> tuple[Array, Array]:
+        k = stiffness(np.maximum(there, 1e-30))
+        c = 1.0 / (k @ share)
+        return -k * c[..., None], c
+
+    h, moments = step[..., None], np.zeros((2, *shape))
+    for i in range(STEPS):
+        first, c0 = rate(now)
+        second, c1 = rate(now + 0.5 * h * first)
+        third, c2 = rate(now + 0.5 * h * second)
+        fourth, c3 = rate(now + h * third)
+        now = now + h / 6.0 * (first + 2.0 * second + 2.0 * third + fourth)
+        for part, c in zip((0.0, 0.5, 1.0), (c0 / 6.0, (c1 + c2) / 3.0, c3 / 6.0), strict=True):
+            moments += np.stack([c, (2.0 * (i + part) * step - end) * c]) * step
+    return np.asarray(4.0 / np.pi * moments[1] / (end * moments[0]))
 
 
 def exact(joint: Bolted, loads: Array) -> dict[str, Array]:

@@ -1,6 +1,8 @@
-"""What the page of a user's bolted joint shows: a picture of it, and the whole beside its parts."""
+"""What the page of a user's bolted joint shows: a picture, the whole beside its parts, what mu does to it."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from jointfmu_fmu_src.joint_parts.chart import Panel, Series
@@ -8,7 +10,12 @@ from jointfmu_fmu_src.joint_parts.chart import Panel, Series
 from jointfmu.joints.bolted_joint.bodies import ElasticBodies
 from jointfmu.joints.bolted_joint.compliances import Compliances
 from jointfmu.joints.bolted_joint.contact import Place
-from jointfmu.joints.bolted_joint.law import slip_force, working_preload
+from jointfmu.joints.bolted_joint.law import (
+    interface_alone,
+    node_pressure,
+    slip_force,
+    working_preload,
+)
 from jointfmu.joints.bolted_joint.outputs import bolt_force
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.joints.model import Model
@@ -19,11 +26,12 @@ from ...report.course import Course
 from ...report.figure import Beside, Figure
 from ...shown import quantity
 from .field import PlaneLayout
-from .loss import friction_band
 from .picture import plan, section
 
 BEYOND = 4.0
 """Way that is drawn over that at which all is open [1]."""
+TOLD_AT = 0.1
+"""Shear over mu times the normal force [1] at which the band of the friction is told."""
 
 
 def joint_figures(course: Course) -> list[Figure]:
@@ -70,6 +78,47 @@ def friction(course: Course) -> list[Figure]:
         "rigid sides, under the same shear force."
     )
     return [Figure("What the friction may be", text, table=table)]
+
+
+class Band(NamedTuple):
+    """mu [1], the shear [N] at which all slips, and the loss factor [1] at a shear that is stated."""
+
+    mu: float
+    slip_force: float
+    loss_factor: float
+
+
+def friction_band(file: ParameterFile, preload: float) -> tuple[float, list[Band]]:
+    """Shear [N] of the loss factors; what the file's mu makes of a preload [N], and both ends of its range.
+
+    The loss factor is that of a loop of the interface between rigid sides, under the same shear force.
+    """
+    joint = interface_alone(file.values)
+    left = float(working_preload(joint, preload))
+    shear = TOLD_AT * float(slip_force(joint, left))
+    rows = []
+    for mu in (joint.mu, *file.ranges.get("mu", ())):
+        other = replace(joint, mu=mu)
+        lost = loss_factor(BoltedJointSpring.of(other), left, shear)
+        rows.append(Band(mu, float(slip_force(other, left)), lost))
+    return shear, rows
+
+
+def loss_factor(spring: BoltedJointSpring, left: float, shear: float) -> float:
+    """Loss over 2 pi times the stored energy of a loop with an amplitude of the shear force [N].
+
+    left : [N] force of each bolt, without a moment
+    """
+    joint, shape = spring.joint, spring.patches
+    law = spring.foundation()
+    approach = spring.curve.inverse(node_pressure(joint, shape.equal, shape.tilt, left, 0.0))
+    low, size = 0.0, law.friction / law.ratio * float(np.max(approach - spring.curve.displacement[0]))
+    for _ in range(60):
+        middle = 0.5 * (low + size)
+        carried = joint.A_0 * float(law.backbone(approach, middle) @ shape.share)
+        low, size = (middle, size) if carried < shear else (low, middle)
+    lost, stored = (float(shape.share @ each) for each in law.loop(approach, np.full(approach.size, size)))
+    return lost / (2.0 * np.pi * stored)
 
 
 def _tight(course: Course) -> tuple[float, float]:

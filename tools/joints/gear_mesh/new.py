@@ -8,6 +8,7 @@ from jointfmu.contact.surface import Elastic, contact_modulus
 from jointfmu.joints.gear_mesh import KIND
 from jointfmu.joints.gear_mesh.spring import GearMeshSpring
 
+from ...command_line.common import flag
 from ...drawing import faces
 from ...drawing.faces import OPTIONS, patch
 from ...drawing.part import Drawing, Given, NewJoint, Sheet
@@ -145,7 +146,7 @@ def _wheels(given: Given) -> InvoluteGearPair:
         angle = number(name, given[name] or usual, "deg", "rad", least=None)
         if not max(least, 0.0) <= np.degrees(angle) < most or (least == 0.0 and angle == 0.0):
             low = "(0" if least == 0.0 else "[0"
-            raise ValueError(f"--{name.replace('_', '-')} = {given[name]} deg is outside {low}, {most:g})")
+            raise ValueError(f"{flag(name)} = {given[name]} deg is outside {low}, {most:g})")
         angles.append(angle)
     width, module = (number(name, given[name], "mm", "m") for name in ("width", "module"))
     return InvoluteGearPair(module, (teeth[0], teeth[1]), width, angles[0], angles[1])

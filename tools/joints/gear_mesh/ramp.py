@@ -6,12 +6,11 @@ the backlash. The pair's curve is that of `spring.pair_curve` over the nodes of 
 """
 
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.integrate import cumulative_simpson, quad
+from scipy.integrate import cumulative_simpson
 
 from jointfmu.contact.interface import stiffness_curve
 from jointfmu.joints.gear_mesh import KIND
@@ -20,7 +19,7 @@ from jointfmu.parameters import default
 from jointfmu.quantity import Array
 
 from ...batch.approach import Rows, columns, tabulate
-from ...job.checks import deviation
+from ...job.checks import deviation, integrals
 from ...ramps.ramp import RampResult
 from ...report.figure import Figure, Panel, Series
 from ...uncertainty.problem import Reduced
@@ -40,7 +39,7 @@ def _series(folder: Path, result: RampResult) -> tuple[str, float]:
     pair = c["f"] / c["pairs"]
     first = int(np.argmax(pair > _CLOSED))
     at = np.linspace(first, pair.size - 1, 4).astype(int)
-    way = [quad(compliance, pair[i], pair[j], epsabs=0.0, epsrel=1e-9, limit=400)[0] for i, j in pairwise(at)]
+    way = integrals(compliance, pair[at])
     work = -cumulative_simpson(c["tau1"], x=c["phi1"], initial=0.0)
     return (
         "s_rel against the integral of df/K of flanks and teeth (scipy, quad), E against the work of tau1",

@@ -11,6 +11,6 @@ PARTS = ToolParts(
     ringing="job",
     export="load",
     pressure="load",
-    interface="wind_up",
-    transmission="wind_up",
+    interface="load",
+    transmission="load",
 )

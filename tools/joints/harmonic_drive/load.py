@@ -1,10 +1,14 @@
-"""The load of a harmonic drive: its curve for other solvers, how the torque presses on its contact pair."""
+"""The harmonic drive under load: as an object, in a robot, for other solvers, and on its contact pair."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from jointfmu.contact.interface import at_pressure
 from jointfmu.joints.harmonic_drive import KIND
-from jointfmu.joints.harmonic_drive.drive import Drive
+from jointfmu.joints.harmonic_drive.drive import HARMONICS, Drive
 from jointfmu.joints.harmonic_drive.law import (
     HarmonicDrive,
     RoughHarmonicDrive,
@@ -12,12 +16,93 @@ from jointfmu.joints.harmonic_drive.law import (
     peak_pressure,
 )
 from jointfmu.joints.harmonic_drive.spring import HarmonicDriveSpring
+from jointfmu.mechanics.curve import Curve
+from jointfmu.quantity import Array
 
 from ...export.exports import Exports, LoadCurve
+from ...interface.joint import Joint
 from ...pressure import NominalPressure
+from ...robots.transmission import Transmission
 
 if TYPE_CHECKING:
     from ...export.tables import LoadTable
+
+
+class DriveJoint(Joint):
+    """A harmonic drive. `wind_up`, `torque` and `stiffness` are those of the midline, wave generator locked.
+
+    >>> import jointfmu
+    >>> drive = jointfmu.drive("CSG-25-100")
+    >>> float(drive.torque(drive.wind_up(48.0))).__round__(9)
+    48.0
+    """
+
+    def wind_up(self, torque: ArrayLike) -> Array:
+        """Wind-up (n) [rad] of the output under torques (n) [N.m], odd."""
+        return self._curve.odd_inverse(torque)[()]
+
+    def torque(self, wind_up: ArrayLike) -> Array:
+        """Torque (n) [N.m] at wind-ups (n) [rad], odd."""
+        phi = np.asarray(wind_up, dtype=np.float64)
+        return np.asarray(np.copysign(self._curve.derivatives(np.abs(phi), 1)[0], phi))[()]
+
+    def stiffness(self, torque: ArrayLike) -> Array:
+        """Tangent stiffness K_WTS (n) [N.m/rad] under torques (n) [N.m]."""
+        return np.asarray(self._curve.derivatives(np.abs(self.wind_up(torque)), 1)[1])[()]
+
+    @property
+    def _curve(self) -> Curve:
+        """Torque over wind-up, from zero on."""
+        curve = self.spring.curve
+        assert isinstance(curve, Curve)
+        return curve
+
+
+CLASS = DriveJoint
+
+
+def TRANSMISSION(name: str, drive: Drive) -> Transmission:
+    """The drive with its spring."""
+    spring = HarmonicDriveSpring.of(drive)
+
+    def wind_up(torques: ArrayLike) -> Array:
+        memory, found = spring.rest(), []
+        for torque in np.asarray(torques, dtype=np.float64):
+            out, memory = spring.loaded(torque, memory)
+            found.append(float(out["phi_rel"]))
+        return np.array(found)
+
+    return Transmission(
+        name=name,
+        ratio=drive.ratio,
+        damping=drive.d,
+        rated_torque=drive.rated_torque,
+        max_torque=float(spring.curve.end[1]),
+        dry=drive.friction_coulomb,
+        viscous=drive.friction_viscous,
+        static=drive.friction_coulomb + drive.friction_stribeck,
+        stribeck_speed=drive.stribeck_speed,
+        presliding=drive.presliding,
+        wind_up=wind_up,
+        lacks=tuple(_lacks(drive)),
+    )
+
+
+def _lacks(drive: Drive) -> Iterator[str]:
+    """What is no spring, slider or friction of the motor's speed."""
+    if drive.load_loss or drive.loss_back:
+        loss, back = (
+            share * drive.rated_torque / abs(drive.ratio) for share in (drive.load_loss, drive.loss_back)
+        )
+        yield (
+            "friction that grows with the load: at rated torque "
+            f"{loss:.4g} N.m at the motor where it drives, {back:.4g} N.m where the load does"
+        )
+    if drive.friction_coulomb or drive.friction_viscous:
+        yield "the temperature of the lubricant: friction is that at 20 degrees C"
+    error = sum(abs(getattr(drive, f"error_{n}")) for n in HARMONICS)
+    if error:
+        yield f"the kinematic error, up to {error:.3g} rad"
 
 
 def _torque(drive: Drive, _: None, error: float) -> "LoadTable":

@@ -8,8 +8,9 @@ from jointfmu.joints.harmonic_drive.friction import limits, viscous
 from jointfmu.quantity.units import KELVIN_AT_ZERO
 
 from ...catalogue import Printed
+from ...command_line.common import flag
 from ...drawing.part import Drawing, Given, NewJoint
-from ...drawing.reading import flag, number, temperature
+from ...drawing.reading import number, temperature
 from ...joint_parts import Option
 from .catalogue import COLUMNS, LINES, ROW, find
 from .friction import QUOTED, SPEED, efficiency, friction, interval_text

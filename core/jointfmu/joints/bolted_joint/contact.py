@@ -67,8 +67,8 @@ def about(shape: PressureShape, name: str, value: Array) -> dict[str, Number]:
 
 
 IDLE = 0.01
-"""Pressure over the mean one [1] that counts beside a point's own where its force is shared: what does not touch
-has its parts, too."""
+"""Pressure over the mean one [1] that counts beside a point's own where its force is shared: of what does not
+touch as well."""
 ROUNDS = 100
 """How often the parts are balanced [1], once of all patches and once of those that are kept."""
 LEAST_PART, MOST_PARTS = 0.02, 8

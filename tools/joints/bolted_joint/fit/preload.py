@@ -38,7 +38,6 @@ COLUMNS: Mapping[str, Sizes] = {
     "stiffness": sizes("N/m", "N/um", "kN/mm", "N/mm"),
     "frequency": sizes("Hz", "kHz"),
 }
-DIRECTIONS = ("normal", "tangential")
 LEAST = 4
 """Fewest points of a curve."""
 STARTS: Mapping[str, tuple[float, ...]] = {
@@ -82,7 +81,7 @@ def fit(
     Parameters
     ----------
     free       : names to fit; None: surface.D with surface.G, or with mass if it is not stated
-    direction  : of the motion, one of DIRECTIONS
+    direction  : of the motion, normal or tangential
     modal_mass : [kg] what vibrates on the joint, for frequencies; replaces `mass`
     series_stiffness : [N/m] of the structure, in series; None: rigid, unless SERIES is in `free`
 

@@ -13,9 +13,9 @@ from jointfmu.quantity import Array
 from ....drawing import faces, vdi2230
 from ....drawing.part import Given, NewJoint, Sheet
 from ....drawing.reading import number, numbers
-from ....drawing.tables import Thread, classes, thread_source
+from ....drawing.tables import Thread, strength, thread_source
 from ....pressure import overload
-from ..loss import friction_band
+from ..report import friction_band
 from . import computed, layout
 from .computed import Plates, with_computed_field
 
@@ -27,8 +27,6 @@ LONGEST = 50
 ALONE = "the FMU is the interface alone: for the whole joint state --thickness of both plates"
 ENGAGED = 1.0
 """Depth of a thread that holds the bolt over its diameter [1]: a usual one in steel."""
-LARGE = 16e-3
-"""Diameter [m] above which the second strengths of a class hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,9 +218,8 @@ def _put_bolts(sheet: Sheet, plate: BoltedPlate, one: Clamped, thread: Thread) -
 def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[str]]:
     """Put the preload; the warning if it is more than a bolt of the stated class bears."""
     name = given["property_class"] or "8.8"
-    large = int(thread.d > LARGE)
     if given["preload"] is None:
-        preload = vdi2230.assembly_preload(thread, classes()[name]["yield"][large])
+        preload = vdi2230.assembly_preload(thread, strength(name, "yield", thread))
         text = f"VDI 2230, Table A1: {thread.name}-{name}, 90 % of the yield strength, mu_G = 0.12"
         sheet.put("inputs.preload", preload, "estimate", text)
     else:
@@ -230,7 +227,7 @@ def _preload(sheet: Sheet, given: Given, thread: Thread) -> tuple[float, list[st
         sheet.stated("inputs.preload", preload)
     if given["property_class"] is None:
         return preload, []
-    most = classes()[name]["proof"][large] * vdi2230.stress_area(thread)
+    most = strength(name, "proof", thread) * vdi2230.stress_area(thread)
     return preload, overload(
         "preload", preload, (most, f"the proof load of {thread.name}-{name} (ISO 898-1)")
     )
