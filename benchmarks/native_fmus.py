@@ -20,6 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 from time import perf_counter
+from typing import NamedTuple
 
 import fmpy
 import numpy as np
@@ -27,6 +28,8 @@ from jointfmu_fmu_src.building import FLAVOURS, build
 from jointfmu_fmu_src.native import data
 from jointfmu_fmu_src.native.code import generate
 from jointfmu_fmu_src.native.compiled import compiler
+from jointfmu_fmu_src.native.compiled.binary import finished
+from jointfmu_fmu_src.native.compiled.kept import part_of
 from jointfmu_tools.host import Instance
 
 from jointfmu.joints import MODELS
@@ -131,27 +134,44 @@ def pass_through(name: str) -> dict[str, str]:
     }
 
 
-def sources(name: str) -> dict[str, str]:
-    """C sources of an FMU with its default parameters, or of one of OTHERS."""
+class Linked(NamedTuple):
+    """Libraries of an FMU by flavour, and its token."""
+
+    libraries: dict[str, bytes]
+    token: str
+
+
+def as_built(name: str) -> Linked:
+    """Of an FMU with its default parameters, or of one of OTHERS."""
     own, changes = OTHERS.get(name, (name, {}))
     file = default(MODELS[own].joint).with_values(changes, "user", "benchmark")
-    return generate.sources(own, file)
+    model = MODELS[own].of(file.joint, file.values)
+    given = data.split(model, file)
+    part, before = part_of(model, file, given), data.placeholder(model, given)
+    after = data.data_of(model, file, given, part.sources)
+    made = {f: finished(part.libraries[f[-1]][PLATFORM], before, after, own) for f in NATIVE}
+    return Linked(made, after.token)
+
+
+def as_compiled(name: str) -> Linked:
+    """Of an FMU that passes its inputs on."""
+    files = pass_through(name)
+    units = {flavour: compiler.exported(list(files), flavour[-1]) for flavour in NATIVE}
+    made = {f: compiler.libraries(name, files, u, [PLATFORM])[PLATFORM] for f, u in units.items()}
+    return Linked(made, generate.token(files))
 
 
 def libraries(folder: Path) -> Iterator[tuple[str, str, Path, str, int]]:
     """Name, flavour, library, token and number of outputs of every native FMU and pass-through."""
     for name in (*MODELS, *OTHERS, *PASS_THROUGH):
-        own = OTHERS.get(name, (name, {}))[0]
-        model = MODELS.get(own)
+        model = MODELS.get(OTHERS.get(name, (name, {}))[0])
         outputs = len(model.outputs) if model else PASS_THROUGH[name][1]
-        files = sources(name) if model else pass_through(name)
-        for flavour in NATIVE:
-            units = compiler.exported(list(files), flavour[-1])
+        linked = as_built(name) if model else as_compiled(name)
+        for flavour, library in linked.libraries.items():
             file = folder / flavour / f"{name}.so"
             file.parent.mkdir(exist_ok=True)
-            made = compiler.libraries(own, files, units, [PLATFORM])
-            file.write_bytes(made[PLATFORM])
-            yield name, flavour, file, generate.token(files), outputs
+            file.write_bytes(library)
+            yield name, flavour, file, linked.token, outputs
 
 
 def build_host(folder: Path) -> Path:

@@ -13,7 +13,7 @@ tightened = bracket.values["inputs.preload"]  # N of each bolt
 
 figure, axes = plt.subplots(layout="constrained")
 for share in (0.1, 0.5, 1.0):
-    motion = 3e-6 * np.sin(np.linspace(0.0, 4.5 * np.pi, 200))  # m
+    motion = 3e-6 * np.sin(np.linspace(0.0, 2.5 * np.pi, 112))  # m
     loop = bracket.follow(s_rel_x=motion, preload=share * tightened)
     axes.plot(1e6 * loop["s_rel_x"], -1e-3 * loop["f_x"], label=f"{1e-3 * share * tightened:.0f} kN each")
     print(f"{share:4.0%} of the preload: {loop['E_loss'][-1]:.3g} J lost")

@@ -18,7 +18,7 @@ import pytest
 from filelock import FileLock
 from fmpy import platform_tuple
 from hypothesis import settings
-from jointfmu_fmu_src.native.compiled.cache import CACHE, COMPILER, compiler_cache, parts
+from jointfmu_fmu_src.native.compiled.cache import COMPILER, compiler_cache, parts
 from jointfmu_fmu_src.native.compiled.compiler import TARGETS, libraries
 from jointfmu_tools.host import Instance
 
@@ -188,19 +188,34 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 def here_alone(versions: str = "23") -> Iterator[None]:
     """What is built here is for this machine alone: that all platforms are served is shown of `native`.
 
+    What is kept for all of them is taken from there; what else is compiled is kept apart.
+
     versions : of FMI that are compiled
     """
     from jointfmu_fmu_src.native.compiled import kept
     from jointfmu_tools.systems.fmu import build as system
 
-    def here(*files: Any, **options: Any) -> dict[str, bytes]:
+    places, read = kept._places, kept.read
+
+    def places_here(name: str) -> tuple[Path, ...]:
+        *others, last = places(name)
+        return *others, last, parts() / f"here{versions}" / last.relative_to(parts())
+
+    def libraries_here(*files: Any, **options: Any) -> dict[str, bytes]:
         return libraries(*files[:3], [platform_tuple], **options)
 
+    def read_here(content: bytes) -> kept.Part:
+        part = read(content)
+        return kept.Part(
+            part.sources, {v: {platform_tuple: built[platform_tuple]} for v, built in part.libraries.items()}
+        )
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(CACHE, str(parts() / f"here{versions}"))
         patch.setattr(kept, "VERSIONS", (*versions,))
-        patch.setattr(kept, "libraries", here)
-        patch.setattr(system, "libraries", here)
+        patch.setattr(kept, "_places", places_here)
+        patch.setattr(kept, "read", read_here)
+        patch.setattr(kept, "libraries", libraries_here)
+        patch.setattr(system, "libraries", libraries_here)
         yield
 
 

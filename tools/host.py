@@ -4,7 +4,7 @@ import os
 import shutil
 import sys
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import chdir, contextmanager
 from ctypes import c_double, c_uint
 from functools import lru_cache
@@ -116,12 +116,6 @@ class Instance:
     def advance(self, time: float, size: float) -> None:
         """One step [s] of co-simulation."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=size)
-
-    @property
-    def rates(self) -> Callable[..., Any]:
-        """What gives the derivatives of the continuous states."""
-        two = self.version == 2
-        return self.fmu.getDerivatives if two else self.fmu.getContinuousStateDerivatives
 
     def update(self) -> tuple[Any, ...]:
         """One event iteration: whether another is needed, whether to end, ... the next event's time."""

@@ -9,8 +9,11 @@ from typing import Any
 
 import fmpy
 import numpy as np
-from jointfmu_fmu_src.native.code.generate import sources, token
-from jointfmu_fmu_src.native.compiled.compiler import file_name, libraries
+from conftest import here_alone
+from jointfmu_fmu_src.native.compiled.binary import finished
+from jointfmu_fmu_src.native.compiled.compiler import file_name
+from jointfmu_fmu_src.native.compiled.kept import part_of
+from jointfmu_fmu_src.native.data import data_of, placeholder, split
 from jointfmu_fmu_src.native.description import fmi3_xml
 from jointfmu_tools.laboratory.describe import Module
 
@@ -20,14 +23,15 @@ from jointfmu.quantity import flatten
 
 def native_fmu(module: Module, folder: Path) -> Path:
     """An FMI 3.0 FMU of a module's first parameter file, with the binary of this machine alone."""
-    name, file = module.model.name, module.files[0]
-    files = sources(name, file)
-    units = [unit for unit in files if unit.endswith(".c") and unit != "fmi2.c"]
-    here = fmpy.platform_tuple
-    (library,) = libraries(name, files, units, [here]).values()
+    name, file, here = module.model.name, module.files[0], fmpy.platform_tuple
+    given = split(module.model, file)
+    with here_alone("3"):
+        part = part_of(module.model, file, given)
+    data = data_of(module.model, file, given, part.sources)
+    library = finished(part.libraries["3"][here], placeholder(module.model, given), data, name)
     folder.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
-        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, token(files), "tunable"))
+        archive.writestr("modelDescription.xml", fmi3_xml(module.model, file, data.token, "tunable"))
         archive.writestr(f"binaries/{here}/{file_name(name, here)}", library)
     return folder / f"{name}.fmu"
 

@@ -270,6 +270,17 @@ def check_bolts(assembly: Assembly) -> None:
             )
 
 
+def check_thickness(assembly: Assembly) -> None:
+    """Raise ValueError for a body thinner than the ring that a head presses on is wide."""
+    least = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
+    for name, body in (("side1", assembly.side1), ("side2", assembly.side2)):
+        if not body.clamped >= least:
+            raise ValueError(
+                f"{name} is {1e3 * body.clamped:.4g} mm thick, expected at least {1e3 * least:.4g} mm: the "
+                "width of the ring under a head, which would punch through"
+            )
+
+
 def _obstacle(body: Body, x: float, y: float, radius: float) -> str | None:
     """What keeps a disc on the flange from lying flat; None if nothing does."""
     flange, *rest = body.layers()

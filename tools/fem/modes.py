@@ -22,6 +22,8 @@ RIGID = 6
 """Motions without strain of an assembly that floats freely."""
 SHIFT = 100.0
 """Frequency [Hz] at whose negative square the eigensolver looks; far below the elastic modes."""
+ACCURATE = 1e-8
+"""Of shapes [1]; frequencies are so to its square."""
 LEAST = 1.0
 """Frequency [Hz] below which a motion counts as rigid."""
 
@@ -90,7 +92,7 @@ def _lowest(
     factor = Cholesky(stiffness - shift * mass)
     inverse = LinearOperator(stiffness.shape, matvec=factor.solve, dtype=np.float64)
     start = np.random.default_rng(1).standard_normal(stiffness.shape[0])
-    squares, shapes = eigsh(stiffness, k=count, M=mass, sigma=shift, OPinv=inverse, v0=start)
+    squares, shapes = eigsh(stiffness, k=count, M=mass, sigma=shift, OPinv=inverse, v0=start, tol=ACCURATE)
     ends = np.cumsum([body.size for body in bodies])[:-1]
     parts = [tuple(part.reshape(-1, 3) for part in np.split(shape, ends)) for shape in shapes.T]
     return list(zip(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi), parts, strict=True))

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from jointfmu.mechanics.curve import Curve, approach_curve
 from jointfmu.mechanics.footprint.shape import PressureShape
@@ -67,6 +66,8 @@ def first_loads(limit: float) -> list[Load]:
 
 def further_loads(limit: float) -> Iterator[Load]:
     """Loads without end, every third one at rest."""
+    from scipy.stats import qmc  # takes as long as all else that is imported
+
     sequence = qmc.Halton(3, seed=SEED)
     low, high = np.log(PRELOADS)
     for i in count():

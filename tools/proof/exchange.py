@@ -61,15 +61,16 @@ class _Motion:
         self.interval, self.time = 0, task.times[0]
         self.failure: Exception | None = None
         self._settle()
+        rates = "Derivatives" if instance.version == 2 else "ContinuousStateDerivatives"
         self.solver = CVodeSolver(
             nx=model.numberOfContinuousStates,
             nz=model.numberOfEventIndicators,
-            get_x=self._kept(self.fmu.getContinuousStates),
-            set_x=self._kept(self.fmu.setContinuousStates),
-            get_dx=self._kept(instance.rates),
-            get_z=self._kept(self.fmu.getEventIndicators),
+            get_x=self._direct("GetContinuousStates"),
+            set_x=self._direct("SetContinuousStates"),
+            get_dx=self._direct(f"Get{rates}"),
+            get_z=self._direct("GetEventIndicators"),
             get_nominals=self._nominals,
-            set_time=self._kept(self._at),
+            set_time=self._kept(self._at) if self.continuous else self._direct("SetTime"),
             input=_Nothing,
             startTime=task.times[0],
             relativeTolerance=task.tolerance,
@@ -134,6 +135,21 @@ class _Motion:
         """Sizes below which round-off counts, as for what is compared."""
         self.fmu.getNominalsOfContinuousStates(values, count)
         np.ctypeslib.as_array(values, (count,))[:] *= FLOOR
+
+    def _direct(self, name: str) -> Callable[..., None]:
+        """A function of the FMU itself: fmpy's way there takes longer than most laws. Its first failure is
+        kept, as below."""
+        from fmpy.fmi1 import FMICallException, fmi1Warning
+
+        name = f"fmi{self.instance.version}{name}"
+        function, component = getattr(self.fmu.dll, name), self.fmu.component
+
+        def call(*arguments: object) -> None:
+            status = function(component, *arguments)
+            if status > fmi1Warning:
+                self.failure = self.failure or FMICallException(function=name, status=status)
+
+        return call
 
     def _kept(self, call: Callable[..., object]) -> Callable[..., None]:
         """A call whose first failure is kept: C, which calls it, does not hand on exceptions."""

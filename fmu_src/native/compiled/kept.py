@@ -172,7 +172,7 @@ def read(content: bytes) -> Part:
     Raises ValueError, LZMAError or TarError if it is none.
     """
     sources: dict[str, str] = {}
-    built: dict[str, dict[str, bytes]] = {v: {} for v in VERSIONS}
+    built: dict[str, dict[str, bytes]] = {}
     with tarfile.open(fileobj=io.BytesIO(lzma.decompress(content))) as archive:
         for info in archive:
             folder, _, name = info.name.partition("/")
@@ -181,8 +181,8 @@ def read(content: bytes) -> Part:
             if folder == "sources":
                 sources[name] = member.decode()
             else:
-                built[folder][name] = member
-    if not sources or not all(built.values()):
+                built.setdefault(folder, {})[name] = member
+    if not sources or not built.keys() >= {*VERSIONS}:
         raise ValueError("no part")
     return Part(sources, built)
 

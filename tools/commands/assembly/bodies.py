@@ -91,9 +91,10 @@ def assembly(
 ) -> tuple["Assembly", list[str]]:
     """The plates of a field with bolts at (b, 2) [m], and what is to be known of them.
 
-    Raises ValueError if places or sizes of the bolts are missing, or heads overlap or leave the plates.
+    Raises ValueError if places or sizes of the bolts are missing, heads overlap or leave the plates, or
+    these are too thin.
     """
-    from ...fem.geometry import Assembly, BoltList, Plate
+    from ...fem.geometry import Assembly, BoltList, Plate, check_thickness
 
     if at is None:
         raise ValueError("--thickness without the places of the bolts: expected --bolts X,Y for each")
@@ -121,6 +122,7 @@ def assembly(
         x=tuple(places[:, 0].tolist()), y=tuple(places[:, 1].tolist()), hole_diameter=hole, head_diameter=head
     )
     made = Assembly(file.name, sides[0], sides[1], bolts)
+    check_thickness(made)
     told = [
         f"the plates are the rectangle around the contact, {1e3 * sides[0].length:.4g} x "
         f"{1e3 * sides[0].width:.4g} mm, heads {1e3 * head:.4g} mm over holes of {1e3 * hole:.4g} mm"

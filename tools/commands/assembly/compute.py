@@ -51,12 +51,14 @@ def run(args: argparse.Namespace) -> Answer:
         from ...fem import convergence, results
         from ...fem.assembly import load as read
         from ...fem.convergence import unlike_holes
+        from ...fem.geometry import check_thickness
     assembly, file = read(args.assembly), joint_file(args.params)
     moment = 0.0 if args.moment is None else args.moment
     assembly.bolt_forces(args.preload, moment)
     _check(args)
     if args.attached:
         check_bolts(f"--attached {args.attached}", file)
+        check_thickness(assembly)
     if args.field:
         results.check(args.field)
     file = with_assembly(file, assembly, whole=args.out is not None)

@@ -225,21 +225,30 @@ class PatchWork:
         """Derivatives of what is missed of forces and loss by the rows."""
         all_rows, at = self.moved(self.shears, rows)
         area, amplitude = self.places.area, self.shears.amplitude
-        count, modes = area.size, rows.shape[1]
-        shape = (len(amplitude), 3 + modes, 2, count, modes)
-        forces, stuck, springs = np.zeros(shape), np.zeros(shape), area * at.stick
-        loss = np.zeros((shape[0], *shape[2:]))
+        (ways, modes), count = amplitude.shape, len(rows) // 2
         unit, halves = (at.u / at.size, at.v / at.size), np.split(all_rows, 2)
-        own = np.arange(modes)
+
+        def of_patches(slope: Array, half: Array) -> Array:
+            """Sums (s, 3 + k, m) over the places of each patch."""
+            parts = slope.reshape(ways, -1, count), half.reshape(-1, count, 3 + modes)
+            return np.einsum("scm,cmh->shm", *parts)
+
+        def sums(each: Array) -> Array:
+            return each.reshape(ways, -1, count).sum(axis=1)
+
+        forces, loss = np.zeros((2, ways, 3 + modes, 2, count)), np.zeros((ways, 2, count))
+        pulls, springs = np.zeros((2, ways, 2, count)), area * at.stick
         for i, (shift, along) in enumerate(zip((at.u, at.v), unit, strict=True)):
             for j in range(2):
                 slope = area * ((i == j) * at.secant + (at.tangent - at.secant) * along * unit[j])
-                forces[:, :, i] += np.einsum("sm,mh,sk->shmk", slope, halves[j], amplitude, optimize=True)
-            stuck[:, :, i] = np.einsum("sm,mh,sk->shmk", springs, halves[i], amplitude, optimize=True)
-            forces[:, 3 + own, i, :, own] += area * at.secant * shift
-            stuck[:, 3 + own, i, :, own] += springs * shift
-            loss[:, i] = (area * at.rate * along)[:, :, None] * amplitude[:, None]
-        parts = zip((_of_patches(each, rows) for each in (forces, stuck, loss)), self.aim.scale, strict=True)
+                forces[0, :, :, i] += of_patches(slope, halves[j])
+            forces[1, :, :, i] = of_patches(springs, halves[i])
+            pulls[:, :, i] = sums(area * at.secant * shift), sums(springs * shift)
+            loss[:, i] = sums(area * at.rate * along)
+        by_rows, own = forces[..., None] * amplitude[:, None, None, None], np.arange(modes)
+        by_rows[:, :, 3 + own, :, :, own] += pulls
+        each = *by_rows, loss[..., None] * amplitude[:, None, None]
+        parts = zip(each, self.aim.scale, strict=True)
         return np.concatenate([(x / s.reshape(s.shape + (1,) * 3)).reshape(-1, rows.size) for x, s in parts])
 
 
@@ -276,11 +285,6 @@ def on_circles(patches: FrictionPatches, area: float, approach: Array, turns: Ar
         rigid_shifts((patches.position + away).reshape(-1, 2)),
     )
     return there, np.concatenate([-y * each, x * each])
-
-
-def _of_patches(slopes: Array, rows: Array) -> Array:
-    """Derivatives (..., 2, m, k) by rows (2 m, k) of patches, from those (..., 2, c m, k) by their places."""
-    return np.asarray(slopes.reshape(*slopes.shape[:-2], -1, len(rows) // 2, rows.shape[1]).sum(axis=-3))
 
 
 def moved(law: Foundation, shears: Shears, surface: Surface, rows: Array) -> tuple[Array, Friction]:

@@ -127,8 +127,8 @@ class States:
         start = spring.tightened(preload, 0.0)
         return cls(spring, 0.5 * (compliance + compliance.T), rigid, start, preload)
 
-    def law(self, g: Array) -> tuple[Array, Array]:
-        """Forces (3 n + b) [N] at motions (3 n + b) [m] of cells and bolts, and their slope."""
+    def law(self, g: Array) -> tuple[Array, sp.csr_matrix]:
+        """Forces (3 n + b) [N] at motions (3 n + b) [m] of cells and bolts, and their slope, symmetric."""
         spring, n = self.spring, self.start.size
         joint, area = spring.joint, spring.joint.A_0 * spring.shape.share
         foundation = spring.foundation()
@@ -145,15 +145,15 @@ class States:
         bolt = np.full(g.size - 3 * n, joint.bolt_stiffness)
         force = np.concatenate([-area * (p - tight), area * secant * u, area * secant * v, bolt * g[3 * n :]])
         own = [area * k, area * (secant + bent * u * u), area * (secant + bent * v * v), bolt]
-        slope, cross = np.diag(np.concatenate(own)), area * bent * u * v
-        cells = np.arange(n)
-        slope[n + cells, 2 * n + cells] = slope[2 * n + cells, n + cells] = cross
-        return force, slope
+        cross = np.zeros(g.size)
+        cross[n : 2 * n] = area * bent * u * v  # of shifts along y on forces along x
+        slope = sp.diags([cross[: g.size - n], np.concatenate(own), cross[: g.size - n]], [-n, 0, n])
+        return force, slope.tocsr()
 
     def stiffness(self) -> Array:
         """(6, 6) of the tightened joint."""
         slope = self.law(np.zeros(len(self.rigid)))[1]
-        one = np.eye(len(slope))
+        one = np.eye(len(self.rigid))
         return np.asarray(self.rigid.T @ np.linalg.solve(one + slope @ self.compliance, slope @ self.rigid))
 
     def forces(self, motion: Array) -> Array:
@@ -163,7 +163,7 @@ class States:
         force, slope = self.law(g)
         left = g + self.compliance @ force - given
         for _ in range(STEPS):
-            step = -np.linalg.solve(np.eye(g.size) + self.compliance @ slope, left)
+            step = -np.linalg.solve(np.eye(g.size) + (slope @ self.compliance).T, left)
             for half in range(5):
                 there = g + 0.5**half * step
                 force, slope = self.law(there)

@@ -11,6 +11,7 @@ from jointfmu_fmu_src.native.data import data_of
 from jointfmu_fmu_src.native.licence import licence
 from jointfmu_fmu_src.native.page import plain_page
 
+from ...host import runs
 from .code import sources
 from .model import SystemModel
 from .proof import proof
@@ -43,7 +44,7 @@ def build_system(
         target = out / f"fmi{version}" / f"{model.title}.fmu"
         with workshop(target) as work:
             if found is None:  # the first FMU computes what both carry
-                pack(members, work / target.name)
+                pack({path: it for path, it in members.items() if runs(path)}, work / target.name)
                 found = proof(model, assembly.stop, assembly.own_interval, work / target.name)
             pack(members | found, work / target.name)
         written.append(target)

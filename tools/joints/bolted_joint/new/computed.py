@@ -99,12 +99,13 @@ def whole_of(
     """
 
     with installed("the whole joint"):
+        from ....fem.geometry import check_thickness
         from ....fem.reduction.elastic_bodies import elastic_bodies
         from ....fem.whole_joint import WholeJoint
 
         step("members by finite elements")
         clamped = assembly()
-        _check_thickness(clamped)
+        check_thickness(clamped)
         joint = WholeJoint.of(clamped, attached)
         springs = _springs(file, preload, joint)
         linear = joint.linear(springs, file.values.bolt_stiffness)
@@ -116,17 +117,6 @@ def whole_of(
         )
         compliances = linear.compliances()
     return ComputedJoint(compliances, with_bodies(file, bodies, attached))
-
-
-def _check_thickness(assembly: "Assembly") -> None:
-    """Raise ValueError for a body thinner than the ring that a head presses on is wide."""
-    least = 0.5 * (assembly.bolts.head_diameter - assembly.bolts.hole_diameter)
-    for name, body in (("side1", assembly.side1), ("side2", assembly.side2)):
-        if not body.clamped >= least:
-            raise ValueError(
-                f"{name} is {1e3 * body.clamped:.4g} mm thick, expected at least {1e3 * least:.4g} mm: the "
-                "width of the ring under a head, which would punch through"
-            )
 
 
 def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> ParameterFile:
