@@ -101,14 +101,14 @@ def test_elements_with_friction_are_linear_first_and_slip_at_last():
 
 @pytest.mark.slow
 def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
-    """To its slip, three times as far, and back: 1.3 and 1.9 % of the force were measured, 0.9 % of the heat.
+    """To its slip, three times as far, and back: 1.2 % of either force were measured, 0.7 % of the heat.
     Coarse elements, of which the joint is made too, serve as well.
 
     Friction has the normal force of the contact, however it bends: patches that open by themselves do not,
     and find no equilibrium on the wide way of six directions at the end.
     """
     fine = WholeJoint.of
-    monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.8))
+    monkeypatch.setattr(WholeJoint, "of", lambda assembly, attached, *_: fine(assembly, attached, 0.7))
     attached, drawing, wrench = JOINTS["bracket"]
     joint = Joint.of(attached, drawing, elements=True)
     elements = Elements.clamped(joint, wrench)
@@ -121,8 +121,7 @@ def test_a_bracket_slips_under_a_lever_as_its_elements_do(monkeypatch):
     np.testing.assert_allclose(lost[3:], heat[3:], rtol=0.015)
 
     spring, rng = joint.spring, np.random.default_rng(5)
-    unit = 0.7 * joint.load() / stiffnesses(joint)[0]
-    there, back = rng.uniform(-1.0, 1.0, (6, 2, 6))[5] * unit
+    there, back = rng.uniform(-0.2, 0.2, (2, 6)) * joint.load() / stiffnesses(joint)[0]
     angles = np.linspace(0.0, 2.0 * np.pi, 25)
     memory, start = spring.at_rest(), spring.tightened(joint.preload, 0.0)
     for six in np.outer(np.sin(angles), there) + np.outer(1.0 - np.cos(angles), back):
