@@ -149,11 +149,8 @@ class BoltedJointSpring:
         return parts(self.shape, self.patches) * self.shape.share / self.patches.share[:, None]
 
     def pressed(self, approach: Array) -> Array:
-        """Approach (m) [m] of the patches to points at approaches (n) [m]: that at which they have the
-        normal force of their points, so that friction has no normal force beside that of the contact.
-
-        Where all points of a patch are open it is as far open as the nearest of them.
-        """
+        """Approach (m) [m] of the patches to points at approaches (n) [m]: that at which they have the normal
+        force of their points, or, where all of these are open, that of the nearest one."""
         p = self.pressing @ self.curve.derivatives(approach, 0)[0]
         nearest = np.max(np.where(self.pressing > 0.0, approach, -np.inf), axis=1)
         return np.where(p > 0.0, self.curve.inverse(p), np.minimum(nearest, self.curve.displacement[0]))
