@@ -151,11 +151,6 @@ static double tightening_rate(const Joint *joint, const double *point, const dou
     return y[1] > 0.0 ? rate / y[1] : 0.0;
 }
 
-static inline double apart_at(const double *point, const double *v)
-{
-    return v[S_REL + 2] + v[THETA] * point[PLACE_Y] - v[THETA + 1] * point[PLACE_X];
-}
-
 static inline double along_x(const double *point, const double *v)
 {
     return v[S_REL] - v[THETA + 2] * point[PLACE_Y];

@@ -38,13 +38,6 @@ void whole_pressed(const Kind *kind, const double *points, double *patches)
     }
 }
 
-/* How far a point comes apart by the motions alone. */
-static inline double apart_by(const double *inputs, int i)
-{
-    const double *turn = inputs + INPUT_THETA_X;
-    return inputs[INPUT_S_REL_X + 2] + turn[0] * data.nodes[i][PLACE_Y] - turn[1] * data.nodes[i][PLACE_X];
-}
-
 /* The approach of a patch whose points are all open: that of the nearest one. */
 static double open_approach(const Joint *joint, int j, const double *inputs)
 {
@@ -53,7 +46,7 @@ static double open_approach(const Joint *joint, int j, const double *inputs)
     for (int e = 0; e < (int)data.n_pressing; e++) {
         const int i = data.pressing[e][PAIR_POINT];
         if (data.pressing[e][PAIR_PATCH] == j)
-            nearest = fmax(nearest, kind->start[i] - (apart_by(inputs, i) + kind->opened[i]));
+            nearest = fmax(nearest, kind->start[i] - (apart_at(data.nodes[i], inputs) + kind->opened[i]));
     }
     return fmin(nearest, joint->curve.first.x);
 }
@@ -205,7 +198,7 @@ static double residual(const Joint *joint, const double *inputs, const double *a
         r[k] = kind->bodies[k] * amplitude[k];
     for (int i = 0; i < (int)data.n_nodes; i++) {
         const double weight = kind->area * data.nodes[i][SHARE], p = kind->p[i], tight = kind->tightened[i];
-        const double moved = fabs(apart_by(inputs, i));
+        const double moved = fabs(apart_at(data.nodes[i], inputs));
         normal[i] = -weight * (p - tight);
         forces += weight * (p + tight);
         stiffness += weight * kind->k[i];

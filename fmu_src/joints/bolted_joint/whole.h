@@ -6,8 +6,15 @@
 
 #include "bolted_joint.h"
 #include "joint.h"
+#include "variables.h"
 
 enum { PAIR_PATCH, PAIR_POINT, PAIR_PART }; /* of `data.pressing` */
+
+/* How far a point comes apart by motions alone: those of the inputs, or of a seed. */
+static inline double apart_at(const double *point, const double *v)
+{
+    return v[INPUT_S_REL_X + 2] + v[INPUT_THETA_X] * point[PLACE_Y] - v[INPUT_THETA_X + 1] * point[PLACE_X];
+}
 
 /* The modes as numbers, once for a parameter set. */
 void whole_begin(Kind *kind);
