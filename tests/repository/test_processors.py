@@ -1,7 +1,8 @@
 """What goes into FMUs and Modelica components is the same on every processor.
 
 OpenBLAS and numpy choose their code by the processor; their variables choose that of others, as far as this
-one runs it. The shipped parameter files, a plate, and a row of bolts. `.ci/run` runs the fast tests so, too.
+one runs it. The shipped parameter files, a plate, and a row of bolts; what `new` writes of a plate. `.ci/run`
+runs the fast tests so, too.
 """
 
 import json
@@ -10,6 +11,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from subprocess import PIPE
 
 import numbers_of_all
 import numpy as np
@@ -31,6 +33,7 @@ AGREE, PROOF = 1e-9, 1e-7
 limits of the law its terms cancel: they differ by 1e-8."""
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.\d*|\.\d+|\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 TOKEN = re.compile(r"\{[0-9a-f-]{36}\}")
+SURFACE = ["--material", "steel", "--Ra", "0.8"]
 PLATES = {
     "plate": ["--plate", "200x100", "--bolts", "4xM12", "--at", "160x60"],
     "row": ["--plate", "120x25", "--bolts", "3xM8", "--at", "60x0"],
@@ -40,7 +43,7 @@ PLATES = {
 def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
     """{what: text} as the old processor has it."""
     script = [sys.executable, numbers_of_all.__file__, str(folder)]
-    run = subprocess.run([*script, *map(str, paths)], env=os.environ | OLD, stdout=subprocess.PIPE)
+    run = subprocess.run([*script, *map(str, paths)], env=os.environ | OLD, stdout=PIPE)
     assert run.returncode == 0
     return json.loads(run.stdout)
 
@@ -49,7 +52,7 @@ def elsewhere(folder: Path, paths: list[Path]) -> dict[str, str]:
 def paths(tmp_path_factory) -> list[Path]:
     """Parameter files of a plate with four bolts, with its bodies, and of one with a row of three."""
     folder = tmp_path_factory.mktemp("files")
-    more = ["--grip", "40", "--material", "steel", "--Ra", "0.8"]
+    more = ["--grip", "40", *SURFACE]
     with pytest.MonkeyPatch.context() as patch:
         for name, given in PLATES.items():
             out = ["--out", str(folder / f"{name}.toml")]
@@ -64,7 +67,19 @@ def here(tmp_path_factory, paths) -> dict[str, str]:
     return texts(tmp_path_factory.mktemp("here"), paths)
 
 
-@pytest.mark.skipif(not __cpu_features__.get("AVX2", False), reason="this processor has no AVX2")
+newer = pytest.mark.skipif(not __cpu_features__.get("AVX2", False), reason="this processor has no AVX2")
+
+
+@newer
+def test_the_file_of_a_whole_joint_is_the_same(tmp_path, fine_elements):
+    given = ["new", "bolted-joint", "--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20"]
+    here, there = ([*given, *SURFACE, "--out", str(tmp_path / name)] for name in ("here.toml", "there.toml"))
+    assert cli.main(here) == 0
+    subprocess.run([sys.executable, "-m", "jointfmu", *there], env=os.environ | OLD, check=True, stdout=PIPE)
+    assert (tmp_path / "here.toml").read_text() == (tmp_path / "there.toml").read_text()
+
+
+@newer
 def test_numbers_are_those_of_an_old_processor(tmp_path, here, paths):
     there = elsewhere(tmp_path, paths)
     assert there.keys() == here.keys()

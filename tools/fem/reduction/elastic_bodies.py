@@ -37,6 +37,8 @@ LEAST = 1e-3
 OPENING = 0.5
 """Amplitude of states that open the contact, over that of those that shear it alone [1], where modes are
 found: the loss in partial slip needs finer ones."""
+STIFFNESS_DIGITS = 6
+"""Digits of the stiffness of a mode [1]: more than those of what it moves, fewer than processors agree in."""
 GAIN = 10.0
 """Most by which what a mode does at the points is changed [1]."""
 
@@ -95,13 +97,22 @@ def elastic_bodies(linear: Linear, spring: BoltedJointSpring, normal: Array, pre
     moves = {"opening": opening, "stretch": stretch}
     moves |= dict(zip(("patch_x", "patch_y"), np.split(both, 2), strict=True))
     moves["patch_around"] = patches.radius[:, None] * turns
-    most = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
-    rounded: dict[str, Any] = {
-        name: _listed(np.round(rows / most, DIGITS).ravel()) for name, rows in moves.items()
-    }
+    most, listed = _rounded(moves)
     places = {"x": x, "y": y, "bolt_x": bolts[:, 0], "bolt_y": bolts[:, 1]}
-    rounded |= {name: _listed(each) for name, each in places.items()}
-    return ElasticBodies(stiffness=_listed(1.0 / most**2), **rounded)
+    listed |= {name: _listed(each) for name, each in places.items()}
+    stiffness_of_each = tuple(float(f"{each:.{STIFFNESS_DIGITS}g}") for each in 1.0 / most**2)
+    return ElasticBodies(stiffness=stiffness_of_each, **listed)
+
+
+def _rounded(moves: dict[str, Array]) -> tuple[Array, dict[str, Any]]:
+    """The most (k) that each mode moves, and what it moves over it, rounded: the first that is most is 1, as
+    a mode and its opposite are alike, and a processor's last bits would choose between them."""
+    most = np.max(np.abs(np.concatenate(list(moves.values()))), axis=0)
+    rounded = {name: np.round(rows / most, DIGITS) for name, rows in moves.items()}
+    every = np.concatenate(list(rounded.values()))
+    first = np.argmax(np.abs(every), axis=0)
+    sign = np.sign(every[first, np.arange(len(first))])
+    return most, {name: _listed((sign * rows).ravel()) for name, rows in rounded.items()}
 
 
 def _listed(values: Array) -> tuple[float, ...]:

@@ -152,7 +152,7 @@ def lever(y: Array) -> tuple[float, float]:
     away = y - np.mean(y)
     far = float(np.max(np.abs(away)))
     count = min(np.sum(np.isclose(side * away, far, rtol=1e-6)) or np.inf for side in (1.0, -1.0))
-    return float(count), float(away @ away / (count * far))
+    return float(count), float(np.sum(away * away) / (count * far))
 
 
 def cells(plate: BoltedPlate) -> tuple[Array, Array]:
