@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile
 from jointfmu.quantity import Array
 
@@ -129,8 +130,8 @@ TILT = 1.0 / 3.0
 
 def with_solution(
     file: ParameterFile, solution: JointSolution, preload: float, moment: float = 0.0
-) -> ParameterFile:
-    """The joint with the field at a preload [N] per bolt, and what a moment adds from a second one.
+) -> tuple[ParameterFile, PressureShape]:
+    """The joint with the field at a preload [N] per bolt, what a moment adds from a second one; all nodes.
 
     solution : at that preload and moment [N.m]; what is missing is solved from there
     """
@@ -141,5 +142,5 @@ def with_solution(
     source = f"finite elements of the assembly {joint.assembly.name}"
     bolts = joint.assembly.bolts.positions
     second = tilting or None
-    file, _ = with_field(file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts)
-    return replace(file, name=f"{file.name}, computed field")
+    file, reduction = with_field(file, equal, preload, source, tilted=tilted, moment=second, bolts=bolts)
+    return replace(file, name=f"{file.name}, computed field"), reduction.field

@@ -67,13 +67,13 @@ class Clamping:
     shear_ratio : tangential over normal stiffness [1] of parameters, the same at every pressure
     layout      : places of its bolts and sizes of holes and heads, as far as parameters have them
     whole       : a parameter file with the bodies of an assembly between attachments of a name, at the
-                  force [N] that tightens each bolt
+                  force [N] that tightens each bolt and the pressure of all nodes
     """
 
     pressures: Pressures
     shear_ratio: Callable[[Any], Number]
     layout: Callable[[Any], BoltLayout]
-    whole: Callable[[ParameterFile, Any, float, str], ParameterFile]
+    whole: Callable[[ParameterFile, Any, float, str, PressureShape], ParameterFile]
 
 
 def clamped() -> dict[str, Clamping]:

@@ -90,7 +90,7 @@ class Reduction:
     """What stands for a field.
 
     shape     : the points
-    nodes     : how many nodes they stand for
+    field     : all nodes, for which they stand
     deviation : [1] largest one of the sums at `loads` loads that the points were not made for: total
                 force, K_zz (and K_xx, which is in proportion), K_rx, K_ry, each over its value or the
                 one at tightening, whichever is larger; a hundredth of that of moments of the force and of
@@ -100,7 +100,7 @@ class Reduction:
     """
 
     shape: PressureShape
-    nodes: int
+    field: PressureShape
     deviation: float = 0.0
     loads: int = 0
     moment: float = 1.0
@@ -110,6 +110,11 @@ class Reduction:
     def points(self) -> int:
         """How many points the field has left."""
         return int(self.shape.share.size)
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes they stand for."""
+        return int(self.field.share.size)
 
 
 def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressures: Pressures) -> Reduction:
@@ -124,7 +129,7 @@ def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressur
     """
     nodes = shape.share.size
     if nodes <= FEW:
-        return Reduction(shape, nodes)
+        return Reduction(shape, shape)
     sums = Sums.of(joint, preload, pressures)
     order = np.argsort(
         to_digits(shape.equal), kind="stable"
@@ -138,7 +143,7 @@ def reduce(joint: BoltedInterface, shape: PressureShape, preload: float, pressur
     if reduction is not None:
         return reduction
     if nodes <= MOST:
-        return Reduction(own, nodes)
+        return Reduction(own, own)
     raise RuntimeError(f"the field of {nodes} nodes has no points that keep its sums within {TOLERANCE:g}")
 
 
@@ -168,7 +173,7 @@ def _search(sums: Sums, shape: PressureShape, some: PressureShape, own: Pressure
     if best is None:
         return None
     beyond = _beyond(sums, shape, best, limit)
-    return Reduction(best, shape.share.size, least, tests, limit, beyond)
+    return Reduction(best, own, least, tests, limit, beyond)
 
 
 def _beyond(sums: Sums, shape: PressureShape, points: PressureShape, limit: float) -> float:

@@ -3,15 +3,18 @@
 import json
 import sys
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from conftest import refused_line
 from jointfmu_tools import cli
 from jointfmu_tools.commands.assembly import with_assembly
+from jointfmu_tools.fem.bolted_contact import BoltedContact
 from jointfmu_tools.fem.geometry import Assembly, BoltList, Plate
 
 from jointfmu.contact.surface import Elastic
+from jointfmu.joints.bolted_joint.compliances import DIRECTIONS, Compliances
 from jointfmu.joints.bolted_joint.law import RoughBoltedJoint, contradictions, pressures
 from jointfmu.joints.bolted_joint.spring import BoltedJointSpring, points
 from jointfmu.mechanics.footprint.plate import BoltedPlate, cells, decay, lever
@@ -335,6 +338,19 @@ def test_four_bolts_share_a_load_evenly(capsys):
     facts, _ = made(capsys, *words, "--preload", "15e3", "--embedding", "0")
     assert facts["whole_load_factor"] == pytest.approx(4.0 * facts["whole_bolt_share"], rel=1e-2)
     assert facts["whole_K_xx"] == pytest.approx(facts["whole_K_yy"], rel=0.02)  # gmsh's mesh is not symmetric
+
+
+@pytest.mark.slow
+def test_the_whole_of_a_computed_field_has_the_stiffness_of_all_its_nodes(capsys, tmp_path, monkeypatch):
+    """The file has few of them, with the same sums: the whole that the finite elements find is its own."""
+    monkeypatch.setattr(BoltedContact, "of", partial(BoltedContact.of, refinement=0.5))  # as the bodies' here
+    path = tmp_path / "plate.toml"
+    words = ["--plate", "60x30", "--bolts", "2xM8", "--at", "40x0", "--grip", "20", *M16[6:]]
+    facts, _ = made(capsys, *words, "--preload", "15e3", "--field", "computed", "--out", str(path))
+    found = Compliances.of(BoltedJointSpring.of(load(path).values), 15e3)
+    for name, compliance in zip(DIRECTIONS, found.whole, strict=True):
+        whole = facts[f"whole_K_{name if name.startswith('r') else 2 * name}"]
+        assert 1.0 / compliance == pytest.approx(whole, rel=2e-3), name
 
 
 def test_without_finite_elements_it_is_said(capsys, monkeypatch):

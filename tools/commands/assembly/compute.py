@@ -103,11 +103,11 @@ def _with_field(args: argparse.Namespace, file: ParameterFile, solution: "JointS
     """The joint with the field at the preload that embedding leaves, what a moment adds, and its bodies."""
     from ...fem.bolted_contact import with_solution
 
-    made = with_solution(file, solution, args.preload, args.moment or 0.0)
+    made, shape = with_solution(file, solution, args.preload, args.moment or 0.0)
     if not args.attached:
         return made
     preload = args.preload + made.values.embedding
-    return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached)
+    return clamping(made.joint).whole(made, solution.joint.assembly, preload, args.attached, shape)
 
 
 def _findings(solution: "JointSolution", moment: float, preload: float) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def _run_import(args: argparse.Namespace) -> Answer:
     file = replace(file, name=f"{start.name}, field of {args.file.name}")
     if plates:
         preload = args.preload + file.values.embedding
-        file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces")
+        file = clamping(file.joint).whole(file, plates, preload, args.attached or "faces", reduction.field)
     if args.plot:
         joint_parameters.draw(field, reduction, args.plot)
     if args.out:

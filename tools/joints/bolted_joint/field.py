@@ -94,10 +94,12 @@ def _pressures(
     return pressures(replace(joint, embedding=0.0), shape, preload, moment)
 
 
-def _whole(file: ParameterFile, assembly: "Assembly", preload: float, attached: str) -> ParameterFile:
+def _whole(
+    file: ParameterFile, assembly: "Assembly", preload: float, attached: str, shape: PressureShape
+) -> ParameterFile:
     from .new.computed import whole_of
 
-    return whole_of(file, lambda: assembly, preload, attached).file
+    return whole_of(file, lambda: assembly, preload, attached, shape).file
 
 
 FIELD = Clamping(pressures=_pressures, shear_ratio=shear_ratio, layout=PlaneLayout.of, whole=_whole)

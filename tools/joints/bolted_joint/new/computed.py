@@ -13,6 +13,7 @@ from jointfmu.joints.bolted_joint.spring import BoltedJointSpring
 from jointfmu.mechanics.curve import approach_curve
 from jointfmu.mechanics.footprint.bolts import pressure_shape
 from jointfmu.mechanics.footprint.plate import BoltedPlate
+from jointfmu.mechanics.footprint.shape import PressureShape
 from jointfmu.parameters import ParameterFile
 from jointfmu.progress import step
 from jointfmu.quantity import Array, flatten
@@ -63,8 +64,9 @@ class Plates:
         return Assembly(file.name, sides[0], sides[1], bolts)
 
 
-def with_computed_field(file: ParameterFile, plates: Plates) -> ParameterFile:
-    """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts.
+def with_computed_field(file: ParameterFile, plates: Plates) -> tuple[ParameterFile, PressureShape]:
+    """The joint with the pressure of two elastic plates in contact instead of the cones of its bolts; at all
+    nodes.
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -85,15 +87,23 @@ class ComputedJoint:
     file: ParameterFile
 
 
-def whole_joint(file: ParameterFile, plates: Plates, attached: str) -> ComputedJoint:
+def whole_joint(
+    file: ParameterFile, plates: Plates, attached: str, shape: PressureShape | None = None
+) -> ComputedJoint:
     """The whole joint of a drawing at its preload, see `whole_of`."""
-    return whole_of(file, lambda: plates.assembly(file), plates.preload, attached)
+    return whole_of(file, lambda: plates.assembly(file), plates.preload, attached, shape)
 
 
 def whole_of(
-    file: ParameterFile, assembly: "Callable[[], Assembly]", preload: float, attached: str
+    file: ParameterFile,
+    assembly: "Callable[[], Assembly]",
+    preload: float,
+    attached: str,
+    shape: PressureShape | None = None,
 ) -> ComputedJoint:
     """The whole joint under the force [N] of each bolt at tightening: the bodies move at their attachments.
+
+    shape : the pressure at all nodes of a field, of which the file has few; None: what the file has
 
     Raises ValueError for heads that overlap or leave the plate, and if a package is missing.
     """
@@ -107,7 +117,7 @@ def whole_of(
         clamped = assembly()
         check_thickness(clamped)
         joint = WholeJoint.of(clamped, attached)
-        springs = _springs(file, preload, joint)
+        springs = _springs(file, preload, joint, shape or pressure_shape(file.values.pattern))
         linear = joint.linear(springs, file.values.bolt_stiffness)
         bodies = replace(
             elastic_bodies(linear, BoltedJointSpring.of(file.values), springs[:, 2], preload),
@@ -133,14 +143,14 @@ def with_bodies(file: ParameterFile, bodies: ElasticBodies, attached: str) -> Pa
     )
 
 
-def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
+def _springs(file: ParameterFile, preload: float, joint: "WholeJoint", shape: PressureShape) -> Array:
     """Stiffness (points, 3) [N/m3] of the tightened interface along x, y, z at the points of the elements.
 
-    That of the nearest point of the joint's own contact, together as stiff as that.
+    That of the nearest node of the joint's own contact, together as stiff as that.
     """
     from scipy.spatial import cKDTree
 
-    values, shape, at = file.values, pressure_shape(file.values.pattern), joint.interface
+    values, at = file.values, joint.interface
     curve = approach_curve(values)
     normal = curve.derivatives(curve.inverse(pressures(values, shape, preload, 0.0)), 1)[1]
     here = normal[cKDTree(shape.position).query(at.centred)[1]]
@@ -152,16 +162,19 @@ def _springs(file: ParameterFile, preload: float, joint: "WholeJoint") -> Array:
 Facts = dict[str, tuple[float, str, str]]
 
 
-def facts(file: ParameterFile, plates: Plates, attached: str, sides: str | None) -> NewJoint:
+def facts(
+    file: ParameterFile, plates: Plates, attached: str, sides: str | None, shape: PressureShape | None = None
+) -> NewJoint:
     """The whole joint beside the interface, and the parameters with elastic sides; or a line that says why it
     cannot be computed.
 
     sides : rigid or elastic as stated; None: elastic if the packages are there
+    shape : as in `whole_of`
 
     Raises ValueError if it was asked for and cannot be computed.
     """
     try:
-        found = whole_joint(file, plates, attached)
+        found = whole_joint(file, plates, attached, shape)
     except ValueError as error:
         if sides == "elastic":
             raise

@@ -94,12 +94,13 @@ def joint(given: Given) -> NewJoint:
     if given["tapped"] and given["thickness"] is not None:
         layers, depth = (*layers, vdi2230.ClampedPart(_each(given)[1], moduli[1])), ENGAGED * thread.d
     plates = Plates(plate, layers, one.bearing, density, preload, preload - loss, depth)
+    shape = None
     if given["field"] == "computed":
-        file = with_computed_field(file, plates)
+        file, shape = with_computed_field(file, plates)
     facts = _facts(file, one, heights, preload)
     if given["tapped"] and given["thickness"] is None:
         return NewJoint(file, facts, [*warnings, ALONE])
-    found = computed.facts(file, plates, given["attached"] or "faces", given["sides"])
+    found = computed.facts(file, plates, given["attached"] or "faces", given["sides"], shape)
     return NewJoint(found.file, {**facts, **found.facts}, [*warnings, *found.warnings])
 
 
