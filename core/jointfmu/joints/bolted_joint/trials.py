@@ -76,9 +76,10 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Trials:
-    """The joint on its way from a memory to a place, see `whole.Trials`.
+    """The joint on its way from a memory to a place.
 
     starts : approaches [m] of points (n) and patches (m) at tightening
+    told   : the inputs at its end, as text
     """
 
     spring: "BoltedJointSpring"
