@@ -128,14 +128,6 @@ static inline bool instance_counts(const Instance *m, const char *function, cons
     return given == expected || instance_refuse(m, function, "%zu %s; expected %zu", given, what, expected) == OK;
 }
 
-/* Whether an integrator step may be completed, and its two answers can be given. */
-static inline bool instance_may_complete(const Instance *m, const char *function, const void *event, const void *end)
-{
-    return instance_allows(m, function, MODEL_EXCHANGE | CONTINUOUS_TIME) &&
-           instance_has(m, function, "enterEventMode", event) &&
-           instance_has(m, function, "terminateSimulation", end);
-}
-
 /* Values as hosts set and read them: values.c */
 
 Status instance_set(Instance *m, const char *function, const uint32_t refs[], size_t n,
