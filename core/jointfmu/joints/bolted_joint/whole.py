@@ -73,19 +73,19 @@ class Whole:
 
     def stretch(self, place: Place, amplitude: Array) -> Array:
         """Of the bolts (b) [m]."""
-        return np.asarray(self.seats @ _normal(place) + self.modes.stretch @ amplitude)
+        return np.asarray(self.seats @ place.normal + self.modes.stretch @ amplitude)
 
     def residual(self, at: Trial, tight: Array, place: Place, amplitude: Array) -> tuple[Array, float]:
         """r (k) [N] of amplitudes (k) [m], and what of it is round-off [N]; tight (n) [Pa] at tightening."""
         modes = self.modes
-        rigid, own = self.seats @ _normal(place), modes.stretch @ amplitude
+        rigid, own = self.seats @ place.normal, modes.stretch @ amplitude
         bolts = self.bolt * (rigid + own)
         r = modes.stiffness * amplitude + modes.stretch.T @ bolts
         r = r - modes.opening.T @ (self.weight * (at.pressure - tight))
         for axis in range(3):
             r = r + modes.patch[axis].T @ (self.patch * at.traction[:, axis])
         sizes = self.weight @ (at.pressure + tight), np.sum(np.abs(bolts)), self.patch @ np.abs(at.traction)
-        apart = np.max(np.abs(self.points @ _normal(place)))
+        apart = np.max(np.abs(self.points @ place.normal))
         forces = sum(np.sum(size) for size in sizes) + (self.weight @ at.stiffness) * apart * CANCELS
         return r, float(CLOSE * forces)
 
@@ -206,7 +206,3 @@ def _apart(position: Array) -> Array:
     """How far places (n, 2) [m] come apart by s_z, theta_x, theta_y: (n, 3)."""
     x, y = position.T
     return np.stack([np.ones_like(x), y, -x], axis=-1)
-
-
-def _normal(place: Place) -> Array:
-    return np.array([place.shift[2], *place.turn[:2]])
