@@ -39,12 +39,9 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     if (!functions)
         return NULL; /* and no way to say why */
     const Reporter reporter = {deliver, (void (*)(void))functions->logger, functions->componentEnvironment};
-    if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
-        instance_not_made(__func__, instanceName, reporter,
-                          "the type is unknown; expected fmi2ModelExchange or "
-                          "fmi2CoSimulation");
-        return NULL;
-    }
+    if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation)
+        return instance_not_made(__func__, instanceName, reporter,
+                                 "the type is unknown; expected fmi2ModelExchange or fmi2CoSimulation");
     return instance_new(__func__, 2, fmuType == fmi2ModelExchange ? MODEL_EXCHANGE : CO_SIMULATION,
                         instanceName, fmuGUID, loggingOn != fmi2False, reporter);
 }

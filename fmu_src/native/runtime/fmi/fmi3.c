@@ -41,12 +41,10 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     (void)resourcePath, (void)visible, (void)earlyReturnAllowed; /* a step never ends early */
     (void)requiredIntermediateVariables, (void)intermediateUpdate;
     const Reporter reporter = {deliver, (void (*)(void))logMessage, instanceEnvironment};
-    if (eventModeUsed) {
-        instance_not_made(__func__, instanceName, reporter,
-                          "event mode is wanted in co-simulation; expected eventModeUsed = false, as the model "
-                          "description says");
-        return NULL;
-    }
+    if (eventModeUsed)
+        return instance_not_made(__func__, instanceName, reporter,
+                                 "event mode is wanted in co-simulation; expected eventModeUsed = false, as the "
+                                 "model description says");
     Instance *m =
         instance_new(__func__, 3, CO_SIMULATION, instanceName, instantiationToken, loggingOn, reporter);
     if (m && nRequiredIntermediateVariables)
@@ -65,9 +63,8 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     (void)instantiationToken, (void)resourcePath, (void)visible, (void)loggingOn;
     (void)clockUpdate, (void)lockPreemption, (void)unlockPreemption;
     const Reporter reporter = {deliver, (void (*)(void))logMessage, instanceEnvironment};
-    instance_not_made(__func__, instanceName, reporter,
-                      "this FMU has no scheduled execution; expected model exchange or co-simulation");
-    return NULL;
+    return instance_not_made(__func__, instanceName, reporter,
+                             "this FMU has no scheduled execution; expected model exchange or co-simulation");
 }
 
 ENTRY(fmi3EnterInitializationMode,

@@ -68,14 +68,16 @@ static bool tabulate(Instance *m)
 
 static Status refuse_input(const Instance *m, size_t i)
 {
-    Text why = {0};
+    Text why;
+    text_clear(&why);
     add_outside(&why, &variables[FIRST_INPUT + i], m->now.values[FIRST_INPUT + i], 6);
     return refuse(m, &why);
 }
 
 static Status refuse_outputs(const Instance *m)
 {
-    Text why = {0};
+    Text why;
+    text_clear(&why);
     const char *between = "";
     size_t bad = 0;
     while (isfinite(m->now.values[FIRST_OUTPUT + bad]))

@@ -45,11 +45,12 @@ Status instance_refuse(const Instance *m, const char *function, const char *form
     return ERROR;
 }
 
-void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what)
+Instance *instance_not_made(const char *function, const char *name, Reporter reporter, const char *what)
 {
     Text text = {0};
     text_print(&text, "%s: %s", function, what);
     reporter.deliver(&reporter, name ? name : "", ERROR, categories_known[0], text.line);
+    return NULL;
 }
 
 /* false: unknown. */
@@ -126,18 +127,15 @@ Instance *instance_new(const char *function, unsigned version, unsigned kind, co
         text_add(&text, "the instance name is empty; expected a name");
     else if (!token || strcmp(token, data.token) != 0)
         text_print(&text, "the token is %q; expected '%s', that of %s", token, data.token, data.name);
-    if (text.length > 0) {
-        instance_not_made(function, name, reporter, text.line);
-        return NULL;
-    }
+    if (text.length > 0)
+        return instance_not_made(function, name, reporter, text.line);
     const size_t name_size = strlen(name) + 1;
     Instance *m = calloc(1, sizeof *m + name_size);
     Joint *joint = calloc(1, joint_size());
     if (!m || !joint) {
         free(m);
         free(joint);
-        instance_not_made(function, name, reporter, "no memory is left; expected some for a new instance");
-        return NULL;
+        return instance_not_made(function, name, reporter, "no memory is left; expected some for a new instance");
     }
     m->joint = joint;
     m->version = version;

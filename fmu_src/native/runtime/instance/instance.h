@@ -91,8 +91,8 @@ typedef struct {
 /* NULL with a message if the host's name or token is wrong. */
 Instance *instance_new(const char *function, unsigned version, unsigned kind, const char *name,
                        const char *token, bool logging_on, Reporter reporter);
-/* Say why there is no new instance. */
-void instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
+/* Say why there is no new instance, and give NULL. */
+Instance *instance_not_made(const char *function, const char *name, Reporter reporter, const char *what);
 void instance_free(Instance *m);
 /* Back to the state after instantiation, where that is allowed and without asking. */
 Status instance_restart(Instance *m, const char *function);
